@@ -1,0 +1,107 @@
+"""Track a recording or a scenario in process, faster than real time, into a track file."""
+
+import sys
+import time
+from pathlib import Path
+from typing import Any, Iterable, Iterator, NamedTuple
+
+import numpy as np
+
+from ..recording import csv_folder, track_file
+from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
+from ..tracking.tracker import Tracker
+from ..types import Scan
+from . import tracker_options
+
+HELP = 'track a recording or a scenario into a CSV file, without ROS'
+
+
+class Source(NamedTuple):
+    """Scans to track.
+
+    scans               (number, scan) in time order
+    count               how many; None where it is not known
+    tracker_parameters  those that belong to the radar and its waters
+    """
+
+    scans: Iterable[tuple[int, Scan]]
+    count: int | None
+    tracker_parameters: dict[str, Any]
+
+
+class Summary(NamedTuple):
+    """scans done, tracks ever confirmed, and the tracker's mean CPU time a scan in ms."""
+
+    scans: int
+    confirmed: int
+    cpu_ms: float
+
+
+def add_arguments(parser) -> None:
+    parser.add_argument('source', metavar='SOURCE',
+                        help='folder of a recording, name of a shipped scenario, or scenario file')
+    parser.add_argument('--out', metavar='TRACKS.csv', required=True,
+                        help='track file to write: one row a track and scan; - for standard output')
+    parser.add_argument('--seed', type=int, default=1, help='seed of a scenario (default: 1)')
+    tracker_options.add_arguments(parser)
+
+
+def run(args) -> int:
+    source = open_source(args.source, args.seed)
+    tracker = Tracker(tracker_options.parameters(args, source.tracker_parameters))
+    scans = _with_progress(source.scans, source.count)
+    if args.out == '-':
+        summary = write_tracks(tracker, scans, sys.stdout)
+    else:
+        with open(args.out, 'w', newline='') as file:
+            summary = write_tracks(tracker, scans, file)
+    print(f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '
+          f'{summary.cpu_ms:.2f} ms CPU a scan', file=sys.stderr if args.out == '-' else sys.stdout)
+    return 0
+
+
+def open_source(name: str, seed: int = 1) -> Source:
+    """A recording where `name` is a folder, else a scenario run with `seed`.
+
+    ValueError where it is neither, or is not in order.
+    """
+    if Path(name).is_dir():
+        recording = csv_folder.read(name)
+        numbers = recording.numbers.tolist()
+        return Source(zip(numbers, recording.scans), len(numbers), recording.tracker_parameters)
+    from ..simulation import radar, scenario
+    chosen = scenario.load(name)
+    simulated = enumerate(scan for scan, _ in radar.simulate(chosen, seed))
+    return Source(simulated, None, chosen.tracker_parameters())
+
+
+def write_tracks(tracker: Tracker, scans: Iterable[tuple[int, Scan]], file) -> Summary:
+    """Run the tracker over numbered scans and write what it says after each of them."""
+    names = np.array(STATUS_NAMES)
+    confirmed: set[int] = set()
+    memory, count, cpu = tracker.start(), 0, 0.0
+    track_file.write_header(file)
+    for number, scan in scans:
+        began = time.process_time()
+        memory, report = tracker.step(memory, scan)
+        estimate = tracker.extrapolate(report.tracks, report.time)
+        cpu += time.process_time() - began
+        tracks = report.tracks
+        track_file.write_scan(
+            file, number, estimate, tracks.id, names[tracks.status], report.predicted, report.plot,
+            scan.own_ship, tracker.parameters.estimator)
+        confirmed.update(tracks.id[tracks.status == CONFIRMED].tolist())
+        count += 1
+    return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1))
+
+
+def _with_progress(scans: Iterable[tuple[int, Scan]], count: int | None
+                   ) -> Iterator[tuple[int, Scan]]:
+    """The same scans, with a progress bar where a person watches."""
+    if not sys.stderr.isatty():
+        yield from scans
+        return
+    from rich.console import Console
+    from rich.progress import track
+    yield from track(scans, 'tracking', total=count, console=Console(stderr=True),
+                     transient=True)

@@ -1,0 +1,52 @@
+"""The options by which a command's user sets the tracker's parameters."""
+
+import dataclasses
+
+import yaml
+
+from ..estimators import ESTIMATORS
+from ..parameters import TrackerParameters, from_mapping, read_yaml_mapping
+
+
+def add_arguments(parser) -> None:
+    """--estimator, --parameters and --set."""
+    parser.add_argument('--estimator', choices=sorted(ESTIMATORS),
+                        help='filter to use (default: the shipped one)')
+    parser.add_argument('--parameters', metavar='FILE.yaml',
+                        help="tracker parameters, as `name: value` lines or as a node's YAML")
+    parser.add_argument('--set', metavar='NAME=VALUE', action='append', default=[],
+                        help='one tracker parameter; may be given again')
+
+
+def parameters(args, from_source: dict) -> TrackerParameters:
+    """Shipped defaults, overruled by the source's, then --parameters, then --set, --estimator."""
+    values = dict(from_source)
+    if args.parameters:
+        values.update(_read(args.parameters))
+    for text in args.set:
+        name, equals, value = text.partition('=')
+        if not equals:
+            raise ValueError(f'--set {text}: it must be NAME=VALUE')
+        values[name.strip()] = yaml.safe_load(value)
+    if args.estimator:
+        values['estimator'] = args.estimator
+    return from_mapping(TrackerParameters, values)
+
+
+def names() -> list[str]:
+    """The names --set takes."""
+    return [field.name for field in dataclasses.fields(TrackerParameters)]
+
+
+def _read(path) -> dict:
+    """A flat mapping, or what `ros__parameters` holds for the tracker in a node's YAML."""
+    values = read_yaml_mapping(path)
+    of_nodes = {name: node['ros__parameters'] for name, node in values.items()
+                if isinstance(node, dict) and 'ros__parameters' in node}
+    if not of_nodes:
+        return values
+    mine = [name for name in of_nodes if name.strip('/*').split('/')[-1] in ('', 'tracker')]
+    if not mine:
+        raise ValueError(f'{path} has no parameters of the tracker; it has those of '
+                         f'{", ".join(of_nodes)}')
+    return {key: value for name in mine for key, value in (of_nodes[name] or {}).items()}

@@ -1,0 +1,108 @@
+"""Range and bearing to east and north, and back: the only home of bearing mathematics.
+
+Bearings are radians clockwise from true north; vectors are [east, north].
+"""
+
+import numpy as np
+
+from .types import OwnShip, Plots, PolarPlots
+
+NAUTICAL_MILE = 1852.0              # m
+KNOT = NAUTICAL_MILE / 3600.0       # m/s
+EARTH_RADIUS = 6371008.8            # m, mean
+
+
+def wrap_bearing(angle):
+    """The same angle in [0, 2 pi)."""
+    wrapped = np.mod(angle, 2 * np.pi)
+    return np.where(wrapped >= 2 * np.pi, 0.0, wrapped)    # -1e-17 % 2 pi rounds up to 2 pi
+
+
+def wrap_angle(angle):
+    """The same angle in [-pi, pi): for differences of bearings."""
+    return np.mod(angle + np.pi, 2 * np.pi) - np.pi
+
+
+def unit_vector(bearing):
+    """[..., 2] east and north of a unit step along the bearing [...]."""
+    return np.stack([np.sin(bearing), np.cos(bearing)], -1)
+
+
+def to_range_bearing(offset):
+    """Range [...] m and bearing [...] rad in [0, 2 pi) of offsets [..., 2] m from the radar."""
+    east, north = offset[..., 0], offset[..., 1]
+    return np.hypot(east, north), wrap_bearing(np.arctan2(east, north))
+
+
+def yaw_from_bearing(bearing):
+    """ROS yaw (counter-clockwise from east, rad in [-pi, pi)) of a bearing."""
+    return wrap_angle(np.pi / 2 - bearing)
+
+
+def polar_to_position(range_, bearing, range_sigma, bearing_sigma):
+    """Unbiased position and covariance of polar measurements relative to the radar.
+
+    range_, bearing  [M] m, rad; range_sigma m; bearing_sigma rad (scalars or [M]).
+    Returns position [M, 2] m and covariance [M, 2, 2] m^2.
+
+    Bearing noise pulls the mean of r (sin b, cos b) in by exp(-sigma_b^2 / 2); dividing by it
+    leaves no bias, and the covariance keeps the second-order terms that matter at long range
+    (Longbin, Xiaoquan, Yiyu, Kang, Bar-Shalom, "Unbiased converted measurements for tracking",
+    IEEE T-AES 34(3), 1998).
+    """
+    shrink = np.exp(-0.5 * bearing_sigma ** 2)
+    position = (range_ / shrink)[..., None] * unit_vector(bearing)
+    # Along and across the line of sight. E[cos^2 db] = (1 + shrink^4) / 2.
+    second = range_ ** 2 + range_sigma ** 2
+    along = second * (1 + shrink ** 4) / 2 / shrink ** 2 - range_ ** 2
+    across = second * (1 - shrink ** 4) / 2 / shrink ** 2
+    sin, cos = np.sin(bearing), np.cos(bearing)
+    covariance = np.empty(np.shape(range_) + (2, 2))
+    covariance[..., 0, 0] = along * sin ** 2 + across * cos ** 2
+    covariance[..., 1, 1] = along * cos ** 2 + across * sin ** 2
+    covariance[..., 0, 1] = covariance[..., 1, 0] = (along - across) * sin * cos
+    return position, covariance
+
+
+def own_ship_at(own_ship: OwnShip, time):
+    """Own ship's position [..., 2] m and velocity [..., 2] m/s at the times [...].
+
+    Linear between samples; beyond the first and last one the ship holds its velocity.
+    """
+    at = own_ship.time
+    if len(at) == 1:
+        after = np.asarray(time - at[0])[..., None]
+        velocity = np.broadcast_to(own_ship.velocity[0], after.shape[:-1] + (2,))
+        return own_ship.position[0] + after * velocity, velocity
+    inside = np.clip(time, at[0], at[-1])
+    position, velocity = (
+        np.stack([np.interp(inside, at, column) for column in columns.T], -1)
+        for columns in (own_ship.position, own_ship.velocity))
+    return position + np.asarray(time - inside)[..., None] * velocity, velocity
+
+
+def locate(polar: PolarPlots, own_ship: OwnShip, range_sigma: float, bearing_sigma: float) -> Plots:
+    """Polar plots [M] placed in the ground-stabilised frame, each by own ship at its own time.
+
+    range_sigma m and bearing_sigma rad are the radar's standard deviations.
+    """
+    origin, _ = own_ship_at(own_ship, polar.time)
+    offset, covariance = polar_to_position(polar.range, polar.bearing, range_sigma, bearing_sigma)
+    return Plots(polar.time, polar.range, polar.bearing, polar.amplitude,
+                 origin, origin + offset, covariance)
+
+
+def local_from_geodetic(latitude_deg, longitude_deg, origin_latitude_deg, origin_longitude_deg):
+    """East and north [..., 2] m of geodetic positions near an origin, on a sphere."""
+    north = np.radians(np.subtract(latitude_deg, origin_latitude_deg)) * EARTH_RADIUS
+    east = (np.radians(np.subtract(longitude_deg, origin_longitude_deg)) * EARTH_RADIUS
+            * np.cos(np.radians(origin_latitude_deg)))
+    return np.stack([east, north], -1)
+
+
+def geodetic_from_local(position, origin_latitude_deg, origin_longitude_deg):
+    """Latitude [...] and longitude [...] in degrees of local positions [..., 2] m."""
+    latitude = origin_latitude_deg + np.degrees(position[..., 1] / EARTH_RADIUS)
+    longitude = origin_longitude_deg + np.degrees(
+        position[..., 0] / (EARTH_RADIUS * np.cos(np.radians(origin_latitude_deg))))
+    return latitude, longitude

@@ -1,0 +1,84 @@
+"""config/*.yaml and doc/parameters.md, written from the dataclasses of parameters.py.
+
+`python -m marine_tracker.parameter_files` writes them into the source tree.
+"""
+
+import dataclasses
+import json
+import textwrap
+from pathlib import Path
+
+from .parameters import NODES
+
+COMMAND = 'python -m marine_tracker.parameter_files'
+
+
+def limits(field) -> str:
+    """The values a parameter may take, in words; '' when any will do."""
+    about = field.metadata
+    if about['choices']:
+        return 'one of ' + ', '.join(about['choices'])
+    if about['low'] is None and about['high'] is None:
+        return ''
+    if about['high'] is None:
+        return f'at least {about["low"]:g}'
+    if about['low'] is None:
+        return f'at most {about["high"]:g}'
+    return f'{about["low"]:g} to {about["high"]:g}'
+
+
+def yaml_value(value) -> str:
+    """A parameter's value as YAML that every reader takes for the same type."""
+    if isinstance(value, str):
+        return value if value.isidentifier() else json.dumps(value)
+    return json.dumps(value)
+
+
+def node_yaml(node: str) -> str:
+    """The parameter file of a node: every parameter at its default, described above it."""
+    lines = [f'# Parameters of the node `{node}` at their defaults. Written by', f'# `{COMMAND}`.',
+             '/**:', '  ros__parameters:']
+    for field in dataclasses.fields(NODES[node]):
+        facts = [part for part in (
+            f'unit {field.metadata["unit"]}' if field.metadata['unit'] else '', limits(field),
+            'may change while running' if field.metadata['live'] else '') if part]
+        text = field.metadata['text'] + (f' ({"; ".join(facts)})' if facts else '')
+        lines += textwrap.wrap(text, 96, initial_indent='    # ', subsequent_indent='    #   ')
+        lines.append(f'    {field.name}: {yaml_value(field.default)}')
+    return '\n'.join(lines) + '\n'
+
+
+def document() -> str:
+    """doc/parameters.md: one table for each node."""
+    lines = ['# Parameters', '', f'Written by `{COMMAND}`; do not edit by hand.',
+             '', 'Every node refuses to start on an unknown, mistyped or out-of-range parameter and '
+             'names it.', 'A double is written with its point (`15.0`, not `15`). Those marked '
+             'live may change while the', 'node runs; no track is lost by it.']
+    for node, kind in NODES.items():
+        lines += ['', f'## {node}', '', '| name | default | unit | limits | live | meaning |',
+                  '|---|---|---|---|---|---|']
+        for field in dataclasses.fields(kind):
+            about = field.metadata
+            cells = (f'`{field.name}`', f'`{yaml_value(field.default)}`', about['unit'],
+                     limits(field), 'live' if about['live'] else '', about['text'])
+            lines.append('| ' + ' | '.join(cells) + ' |')
+    return '\n'.join(lines) + '\n'
+
+
+def files() -> dict[str, str]:
+    """Every file that derives from the dataclasses: path in the source tree and text."""
+    written = {f'config/{node}.yaml': node_yaml(node) for node in NODES}
+    written['doc/parameters.md'] = document()
+    return written
+
+
+def main() -> None:
+    root = Path(__file__).resolve().parents[1]
+    for name, text in files().items():
+        path = root / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+
+
+if __name__ == '__main__':
+    main()

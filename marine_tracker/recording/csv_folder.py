@@ -1,0 +1,200 @@
+"""Recordings as folders of CSV files: what was plotted, where own ship was, where targets were.
+
+A folder holds
+  plots.csv      scan, time_s, range_m, bearing_deg [, amplitude_db]; true bearing from own ship
+  own_ship.csv   scan, time_s, north_m, east_m [, vel_north_mps, vel_east_mps] [, end_s];
+                 one row for every scan, also those without plots
+  truth.csv      scan, time_s, target, north_m, east_m, vel_north_mps, vel_east_mps; may be left
+                 out; velocities may be nan
+  radar.yaml     tracker parameters that belong to this radar and its waters; may be left out
+  notes.json     what is known of the recording (plot lag, cutoff for scoring); may be left out
+
+`end_s` is when the revolution that began at `time_s` ended. Without it a scan lasts from its
+first plot to its last one, and has no length where all its plots carry one time.
+"""
+
+import csv
+import json
+from pathlib import Path
+from typing import Any, Iterable, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import own_ship_at, wrap_bearing
+from ..parameters import read_yaml_mapping
+from ..types import Array, OwnShip, PolarPlots, Scan, Truth
+from . import tables
+
+PLOTS = ('scan', 'time_s', 'range_m', 'bearing_deg')
+OWN_SHIP = ('scan', 'time_s', 'north_m', 'east_m')
+TRUTH = ('scan', 'time_s', 'target', 'north_m', 'east_m')
+VELOCITY = ('vel_north_mps', 'vel_east_mps')
+
+
+class Recording(NamedTuple):
+    """A recording: K scans in time order.
+
+    name                the folder's name
+    scans               K scans; each knows own ship at its own, the last and the next scan
+    truths              K truths, one a scan; without rows where the recording has none
+    tracker_parameters  names and values for TrackerParameters
+    notes               what notes.json says
+    numbers             [K] the source's scan numbers, increasing
+    own_ship            own ship's K samples, one a scan
+    """
+
+    name: str
+    scans: tuple[Scan, ...]
+    truths: tuple[Truth, ...]
+    tracker_parameters: dict[str, Any]
+    notes: dict[str, Any]
+    numbers: NDArray[np.int64]
+    own_ship: OwnShip
+
+
+def read(folder) -> Recording:
+    """The recording in a folder; ValueError names the file, the line and what is wrong with it."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise ValueError(f'recording {folder} is not a folder')
+    numbers, own_ship, end = _read_own_ship(folder / 'own_ship.csv')
+    plots = _read_plots(folder / 'plots.csv', numbers)
+    has_truth = (folder / 'truth.csv').exists()
+    truths = (_read_truth(folder / 'truth.csv', numbers) if has_truth
+              else (_no_truth(),) * len(numbers))
+    scans = []
+    for k, of_scan in enumerate(plots):
+        around = slice(max(k - 1, 0), k + 2)
+        start, last = own_ship.time[k], end[k]
+        if np.isnan(last):
+            start = last = own_ship.time[k]
+            if len(of_scan.time):
+                start, last = of_scan.time.min(), of_scan.time.max()
+        if scans and start < scans[-1].start:
+            raise ValueError(f'{folder / "plots.csv"}: scan {numbers[k]} begins at {start:g} s, '
+                             f'before the scan ahead of it, {scans[-1].start:g} s')
+        scans.append(Scan(float(start), float(last), of_scan,
+                          OwnShip(*(column[around] for column in own_ship))))
+    radar, notes = folder / 'radar.yaml', folder / 'notes.json'
+    return Recording(folder.resolve().name, tuple(scans), truths,
+                     read_yaml_mapping(radar) if radar.exists() else {},
+                     _read_notes(notes) if notes.exists() else {}, numbers, own_ship)
+
+
+def write(folder, name: str, pairs: Iterable[tuple[Scan, Truth]],
+          tracker_parameters: dict[str, Any]) -> None:
+    """Scans with their truth as a recording folder, made where it does not exist.
+
+    name  goes into notes.json, for people
+    Own ship stands where it was when the scan began. ValueError where the folder cannot be made.
+    """
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f'recording folder {folder} cannot be made: {error}') from error
+    plots, own_ship, truth = [], [], []
+    for k, (scan, targets) in enumerate(pairs):
+        position, velocity = own_ship_at(scan.own_ship, scan.start)
+        own_ship.append((k, *_metres(scan.start, *position[::-1], *velocity[::-1], scan.end)))
+        degrees = np.degrees(scan.plots.bearing)
+        plots += [(k, *_metres(time, range_), f'{bearing:.9f}', f'{amplitude:.3f}')
+                  for time, range_, bearing, amplitude in zip(
+                      scan.plots.time, scan.plots.range, degrees, scan.plots.amplitude)]
+        truth += [(k, *_metres(time), target, *_metres(*position[::-1], *velocity[::-1]))
+                  for time, target, position, velocity in zip(*targets)]
+    _write_table(folder / 'plots.csv', (*PLOTS, 'amplitude_db'), plots)
+    _write_table(folder / 'own_ship.csv', (*OWN_SHIP, *VELOCITY, 'end_s'), own_ship)
+    _write_table(folder / 'truth.csv', (*TRUTH, *VELOCITY), truth)
+    lines = [f'{key}: {json.dumps(value)}\n' for key, value in tracker_parameters.items()]
+    (folder / 'radar.yaml').write_text(''.join(lines))
+    notes = {'name': name, 'uncooperative': False}      # a scenario's truth holds every target
+    (folder / 'notes.json').write_text(json.dumps(notes) + '\n')
+
+
+def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
+    """Scan numbers [K], own ship's K samples, and the scans' ends [K], nan where unknown."""
+    table = tables.read(path, OWN_SHIP)
+    if not len(table):
+        raise ValueError(f'{path} has no rows; it must have one for every scan')
+    numbers, time = table.integers('scan'), table.numbers('time_s')
+    for column, steps in (('scan', np.diff(numbers)), ('time_s', np.diff(time))):
+        if (steps <= 0).any():
+            row = int((steps <= 0).argmax()) + 1
+            cells = table.columns[column]
+            raise ValueError(f'{table.where(row)}: {column} is {cells[row]} after '
+                             f'{cells[row - 1]}; it must increase')
+    position = np.stack([table.numbers('east_m'), table.numbers('north_m')], -1)
+    velocity = np.zeros_like(position)
+    if len(time) > 1:
+        velocity = np.gradient(position, time, axis=0)
+    recorded = _velocity(table)
+    velocity = np.where(np.isnan(recorded).any(1)[:, None], velocity, recorded)
+    end = np.full(len(time), np.nan)
+    if 'end_s' in table.columns:
+        end = table.numbers('end_s', missing=True)
+        if (end < time).any():
+            row = int((end < time).argmax())
+            raise ValueError(f'{table.where(row)}: end_s is {end[row]:g}; it must not lie before '
+                             f'time_s, {time[row]:g}')
+    return numbers, OwnShip(time, position, velocity), end
+
+
+def _read_plots(path, numbers) -> tuple[PolarPlots, ...]:
+    table = tables.read(path, PLOTS)
+    amplitude = (table.numbers('amplitude_db', missing=True) if 'amplitude_db' in table.columns
+                 else np.zeros(len(table)))
+    bearing = wrap_bearing(np.radians(table.numbers('bearing_deg', low=-360.0, high=360.0)))
+    plots = PolarPlots(table.numbers('time_s'), table.numbers('range_m', low=0.0), bearing,
+                       np.nan_to_num(amplitude))
+    return tuple(PolarPlots(*(column[rows] for column in plots))
+                 for rows in _rows_of_scans(table, numbers))
+
+
+def _read_truth(path, numbers) -> tuple[Truth, ...]:
+    table = tables.read(path, TRUTH)
+    position = np.stack([table.numbers('east_m'), table.numbers('north_m')], -1)
+    truth = Truth(table.numbers('time_s'), table.integers('target'), position, _velocity(table))
+    return tuple(Truth(*(column[rows] for column in truth))
+                 for rows in _rows_of_scans(table, numbers))
+
+
+def _rows_of_scans(table: tables.Table, numbers) -> list[NDArray[np.intp]]:
+    """The rows of each scan, in the file's order."""
+    scan = table.integers('scan')
+    unknown = ~np.isin(scan, numbers)
+    if unknown.any():
+        row = int(unknown.argmax())
+        raise ValueError(f'{table.where(row)}: scan {scan[row]} is not in own_ship.csv')
+    order = np.argsort(scan, kind='stable')
+    return np.split(order, np.searchsorted(scan[order], numbers[1:]))
+
+
+def _velocity(table: tables.Table) -> Array:
+    """[R, 2] m/s, east and north; nan where the table does not tell."""
+    return np.stack([table.numbers(name, missing=True) if name in table.columns
+                     else np.full(len(table), np.nan) for name in reversed(VELOCITY)], -1)
+
+
+def _no_truth() -> Truth:
+    return Truth(np.empty(0), np.empty(0, np.int64), np.empty((0, 2)), np.empty((0, 2)))
+
+
+def _read_notes(path) -> dict[str, Any]:
+    try:
+        notes = json.loads(path.read_text())
+    except ValueError as error:
+        raise ValueError(f'{path} is not JSON: {error}') from error
+    if not isinstance(notes, dict):
+        raise ValueError(f'{path} holds a {type(notes).__name__}; it must hold an object')
+    return notes
+
+
+def _metres(*values) -> list[str]:
+    return [f'{value:.6f}' for value in values]
+
+
+def _write_table(path, header, rows) -> None:
+    with open(path, 'w', newline='') as file:
+        csv.writer(file, lineterminator='\n').writerows([header, *rows])

@@ -1,0 +1,204 @@
+"""Where ships are at any time, exactly: every leg has a closed form, nothing is integrated.
+
+A ship's way is a list of pieces. On each piece the ship follows a circle (or a straight line, the
+circle of curvature 0) with the speed  v + a t + A sin(w t + p),  so its distance run d(t) and with
+it its place are known in closed form; a ship driven by reports follows a cubic instead. All pieces
+of all ships stand in one table, so hundreds of ships are placed by a few array operations.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from ..geometry import unit_vector
+from ..types import Array
+
+
+class Straight(NamedTuple):
+    """Course and speed held for `duration` s; None: to the end."""
+
+    duration: float | None
+
+
+class Turn(NamedTuple):
+    """A turn through `angle` rad (positive to starboard) on a circle of `radius` m.
+
+    With `rate` rad/s instead, the radius is that which gives the rate at the mean speed.
+    """
+
+    angle: float
+    radius: float | None = None
+    rate: float | None = None
+
+
+class SpeedChange(NamedTuple):
+    """The speed goes evenly to `speed` m/s, in `duration` s or at `acceleration` m/s^2 > 0."""
+
+    speed: float
+    duration: float | None = None
+    acceleration: float | None = None
+
+
+Leg = Straight | Turn | SpeedChange
+
+
+class Wave(NamedTuple):
+    """A sinusoidal part of the speed, all along the way: amplitude m/s, period s."""
+
+    amplitude: float
+    period: float
+
+
+class Piece(NamedTuple):
+    """One piece of one ship's way, from time `start` to the next piece's.
+
+    With t since `start`, the ship runs the distance
+    d = speed t + acceleration t^2 / 2 + wave / wave_rate (cos wave_phase - cos(wave_rate t +
+    wave_phase)) on a circle of `curvature` (rad/m, positive to starboard), having left `position`
+    on `course` (rad); `cubic` [3][2] (m/s, m/s^2, m/s^3) adds its powers of t.
+    """
+
+    start: float
+    position: tuple[float, float]
+    course: float = 0.0
+    curvature: float = 0.0
+    speed: float = 0.0
+    acceleration: float = 0.0
+    wave: float = 0.0
+    wave_rate: float = 1.0
+    wave_phase: float = 0.0
+    cubic: tuple[tuple[float, float], ...] = ((0.0, 0.0),) * 3
+    exists: bool = True
+
+
+class Paths(NamedTuple):
+    """The pieces of S ships in one table, one row a piece, by ship and then by time.
+
+    The columns are those of Piece; `key` [P] orders rows by ship and start, `span` s is the part
+    of the key that belongs to one ship, `ships` is S.
+    """
+
+    start: Array
+    position: Array
+    course: Array
+    curvature: Array
+    speed: Array
+    acceleration: Array
+    wave: Array
+    wave_rate: Array
+    wave_phase: Array
+    cubic: Array
+    exists: NDArray[np.bool_]
+    key: Array
+    span: float
+    ships: int
+
+
+def table(ways: Sequence[Sequence[Piece]], duration: float) -> Paths:
+    """The table of the ways of S ships; the first piece of each must start at 0 s or before."""
+    pieces = [piece for way in ways for piece in way]
+    columns = [np.array(column, dtype=bool if name == 'exists' else float)
+               for name, column in zip(Piece._fields, zip(*pieces, strict=True), strict=True)
+               ] if pieces else [np.zeros((0,) + shape) for shape in
+                                 ((), (2,), (), (), (), (), (), (), (), (3, 2), ())]
+    ship = np.repeat(np.arange(len(ways)), [len(way) for way in ways])
+    span = float(duration) + 1.0
+    key = ship * span + np.clip(columns[0], 0.0, span)
+    return Paths(*columns, key=key, span=span, ships=len(ways))
+
+
+def locate_ships(paths: Paths, ship: NDArray[np.int64], time) -> tuple[Array, Array]:
+    """Position [..., 2] m and velocity [..., 2] m/s of the numbered ships [...] at times [...]."""
+    row = _row(paths, ship, time)
+    t = time - paths.start[row]
+    speed, acceleration = paths.speed[row], paths.acceleration[row]
+    wave, rate, phase = paths.wave[row], paths.wave_rate[row], paths.wave_phase[row]
+    run = (t * (speed + 0.5 * acceleration * t)
+           + wave / rate * (np.cos(phase) - np.cos(rate * t + phase)))
+    now = speed + acceleration * t + wave * np.sin(rate * t + phase)
+    half_turn = 0.5 * paths.curvature[row] * run
+    course = paths.course[row]
+    chord = run * np.sinc(half_turn / np.pi)
+    first, second, third = np.moveaxis(paths.cubic[row], -2, 0)
+    t = np.asarray(t)[..., None]
+    position = (paths.position[row] + chord[..., None] * unit_vector(course + half_turn)
+                + t * (first + t * (second + t * third)))
+    velocity = (now[..., None] * unit_vector(course + 2 * half_turn)
+                + first + t * (2 * second + 3 * t * third))
+    return position, velocity
+
+
+def exist(paths: Paths, ship: NDArray[np.int64], time) -> NDArray[np.bool_]:
+    """Whether the numbered ships [...] are there at times [...]."""
+    return paths.exists[_row(paths, ship, time)]
+
+
+def _row(paths, ship, time):
+    inside = np.clip(time, 0.0, np.nextafter(paths.span, 0.0) - 0.5)
+    return np.searchsorted(paths.key, ship * paths.span + inside, 'right') - 1
+
+
+def sail(position, course: float, speed: float, legs: Sequence[Leg] = (),
+         wave: Wave | None = None) -> list[Piece]:
+    """The pieces of a ship that starts at time 0 and runs its legs, then holds course and speed.
+
+    position [2] m, east and north; course rad; speed m/s, the mean where there is a wave.
+    Raises ValueError for legs that cannot be run, beginning with the leg's place: `legs[2]...`.
+    """
+    way = []
+    time = 0.0
+    # The wave runs on through all legs: its phase is that of the time since the start.
+    amplitude, wave_rate = (wave.amplitude, 2 * np.pi / wave.period) if wave else (0.0, 1.0)
+    if speed < amplitude:
+        raise ValueError(f'speed_wave has an amplitude of {amplitude:g} m/s; it must not exceed '
+                         f'the speed, {speed:g} m/s')
+    for number, leg in enumerate(legs):
+        here = f'legs[{number}]'
+        curvature = acceleration = 0.0
+        after = speed
+        if isinstance(leg, Straight):
+            if leg.duration is None:
+                if number + 1 < len(legs):
+                    raise ValueError(f'{here}.straight has no duration_s; only the last leg may '
+                                     'go on to the end')
+                break
+            duration = leg.duration
+        elif isinstance(leg, SpeedChange):
+            after = leg.speed
+            if after < amplitude:
+                raise ValueError(f'{here}.speed ends at {after:g} m/s; it must not be below the '
+                                 f'amplitude of speed_wave, {amplitude:g} m/s')
+            duration = (abs(after - speed) / leg.acceleration if leg.acceleration
+                        else leg.duration or 0.0)
+            acceleration = (after - speed) / duration if duration else 0.0
+        else:
+            if speed <= amplitude:
+                raise ValueError(f'{here}.turn begins at a mean speed of {speed:g} m/s; a ship '
+                                 'that stops cannot turn')
+            radius = leg.radius if leg.radius else speed / leg.rate         # type: ignore[operator]
+            curvature = np.sign(leg.angle) / radius
+            duration = _time_to_run(radius * abs(leg.angle), speed, amplitude, wave_rate,
+                                    wave_rate * time)
+        piece = Piece(time, tuple(position), course, curvature, speed, acceleration,
+                      amplitude, wave_rate, wave_rate * time)
+        way.append(piece)
+        if isinstance(leg, Turn):
+            course += leg.angle
+        time, speed = time + duration, after
+        ended = locate_ships(table([[piece]], time), np.array(0), time)
+        position = ended[0]
+    way.append(Piece(time, tuple(position), course, 0.0, speed, 0.0,
+                     amplitude, wave_rate, wave_rate * time))
+    return way
+
+
+def _time_to_run(distance, speed, amplitude, wave_rate, phase):
+    """Time in which the ship runs the distance at `speed` plus the wave."""
+    if amplitude == 0.0:
+        return distance / speed
+    return brentq(lambda t: speed * t + amplitude / wave_rate * (
+        np.cos(phase) - np.cos(wave_rate * t + phase)) - distance,
+        0.0, (distance + 2 * amplitude / wave_rate) / speed, xtol=1e-12, rtol=1e-14)

@@ -1,0 +1,41 @@
+"""When the antenna beam passes a bearing."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..types import Scan
+
+
+class Sweep(NamedTuple):
+    """One antenna revolution, clockwise at constant rate.
+
+    start     s
+    period    s; 0 where all plots carry one time
+    bearing0  rad, where the beam stood at `start`
+    """
+
+    start: float
+    period: float
+    bearing0: float
+
+    def time_at(self, bearing):
+        """s, when the beam passes the bearings [...] rad."""
+        turned = np.mod(bearing - self.bearing0, 2 * np.pi)
+        return self.start + self.period / (2 * np.pi) * turned
+
+
+def sweep_of(scan: Scan) -> Sweep:
+    """The sweep of a scan; where the beam started is read off its plots.
+
+    If their times do not follow the bearing clockwise (no plots, or another antenna), every
+    bearing counts as swept in the middle of the scan.
+    """
+    period = scan.end - scan.start
+    time, bearing = scan.plots.time, scan.plots.bearing
+    if period > 0 and len(time):
+        phase = bearing - (time - scan.start) * (2 * np.pi / period)
+        sin, cos = np.sin(phase).mean(), np.cos(phase).mean()
+        if np.hypot(sin, cos) > 0.9:
+            return Sweep(scan.start, period, float(np.arctan2(sin, cos)))
+    return Sweep(0.5 * (scan.start + scan.end), 0.0, 0.0)

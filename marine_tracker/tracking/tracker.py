@@ -1,0 +1,185 @@
+"""One scan in, tracks out: the whole way of the data on one page."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..estimators import ESTIMATORS
+from ..geometry import locate, own_ship_at, to_range_bearing, wrap_bearing
+from ..parameters import TrackerParameters
+from ..types import HISTORY, Array, Extrapolation, Plots, Scan, Tracks, append, take
+from .associate import associate
+from .gate import gate, gate_size
+from .initiate import pair_up
+from .lifecycle import CONFIRMED, LOST, MERGED, NOT_LOST, TENTATIVE, judge, record
+from .merge import duplicates
+from .sweep import sweep_of
+
+PAIRING_GATE = gate_size(0.99)      # of a new target's first two plots
+
+
+class Memory(NamedTuple):
+    """All that the tracker knows between two scans.
+
+    tracks       N tracks, lost ones left out
+    leftover     plots of the last scan that belong to no track: one may be a new target's first
+    next_id      the next track's id
+    next_number  the next confirmed track's target number
+    """
+
+    tracks: Tracks
+    leftover: Plots
+    next_id: int
+    next_number: int
+
+
+class Report(NamedTuple):
+    """What one scan did; one row a track, the lost ones and those just initiated included.
+
+    time       [N]     s, when the beam passed the track (its plot's time where it had one)
+    tracks     N rows, after the scan
+    predicted  [N, 2]  m, where the track was expected at `time`; nan for a new track
+    plot       [N]     row of the scan's plots that the track took, -1 for none
+    reason     [N]     why a LOST track was lost: one of lifecycle.REASONS' numbers, 0 = not lost
+    """
+
+    time: Array
+    tracks: Tracks
+    predicted: Array
+    plot: NDArray[np.int64]
+    reason: NDArray[np.int8]
+
+
+class Tracker:
+    """The pure tracking core: parameters in, no state of its own.
+
+    tracker = Tracker(TrackerParameters(estimator='imm'))
+    memory = tracker.start()
+    for scan in scans:
+        memory, report = tracker.step(memory, scan)
+        estimate = tracker.extrapolate(report.tracks, report.time)      # Extrapolation, N rows
+
+    A change of parameters is a new Tracker: `memory = new.adopt(memory, old)` keeps every track.
+    """
+
+    def __init__(self, parameters: TrackerParameters):
+        self.parameters = parameters
+        self.estimator = ESTIMATORS[parameters.estimator](parameters)
+        self.bearing_sigma = float(np.radians(parameters.bearing_sigma_deg))
+        self.gate_size = gate_size(parameters.gate_probability)
+
+    def start(self) -> Memory:
+        """No tracks yet."""
+        none = np.zeros(0)
+        plots = Plots(none, none, none, none, np.zeros((0, 2)), np.zeros((0, 2)),
+                      np.zeros((0, 2, 2)))
+        return Memory(self._initiate(plots, plots, 0), plots, 1, 1)
+
+    def extrapolate(self, tracks: Tracks, time) -> Extrapolation:
+        """The tracks at the times [N] s (or one time for all)."""
+        return self.estimator.extrapolate(tracks.state,
+                                          np.broadcast_to(time, tracks.id.shape).astype(float))
+
+    def step(self, memory: Memory, scan: Scan) -> tuple[Memory, Report]:
+        """One antenna revolution."""
+        p = self.parameters
+        tracks = memory.tracks
+        count = len(tracks.id)
+        sweep = sweep_of(scan)
+        plots = locate(scan.plots, scan.own_ship, p.range_sigma_m, self.bearing_sigma)
+
+        # extrapolate: every track to the time the beam passes it
+        ahead = self.estimator.extrapolate(tracks.state, sweep.time_at(tracks.bearing))
+        origin, _ = own_ship_at(scan.own_ship, ahead.time)
+
+        # gate, associate
+        track, plot, nis, log_det = gate(ahead, sweep, plots, origin, p.range_sigma_m,
+                                         self.bearing_sigma, self.gate_size)
+        gain = self.gate_size - nis + (log_det.max(initial=0.0) - log_det) + 1e-9
+        plot_of = associate(track, plot, gain, count, len(plots.time))
+        hit = plot_of >= 0
+        rows, taken = np.flatnonzero(hit), plot_of[hit]
+
+        # update
+        updated = take(plots, taken)
+        state = self.estimator.update(tracks.state, updated, rows)
+        time = ahead.time.copy()
+        time[rows] = updated.time
+        predicted = ahead.position + (time - ahead.time)[:, None] * ahead.velocity
+
+        # lifecycle
+        distance, bearing = to_range_bearing(predicted - origin)
+        bearing[rows] = wrap_bearing(updated.bearing)
+        last_time = tracks.last_time.copy()
+        last_time[rows] = updated.time
+        tracks = record(tracks._replace(state=state, last_time=last_time, bearing=bearing), hit,
+                        visible=(distance >= p.min_range_m) & (distance <= p.max_range_m))
+        status, reason = judge(tracks, p, hit, distance > p.max_range_m, scan.end)
+        double = duplicates(track, plot, plot_of, ahead, tracks, status)
+        status[double], reason[double] = LOST, MERGED
+        newly = (tracks.number == 0) & (status == CONFIRMED)
+        number = tracks.number.copy()
+        number[newly] = memory.next_number + np.arange(np.count_nonzero(newly))
+        tracks = tracks._replace(status=status, number=number)
+
+        # initiate: from plots left over in this scan and the one before
+        free = np.ones(len(plots.time), bool)
+        free[taken] = False
+        free[plot[tracks.status[track] != TENTATIVE]] = False       # echoes of held targets
+        leftover = np.flatnonzero(free)
+        first, second = pair_up(memory.leftover, take(plots, leftover), p.max_target_speed_mps,
+                                PAIRING_GATE)
+        alive = status != LOST
+        room = max(p.max_tracks - np.count_nonzero(alive), 0)
+        first, second = first[:room], leftover[second[:room]]
+        new = self._initiate(take(memory.leftover, first), take(plots, second), memory.next_id)
+        free[second] = False
+
+        everyone = append(tracks, new)
+        report = Report(np.concatenate([time, plots.time[second]]), everyone,
+                        np.concatenate([predicted, np.full((len(second), 2), np.nan)]),
+                        np.concatenate([plot_of, second]),
+                        np.concatenate([reason, np.full(len(second), NOT_LOST, np.int8)]))
+        survivors = np.concatenate([alive, np.ones(len(second), bool)])
+        return Memory(take(everyone, survivors), take(plots, free),
+                      memory.next_id + len(second),
+                      memory.next_number + np.count_nonzero(newly)), report
+
+    def adopt(self, memory: Memory, previous: 'Tracker') -> Memory:
+        """The memory of another tracker, made fit for this one's estimator; no track is lost.
+
+        Where the estimator differs, each track starts anew from its last estimate: one plot
+        with the old estimator's position and another a scan before carry its velocity over.
+        """
+        p, old = self.parameters, previous.parameters
+        same = (p.estimator, p.vessel_class) == (old.estimator, old.vessel_class)
+        if same or not len(memory.tracks.id):
+            state = memory.tracks.state if len(memory.tracks.id) else self.start().tracks.state
+            return memory._replace(tracks=memory.tracks._replace(state=state))
+        now = previous.extrapolate(memory.tracks, memory.tracks.last_time)
+        return memory._replace(tracks=memory.tracks._replace(state=self._restart(now)))
+
+    def _restart(self, now: Extrapolation):
+        """Estimator state whose position and velocity are those of `now`."""
+        step = self.parameters.scan_period_s
+        cov = now.covariance
+        before = now.position - step * now.velocity
+        spread = cov[:, :2, :2] + step ** 2 * cov[:, 2:, 2:]
+        plots = [Plots(time, time, time, time, position, position, covariance)
+                 for time, position, covariance in (
+                     (now.time - step, before, spread), (now.time, now.position, cov[:, :2, :2]))]
+        return self.estimator.update(self.estimator.init(plots[0]), plots[1],
+                                     np.arange(len(now.time)))
+
+    def _initiate(self, first: Plots, second: Plots, next_id: int) -> Tracks:
+        """Tentative tracks of two plots each."""
+        count = len(first.time)
+        state = self.estimator.update(self.estimator.init(first), second, np.arange(count))
+        history = np.zeros((count, HISTORY), bool)
+        history[:, :2] = True
+        return Tracks(
+            id=np.arange(next_id, next_id + count), number=np.zeros(count, np.int64),
+            status=np.full(count, TENTATIVE, np.int8), history=history,
+            age=np.full(count, 2), first_time=first.time, last_time=second.time,
+            bearing=wrap_bearing(second.bearing), state=state)

@@ -1,0 +1,168 @@
+"""The arrays that flow through the tracker: one leading axis, one row a plot or a track.
+
+Every type is a NamedTuple of numpy arrays. `take`, `append` and `where` drop, add and choose rows
+of any of them (and of an estimator's state, which may nest them), so no code loops over tracks.
+
+Axes: M plots, N tracks, K own-ship samples. Positions are [east, north] in metres in the
+ground-stabilised frame `map`; times are seconds; bearings are radians clockwise from true north.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+HISTORY = 20        # scans of hits and misses that a track remembers
+
+
+class OwnShip(NamedTuple):
+    """Samples of own ship's motion, in time order; a scan needs at least one.
+
+    time      [K]     s
+    position  [K, 2]  m, east and north: where the antenna is
+    velocity  [K, 2]  m/s, east and north, over ground
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+
+
+class PolarPlots(NamedTuple):
+    """What the radar measures, one row a plot.
+
+    time       [M]  s, when the beam passed the plot
+    range      [M]  m
+    bearing    [M]  rad, clockwise from true north
+    amplitude  [M]  dB, signal over noise; 0 where the radar does not tell
+    """
+
+    time: Array
+    range: Array
+    bearing: Array
+    amplitude: Array
+
+
+class Scan(NamedTuple):
+    """The plots of one antenna revolution and own ship's motion during it.
+
+    start, end  s, the time of the revolution; equal where a recording stamps all plots alike
+    plots       M plots, in any order
+    own_ship    K samples that cover the revolution as well as is known
+    """
+
+    start: float
+    end: float
+    plots: PolarPlots
+    own_ship: OwnShip
+
+
+class Truth(NamedTuple):
+    """Where the targets really are, one row a target.
+
+    time      [T]     s
+    target    [T]     the scenario's or recording's number of the target
+    position  [T, 2]  m, east and north
+    velocity  [T, 2]  m/s, east and north; nan where unknown
+    """
+
+    time: Array
+    target: NDArray[np.int64]
+    position: Array
+    velocity: Array
+
+
+class Plots(NamedTuple):
+    """Plots as an estimator takes them: the radar's measurement and its Cartesian equivalent.
+
+    time        [M]        s, when the beam passed
+    range       [M]        m
+    bearing     [M]        rad, clockwise from true north
+    amplitude   [M]        dB
+    origin      [M, 2]     m, the antenna's position at `time`
+    position    [M, 2]     m, east and north, unbiased
+    covariance  [M, 2, 2]  m^2, of `position`
+    """
+
+    time: Array
+    range: Array
+    bearing: Array
+    amplitude: Array
+    origin: Array
+    position: Array
+    covariance: Array
+
+
+class Extrapolation(NamedTuple):
+    """Where the tracks are at given times.
+
+    time        [N]        s
+    position    [N, 2]     m, east and north
+    velocity    [N, 2]     m/s, east and north
+    covariance  [N, 4, 4]  of [position, velocity]
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    covariance: Array
+
+
+class Tracks(NamedTuple):
+    """The tracker's whole memory, one row a track; `state` belongs to the estimator.
+
+    id          [N]  unique from initiation on, never used again
+    number      [N]  the ARPA's target number, given at confirmation; 0 while tentative
+    status      [N]  one of tracking.lifecycle.TENTATIVE, CONFIRMED, COASTING, LOST
+    history     [N, HISTORY]  true where the track had a plot; column 0 is the last scan
+    age         [N]  scans since its first plot in which the track could be seen
+    first_time  [N]  s, first plot
+    last_time   [N]  s, last plot
+    bearing     [N]  rad from own ship when last swept: tells when the beam will pass again
+    state       estimator state, N rows
+    """
+
+    id: NDArray[np.int64]
+    number: NDArray[np.int64]
+    status: NDArray[np.int8]
+    history: NDArray[np.bool_]
+    age: NDArray[np.int64]
+    first_time: Array
+    last_time: Array
+    bearing: Array
+    state: Any
+
+
+def take(rows_of: Any, rows: Any) -> Any:
+    """The chosen rows (indices, mask or slice) of a NamedTuple of arrays, nested ones included."""
+    return _map(lambda a: a[rows], rows_of)
+
+
+def append(first: Any, second: Any) -> Any:
+    """The rows of `first`, then those of `second`."""
+    return _map(lambda a, b: np.concatenate([a, b]), first, second)
+
+
+def where(choose_first: Any, first: Any, second: Any) -> Any:
+    """Row by row: `first` where the mask [N] holds, else `second`."""
+    return _map(
+        lambda a, b: np.where(choose_first.reshape((-1,) + (1,) * (a.ndim - 1)), a, b),
+        first, second)
+
+
+def put(into: Any, rows: Any, new: Any) -> Any:
+    """A copy of `into` with the named rows replaced by the rows of `new`."""
+    def one(a, b):
+        a = a.copy()
+        a[rows] = b
+        return a
+    return _map(one, into, new)
+
+
+def _map(f, *structures):
+    first = structures[0]
+    if isinstance(first, tuple):
+        parts = [_map(f, *columns) for columns in zip(*structures)]
+        return type(first)(*parts) if hasattr(first, '_fields') else tuple(parts)
+    return f(*structures)

@@ -1,0 +1,64 @@
+"""The package for pip and for colcon (ament_python)."""
+
+import os
+
+from setuptools import find_packages, setup
+
+NAME = 'marine_tracker'
+
+
+def tree(folder):
+    """data_files entries that put a folder of the source, as it stands, under share/NAME."""
+    for place, _, files in os.walk(folder):
+        if files:
+            yield f'share/{NAME}/{place}', [os.path.join(place, file) for file in sorted(files)]
+
+
+setup(
+    name=NAME,
+    version='0.1.0',
+    description='ARPA marine-radar tracking for ROS 2, with a radar simulator.',
+    author='marine_tracker maintainers',
+    maintainer='marine_tracker maintainers',
+    maintainer_email='maintainers@marine-tracker.example',
+    license='Apache-2.0',
+    packages=find_packages(include=[NAME, f'{NAME}.*']),
+    package_data={NAME: ['py.typed']},
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
+        (f'share/{NAME}', ['package.xml']),
+        *tree('config'),
+    ],
+    zip_safe=False,
+    python_requires='>=3.11',
+    install_requires=[
+        'numpy>=1.26',
+        'PyWavelets>=1.4',
+        'PyYAML>=6.0',
+        'rich>=13.3',
+        'scipy>=1.11',
+    ],
+    extras_require={
+        # On a machine with ROS 2 the system provides these: never in install_requires.
+        'ros': ['ros-jazzy-rclpy[fastrtps]', 'ros-jazzy-common-interfaces'],
+        'test': [
+            'hypothesis>=6.98',
+            'psutil>=5.9',
+            'pytest>=7.4',
+            'pytest-timeout>=2.2',
+            'ros-jazzy-domain-coordinator',
+            'setuptools>=64',
+        ],
+        'bench': ['stonesoup>=1.4'],
+        'plot': ['matplotlib>=3.6'],
+        'dev': ['mypy>=1.8', 'pre-commit>=3.0', 'ruff>=0.4', 'types-PyYAML'],
+    },
+    entry_points={
+        'console_scripts': [
+            'marine_tracker = marine_tracker.cli:main',
+            'radar_simulator = marine_tracker.nodes.radar_simulator:main',
+            'recording_player = marine_tracker.nodes.recording_player:main',
+            'tracker = marine_tracker.nodes.tracker:main',
+        ],
+    },
+)
