@@ -35,11 +35,11 @@ slow: $(INSTALLED)
 	$(BIN)/python -m pytest -m slow $(ARGS)
 
 $(INSTALLED): $(DESCRIPTION)
-	@.ci/setup ros,test,plot
+	@.ci/setup ros,test,plot,bench
 	@touch $@
 
 $(TOOLS): $(INSTALLED)
-	@.ci/setup ros,test,plot,dev
+	@.ci/setup ros,test,plot,bench,dev
 	@touch $@
 
 clean:

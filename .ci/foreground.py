@@ -19,14 +19,20 @@ except OSError:
 if not foreground:
     os.execvp(command[0], command)
 
+
+
+def take_terminal():
+    """In the child, before it becomes the command."""
+    os.tcsetpgrp(terminal, os.getpid())
+
+
 # Ctrl-Z would stop the command alone and leave make waiting for it.
 signal.signal(signal.SIGTSTP, signal.SIG_IGN)
-child = subprocess.Popen(command, process_group=0)
-for ending in (signal.SIGTERM, signal.SIGHUP):
-    signal.signal(ending, lambda number, _: child.send_signal(number))
-# Handing the terminal over, and taking it back from the background, must not stop this process.
+# Handing the terminal over and taking it back happen in the background: no reason to stop.
 signal.signal(signal.SIGTTOU, signal.SIG_IGN)
-os.tcsetpgrp(terminal, child.pid)
+child = subprocess.Popen(command, process_group=0, preexec_fn=take_terminal)
+for ending in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    signal.signal(ending, lambda number, _: child.send_signal(number))
 code = child.wait()
 os.tcsetpgrp(terminal, os.getpgrp())
 sys.exit(code if code >= 0 else 128 - code)

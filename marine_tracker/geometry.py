@@ -15,7 +15,7 @@ EARTH_RADIUS = 6371008.8            # m, mean
 def wrap_bearing(angle):
     """The same angle in [0, 2 pi)."""
     wrapped = np.mod(angle, 2 * np.pi)
-    return np.where(wrapped >= 2 * np.pi, 0.0, wrapped)    # -1e-17 % 2 pi rounds up to 2 pi
+    return wrapped * (wrapped < 2 * np.pi)      # -1e-17 % 2 pi rounds up to 2 pi
 
 
 def wrap_angle(angle):
@@ -51,16 +51,15 @@ def polar_to_position(range_, bearing, range_sigma, bearing_sigma):
     IEEE T-AES 34(3), 1998).
     """
     shrink = np.exp(-0.5 * bearing_sigma ** 2)
-    position = (range_ / shrink)[..., None] * unit_vector(bearing)
+    unit = unit_vector(bearing)
+    position = (range_ / shrink)[..., None] * unit
     # Along and across the line of sight. E[cos^2 db] = (1 + shrink^4) / 2.
-    second = range_ ** 2 + range_sigma ** 2
-    along = second * (1 + shrink ** 4) / 2 / shrink ** 2 - range_ ** 2
-    across = second * (1 - shrink ** 4) / 2 / shrink ** 2
-    sin, cos = np.sin(bearing), np.cos(bearing)
-    covariance = np.empty(np.shape(range_) + (2, 2))
-    covariance[..., 0, 0] = along * sin ** 2 + across * cos ** 2
-    covariance[..., 1, 1] = along * cos ** 2 + across * sin ** 2
-    covariance[..., 0, 1] = covariance[..., 1, 0] = (along - across) * sin * cos
+    second = (range_ ** 2 + range_sigma ** 2) / (2 * shrink ** 2)
+    along = second * (1 + shrink ** 4) - range_ ** 2
+    across = second * (1 - shrink ** 4)
+    covariance = (along - across)[..., None, None] * (unit[..., :, None] * unit[..., None, :])
+    covariance[..., 0, 0] += across
+    covariance[..., 1, 1] += across
     return position, covariance
 
 

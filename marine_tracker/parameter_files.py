@@ -50,10 +50,10 @@ def node_yaml(node: str) -> str:
 
 def document() -> str:
     """doc/parameters.md: one table for each node."""
-    lines = ['# Parameters', '', f'Written by `{COMMAND}`; do not edit by hand.',
-             '', 'Every node refuses to start on an unknown, mistyped or out-of-range parameter and '
-             'names it.', 'A double is written with its point (`15.0`, not `15`). Those marked '
-             'live may change while the', 'node runs; no track is lost by it.']
+    lines = ['# Parameters', '', f'Written by `{COMMAND}`; do not edit by hand.', '',
+             'A node refuses to start on an unknown, mistyped or out-of-range parameter and names',
+             'it. A double is written with its point (`15.0`, not `15`). Those marked live may',
+             'change while the node runs; no track is lost by it.']
     for node, kind in NODES.items():
         lines += ['', f'## {node}', '', '| name | default | unit | limits | live | meaning |',
                   '|---|---|---|---|---|---|']
@@ -73,6 +73,7 @@ def files() -> dict[str, str]:
 
 
 def main() -> None:
+    """Write the files into the source tree this module stands in."""
     root = Path(__file__).resolve().parents[1]
     for name, text in files().items():
         path = root / name

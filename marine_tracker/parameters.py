@@ -115,6 +115,7 @@ class TrackerParameters:
     hold_hits: int = parameter(
         2, 'An older track is lost when it has fewer plots than this in its last 10 scans.',
         low=1, high=10, live=True)
+    max_drift: float = parameter(6.0, 'drift', low=0.0, high=1e6, live=True)
     max_tracks: int = parameter(
         2000, 'Most tracks held, tentative ones included; no new ones are initiated beyond it.',
         low=1, high=100000, live=True)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-HISTORY = 20        # scans of hits and misses that a track remembers
+HISTORY = 20        # scans of hits and misses that a track remembers, bits of Tracks.history
 
 
 class OwnShip(NamedTuple):
@@ -115,7 +115,7 @@ class Tracks(NamedTuple):
     id          [N]  unique from initiation on, never used again
     number      [N]  the ARPA's target number, given at confirmation; 0 while tentative
     status      [N]  one of tracking.lifecycle.TENTATIVE, CONFIRMED, COASTING, LOST
-    history     [N, HISTORY]  true where the track had a plot; column 0 is the last scan
+    history     [N]  bits: bit k tells whether the track had a plot k scans ago
     age         [N]  scans since its first plot in which the track could be seen
     first_time  [N]  s, first plot
     last_time   [N]  s, last plot
@@ -126,7 +126,7 @@ class Tracks(NamedTuple):
     id: NDArray[np.int64]
     number: NDArray[np.int64]
     status: NDArray[np.int8]
-    history: NDArray[np.bool_]
+    history: NDArray[np.int64]
     age: NDArray[np.int64]
     first_time: Array
     last_time: Array

@@ -2,12 +2,14 @@
 
 import sys
 import time
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, Iterable, Iterator, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..recording import csv_folder, track_file
+from ..simulation import radar, scenario
 from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
 from ..tracking.tracker import Tracker
 from ..types import Scan
@@ -20,12 +22,12 @@ class Source(NamedTuple):
     """Scans to track.
 
     scans               (number, scan) in time order
-    count               how many; None where it is not known
+    total               how many; None where it is not known
     tracker_parameters  those that belong to the radar and its waters
     """
 
     scans: Iterable[tuple[int, Scan]]
-    count: int | None
+    total: int | None
     tracker_parameters: dict[str, Any]
 
 
@@ -38,6 +40,7 @@ class Summary(NamedTuple):
 
 
 def add_arguments(parser) -> None:
+    """The command line of `replay`."""
     parser.add_argument('source', metavar='SOURCE',
                         help='folder of a recording, name of a shipped scenario, or scenario file')
     parser.add_argument('--out', metavar='TRACKS.csv', required=True,
@@ -47,9 +50,12 @@ def add_arguments(parser) -> None:
 
 
 def run(args) -> int:
+    """Write the track file and say in one line what was tracked."""
+    if args.seed < 0:
+        raise ValueError(f'--seed is {args.seed}; it must not be negative')
     source = open_source(args.source, args.seed)
     tracker = Tracker(tracker_options.parameters(args, source.tracker_parameters))
-    scans = _with_progress(source.scans, source.count)
+    scans = _with_progress(source.scans, source.total)
     if args.out == '-':
         summary = write_tracks(tracker, scans, sys.stdout)
     else:
@@ -69,7 +75,6 @@ def open_source(name: str, seed: int = 1) -> Source:
         recording = csv_folder.read(name)
         numbers = recording.numbers.tolist()
         return Source(zip(numbers, recording.scans), len(numbers), recording.tracker_parameters)
-    from ..simulation import radar, scenario
     chosen = scenario.load(name)
     simulated = enumerate(scan for scan, _ in radar.simulate(chosen, seed))
     return Source(simulated, None, chosen.tracker_parameters())
@@ -95,7 +100,7 @@ def write_tracks(tracker: Tracker, scans: Iterable[tuple[int, Scan]], file) -> S
     return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1))
 
 
-def _with_progress(scans: Iterable[tuple[int, Scan]], count: int | None
+def _with_progress(scans: Iterable[tuple[int, Scan]], total: int | None
                    ) -> Iterator[tuple[int, Scan]]:
     """The same scans, with a progress bar where a person watches."""
     if not sys.stderr.isatty():
@@ -103,5 +108,5 @@ def _with_progress(scans: Iterable[tuple[int, Scan]], count: int | None
         return
     from rich.console import Console
     from rich.progress import track
-    yield from track(scans, 'tracking', total=count, console=Console(stderr=True),
+    yield from track(scans, 'tracking', total=total, console=Console(stderr=True),
                      transient=True)

@@ -1,7 +1,5 @@
 """The options by which a command's user sets the tracker's parameters."""
 
-import dataclasses
-
 import yaml
 
 from ..estimators import ESTIMATORS
@@ -27,15 +25,13 @@ def parameters(args, from_source: dict) -> TrackerParameters:
         name, equals, value = text.partition('=')
         if not equals:
             raise ValueError(f'--set {text}: it must be NAME=VALUE')
-        values[name.strip()] = yaml.safe_load(value)
+        try:
+            values[name.strip()] = yaml.safe_load(value)
+        except yaml.YAMLError:
+            raise ValueError(f'--set {text}: its value is not YAML') from None
     if args.estimator:
         values['estimator'] = args.estimator
     return from_mapping(TrackerParameters, values)
-
-
-def names() -> list[str]:
-    """The names --set takes."""
-    return [field.name for field in dataclasses.fields(TrackerParameters)]
 
 
 def _read(path) -> dict:

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..types import Array, Extrapolation, put
 from .contract import Estimator
-from .linear import first_velocity_variance, kalman_update
+from .linear import first_velocity_variance, kalman_update, sandwich
 
 RAYLEIGH = (4 - np.pi) / np.pi      # variance of the Rayleigh density over its squared mean
 # Without a floor the process noise vanishes when the estimate sits at a_max, and the filter
@@ -69,6 +69,7 @@ def _series_coefficients():
 
 
 _SERIES = _series_coefficients()
+_SYMMETRIC = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])    # q11, q12, q13, q22, q23, q33 laid out
 
 
 def model(frequency: float, step):
@@ -122,41 +123,33 @@ def acceleration_variance(acceleration, max_acceleration: float):
     return RAYLEIGH * np.maximum(room * room, VARIANCE_FLOOR * max_acceleration ** 2)
 
 
-def predict(mean, covariance, step, manoeuvre: Manoeuvre):
-    """States [N, 6] and covariances [N, 6, 6] moved by the steps [N] s."""
+def predict(mean, covariance, step, manoeuvre: Manoeuvre, rows=None):
+    """States [N, 6] and covariances [N, 6, 6] moved by the steps [N] s.
+
+    rows: the entries of the state wanted (then [N, n] and [N, n, n]); all by default.
+    """
     count = len(step)
     phi, q = model(manoeuvre.frequency, step)
-    f33, f23, f13 = phi[:, :, None]                                 # [N, 1]
-    t = step[:, None]
-
+    transition = np.zeros((count, 6, 6))
+    noise = np.zeros((count, 6, 6))
     x = mean.reshape(count, 2, 3)
     limit = manoeuvre.max_acceleration
-    a = x[..., 2]
-    abar = np.clip(a, -limit, limit)
-    new = np.empty_like(x)
-    # F x + U abar with U = [T^2/2 - phi_2, T - phi_1, 1 - phi_0]: the mean part moves as under
-    # constant acceleration, only the excess over abar decays.
-    excess = a - abar
-    new[..., 0] = x[..., 0] + t * (x[..., 1] + 0.5 * t * abar) + f13 * excess
-    new[..., 1] = x[..., 1] + t * abar + f23 * excess
-    new[..., 2] = abar + f33 * excess
-
-    p = covariance.reshape(count, 2, 3, 2, 3).copy()
-    t, f13, f23, f33 = (s[:, :, None, None] for s in (t, f13, f23, f33))
-    for block in (p, p.transpose(0, 3, 4, 1, 2)):                   # F P, then (F P) F'
-        rate, acceleration = block[:, :, 1], block[:, :, 2]
-        block[:, :, 0] += t * rate + f13 * acceleration
-        rate += f23 * acceleration
-        acceleration *= f33
-    noise = np.empty((count, 3, 3))
-    noise[:, 0, 0], noise[:, 1, 1], noise[:, 2, 2] = q[0], q[3], q[5]
-    noise[:, 0, 1] = noise[:, 1, 0] = q[1]
-    noise[:, 0, 2] = noise[:, 2, 0] = q[2]
-    noise[:, 1, 2] = noise[:, 2, 1] = q[4]
-    variance = 2 * manoeuvre.frequency * acceleration_variance(a, limit)
-    p[:, 0, :, 0] += variance[:, 0, None, None] * noise
-    p[:, 1, :, 1] += variance[:, 1, None, None] * noise
-    return new.reshape(count, 6), p.reshape(count, 6, 6)
+    variance = 2 * manoeuvre.frequency * acceleration_variance(x[..., 2], limit)
+    for axis in (0, 1):
+        f = transition[:, 3 * axis:3 * axis + 3, 3 * axis:3 * axis + 3]
+        f[:, 0, 0] = f[:, 1, 1] = 1.0
+        f[:, 0, 1] = step
+        f[:, 2, 2], f[:, 1, 2], f[:, 0, 2] = phi
+        noise[:, 3 * axis:3 * axis + 3, 3 * axis:3 * axis + 3] = (
+            q * variance[:, axis]).T[:, _SYMMETRIC]
+    u = np.stack([0.5 * step * step - phi[2], step - phi[1], 1 - phi[0]], 1)
+    drive = np.clip(x[..., 2], -limit, limit)[..., None] * u[:, None]       # U abar
+    drive = drive.reshape(count, 6)
+    if rows is not None:
+        transition, drive = transition.take(rows, 1), drive.take(rows, 1)
+        noise = noise.take(rows, 1).take(rows, 2)
+    mean = np.matmul(transition, mean[..., None])[..., 0] + drive
+    return mean, sandwich(transition, covariance) + noise
 
 
 def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
@@ -177,10 +170,9 @@ def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         return CsState(plots.time.copy(), mean, covariance)
 
     def extrapolate(state, time):
-        mean, covariance = predict(state.mean, state.covariance, time - state.time, manoeuvre)
-        mean = mean[:, POSITION_VELOCITY]
-        return Extrapolation(time, mean[:, :2], mean[:, 2:],
-                             covariance[:, POSITION_VELOCITY[:, None], POSITION_VELOCITY])
+        mean, covariance = predict(state.mean, state.covariance, time - state.time, manoeuvre,
+                                   POSITION_VELOCITY)
+        return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state, plots, rows):
         mean, covariance = predict(state.mean[rows], state.covariance[rows],

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..types import Array, Extrapolation, put
 from .contract import Estimator
-from .linear import first_velocity_variance, kalman_update
+from .linear import first_velocity_variance, kalman_update, sandwich
 
 POSITION = (0, 1)
 
@@ -119,7 +119,7 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
 
         move = turn_matrices(turn_rate, step)
         mean = np.matmul(move, mean[..., None])[..., 0]
-        covariance = move @ covariance @ move.swapaxes(-1, -2)
+        covariance = sandwich(move, covariance)
         size = np.abs(step)[:, None]
         for axis in (0, 1):
             covariance[:, :, axis, axis] += noise * size ** 3 / 3

@@ -1,0 +1,1 @@
+"""The ROS 2 nodes: they convert, call the core and publish. Only this package imports rclpy."""

@@ -15,15 +15,16 @@ first plot to its last one, and has no length where all its plots carry one time
 
 import csv
 import json
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Iterable, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import own_ship_at, wrap_bearing
 from ..parameters import read_yaml_mapping
-from ..types import Array, OwnShip, PolarPlots, Scan, Truth
+from ..types import Array, OwnShip, PolarPlots, Scan, Truth, take
 from . import tables
 
 PLOTS = ('scan', 'time_s', 'range_m', 'bearing_deg')
@@ -63,7 +64,7 @@ def read(folder) -> Recording:
     has_truth = (folder / 'truth.csv').exists()
     truths = (_read_truth(folder / 'truth.csv', numbers) if has_truth
               else (_no_truth(),) * len(numbers))
-    scans = []
+    scans: list[Scan] = []
     for k, of_scan in enumerate(plots):
         around = slice(max(k - 1, 0), k + 2)
         start, last = own_ship.time[k], end[k]
@@ -75,7 +76,7 @@ def read(folder) -> Recording:
             raise ValueError(f'{folder / "plots.csv"}: scan {numbers[k]} begins at {start:g} s, '
                              f'before the scan ahead of it, {scans[-1].start:g} s')
         scans.append(Scan(float(start), float(last), of_scan,
-                          OwnShip(*(column[around] for column in own_ship))))
+                          take(own_ship, around)))
     radar, notes = folder / 'radar.yaml', folder / 'notes.json'
     return Recording(folder.resolve().name, tuple(scans), truths,
                      read_yaml_mapping(radar) if radar.exists() else {},
@@ -83,10 +84,11 @@ def read(folder) -> Recording:
 
 
 def write(folder, name: str, pairs: Iterable[tuple[Scan, Truth]],
-          tracker_parameters: dict[str, Any]) -> None:
+          tracker_parameters: dict[str, Any], notes: dict[str, Any] | None = None) -> None:
     """Scans with their truth as a recording folder, made where it does not exist.
 
-    name  goes into notes.json, for people
+    name   goes into notes.json, for people
+    notes  what else does, e.g. {'cutoff_m': 500.0, 'seen_within_m': 250.0, 'uncooperative': False}
     Own ship stands where it was when the scan began. ValueError where the folder cannot be made.
     """
     folder = Path(folder)
@@ -109,8 +111,7 @@ def write(folder, name: str, pairs: Iterable[tuple[Scan, Truth]],
     _write_table(folder / 'truth.csv', (*TRUTH, *VELOCITY), truth)
     lines = [f'{key}: {json.dumps(value)}\n' for key, value in tracker_parameters.items()]
     (folder / 'radar.yaml').write_text(''.join(lines))
-    notes = {'name': name, 'uncooperative': False}      # a scenario's truth holds every target
-    (folder / 'notes.json').write_text(json.dumps(notes) + '\n')
+    (folder / 'notes.json').write_text(json.dumps({'name': name, **(notes or {})}) + '\n')
 
 
 def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
@@ -120,8 +121,9 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
         raise ValueError(f'{path} has no rows; it must have one for every scan')
     numbers, time = table.integers('scan'), table.numbers('time_s')
     for column, steps in (('scan', np.diff(numbers)), ('time_s', np.diff(time))):
-        if (steps <= 0).any():
-            row = int((steps <= 0).argmax()) + 1
+        back = np.flatnonzero(steps <= 0)
+        if len(back):
+            row = int(back[0]) + 1
             cells = table.columns[column]
             raise ValueError(f'{table.where(row)}: {column} is {cells[row]} after '
                              f'{cells[row - 1]}; it must increase')
@@ -134,8 +136,9 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
     end = np.full(len(time), np.nan)
     if 'end_s' in table.columns:
         end = table.numbers('end_s', missing=True)
-        if (end < time).any():
-            row = int((end < time).argmax())
+        early = np.flatnonzero(end < time)
+        if len(early):
+            row = int(early[0])
             raise ValueError(f'{table.where(row)}: end_s is {end[row]:g}; it must not lie before '
                              f'time_s, {time[row]:g}')
     return numbers, OwnShip(time, position, velocity), end
@@ -148,16 +151,21 @@ def _read_plots(path, numbers) -> tuple[PolarPlots, ...]:
     bearing = wrap_bearing(np.radians(table.numbers('bearing_deg', low=-360.0, high=360.0)))
     plots = PolarPlots(table.numbers('time_s'), table.numbers('range_m', low=0.0), bearing,
                        np.nan_to_num(amplitude))
-    return tuple(PolarPlots(*(column[rows] for column in plots))
-                 for rows in _rows_of_scans(table, numbers))
+    return tuple(take(plots, rows) for rows in _rows_of_scans(table, numbers))
 
 
 def _read_truth(path, numbers) -> tuple[Truth, ...]:
     table = tables.read(path, TRUTH)
     position = np.stack([table.numbers('east_m'), table.numbers('north_m')], -1)
     truth = Truth(table.numbers('time_s'), table.integers('target'), position, _velocity(table))
-    return tuple(Truth(*(column[rows] for column in truth))
-                 for rows in _rows_of_scans(table, numbers))
+    for target in np.unique(truth.target):
+        rows = np.flatnonzero(truth.target == target)
+        back = np.flatnonzero(np.diff(truth.time[rows]) <= 0)
+        if len(back):
+            before, row = rows[back[0]], rows[back[0] + 1]
+            raise ValueError(f'{table.where(row)}: target {target} is at {truth.time[row]:g} s '
+                             f'after {truth.time[before]:g} s; its time must increase')
+    return tuple(take(truth, rows) for rows in _rows_of_scans(table, numbers))
 
 
 def _rows_of_scans(table: tables.Table, numbers) -> list[NDArray[np.intp]]:

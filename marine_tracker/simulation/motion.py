@@ -98,16 +98,13 @@ class Paths(NamedTuple):
 
 
 def table(ways: Sequence[Sequence[Piece]], duration: float) -> Paths:
-    """The table of the ways of S ships; the first piece of each must start at 0 s or before."""
+    """The table of the ways of S ships, S > 0; the first piece of each starts at 0 s or before."""
     pieces = [piece for way in ways for piece in way]
-    columns = [np.array(column, dtype=bool if name == 'exists' else float)
-               for name, column in zip(Piece._fields, zip(*pieces, strict=True), strict=True)
-               ] if pieces else [np.zeros((0,) + shape) for shape in
-                                 ((), (2,), (), (), (), (), (), (), (), (3, 2), ())]
+    columns = Piece(*(np.array(column) for column in zip(*pieces, strict=True)))
     ship = np.repeat(np.arange(len(ways)), [len(way) for way in ways])
     span = float(duration) + 1.0
-    key = ship * span + np.clip(columns[0], 0.0, span)
-    return Paths(*columns, key=key, span=span, ships=len(ways))
+    key = ship * span + np.clip(columns.start, 0.0, span)
+    return Paths(*columns, key=key, span=span, ships=len(ways))         # type: ignore[arg-type]
 
 
 def locate_ships(paths: Paths, ship: NDArray[np.int64], time) -> tuple[Array, Array]:
@@ -123,7 +120,7 @@ def locate_ships(paths: Paths, ship: NDArray[np.int64], time) -> tuple[Array, Ar
     course = paths.course[row]
     chord = run * np.sinc(half_turn / np.pi)
     first, second, third = np.moveaxis(paths.cubic[row], -2, 0)
-    t = np.asarray(t)[..., None]
+    t = t[..., None]
     position = (paths.position[row] + chord[..., None] * unit_vector(course + half_turn)
                 + t * (first + t * (second + t * third)))
     velocity = (now[..., None] * unit_vector(course + 2 * half_turn)
@@ -137,7 +134,7 @@ def exist(paths: Paths, ship: NDArray[np.int64], time) -> NDArray[np.bool_]:
 
 
 def _row(paths, ship, time):
-    inside = np.clip(time, 0.0, np.nextafter(paths.span, 0.0) - 0.5)
+    inside = np.clip(time, 0.0, paths.span - 0.5)
     return np.searchsorted(paths.key, ship * paths.span + inside, 'right') - 1
 
 

@@ -2,8 +2,6 @@
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 
 def associate(track, plot, gain, tracks: int, plots: int):
@@ -48,20 +46,48 @@ def _best_of_each(group, gain, pairs):
 
 def _solve(track, plot, gain):
     """The pairs of the optimal assignment, one connected component after the other."""
-    rows, row = np.unique(track, return_inverse=True)
-    columns, column = np.unique(plot, return_inverse=True)
-    size = len(rows) + len(columns)
-    graph = coo_array((np.ones(len(row), np.int8), (row, column + len(rows))), (size, size))
-    _, label = connected_components(graph, directed=False)
-    part = label[row]
+    tracks, row = np.unique(track, return_inverse=True)
+    plots, column = np.unique(plot, return_inverse=True)
+    track_part, plot_part = _components(row, column, len(tracks), len(plots))
+    height, row_place = _places(track_part, len(tracks))
+    width, column_place = _places(plot_part, len(tracks))
+    part = track_part[row]
     order = np.argsort(part, kind='stable')
+    parts = np.flatnonzero(height)
     chosen = []
-    for pairs in np.split(order, np.flatnonzero(np.diff(part[order])) + 1):
-        r, i = np.unique(row[pairs], return_inverse=True)
-        c, j = np.unique(column[pairs], return_inverse=True)
-        worth = np.zeros((len(r), len(c)))
-        which = np.full((len(r), len(c)), -1)
-        worth[i, j], which[i, j] = gain[pairs], pairs
+    for c, pair in zip(parts, np.split(order, np.searchsorted(part[order], parts[1:])),
+                       strict=True):
+        i, j = row_place[row[pair]], column_place[column[pair]]
+        worth = np.zeros((height[c], width[c]))
+        which = np.full((height[c], width[c]), -1)
+        worth[i, j], which[i, j] = gain[pair], pair
         taken = which[linear_sum_assignment(worth, maximize=True)]
         chosen.append(taken[taken >= 0])
     return np.concatenate(chosen)
+
+
+def _components(row, column, rows: int, columns: int):
+    """Connected components of a bipartite graph with the edges (row [P], column [P]).
+
+    Returns the smallest row of its component for each row and each column, by passing it on
+    until nothing changes. The graphs here are many and tiny: a few rounds, a sixth of the time
+    that a sparse-graph routine spends on its set-up.
+    """
+    of_row = np.arange(rows)
+    while True:
+        of_column = np.full(columns, rows)
+        np.minimum.at(of_column, column, of_row[row])
+        lower = of_row.copy()
+        np.minimum.at(lower, row, of_column[column])
+        if np.array_equal(lower, of_row):
+            return of_row, of_column
+        of_row = lower
+
+
+def _places(part, parts: int):
+    """Members of each part [parts], and each member's place within its part."""
+    size = np.bincount(part, minlength=parts)
+    place = np.empty(len(part), np.int64)
+    place[np.argsort(part, kind='stable')] = (
+        np.arange(len(part)) - np.repeat(np.cumsum(size) - size, size))
+    return size, place

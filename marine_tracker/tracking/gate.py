@@ -9,7 +9,7 @@ The windows only bound the search: the exact chi-square test decides.
 import numpy as np
 
 from ..geometry import to_range_bearing, wrap_bearing
-from ..types import Extrapolation, Plots
+from ..types import Plots
 from .sweep import Sweep
 
 TURN = 2 * np.pi
@@ -55,21 +55,21 @@ def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
     return track[inside], plot[inside]
 
 
-def gate(ahead: Extrapolation, sweep: Sweep, plots: Plots, origin, range_sigma: float,
-         bearing_sigma: float, size: float):
+def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origin,
+         range_sigma: float, bearing_sigma: float, size: float):
     """Pairs of tracks and plots inside the chi-square gate.
 
-    ahead   N tracks at the times the beam should pass them
+    time [N] s, position [N, 2] m, velocity [N, 2] m/s, covariance [N, 2, 2] m^2: where the
+    tracks are when the beam should pass them, and the covariance of that position
     origin  [N, 2] m, own ship at those times
     size    of the gate, squared Mahalanobis distance
 
-    Returns track [P] and plot [P] indices, nis [P] (squared distance) and log_det [P] of the
-    innovation covariance. A plot is compared with the track at the plot's own time.
+    Returns track [P] (ascending) and plot [P] indices, nis [P] (squared distance) and log_det
+    [P] of the innovation covariance. A plot is compared with the track at the plot's own time.
     """
-    offset = ahead.position - origin
+    offset = position - origin
     distance, bearing = to_range_bearing(offset)
-    p = ahead.covariance
-    a, b, d = p[:, 0, 0], p[:, 0, 1], p[:, 1, 1]
+    a, b, d = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     sin, cos = offset.T / np.maximum(distance, 1e-9)
     reach = np.sqrt(size)
     along = reach * np.sqrt(sin * sin * a + 2 * sin * cos * b + cos * cos * d + range_sigma ** 2)
@@ -79,7 +79,7 @@ def gate(ahead: Extrapolation, sweep: Sweep, plots: Plots, origin, range_sigma: 
     if sweep.period:
         # The plot's time may differ from the track's: by little, but where the revolution
         # begins by a whole one.
-        speed = np.hypot(*ahead.velocity.T)
+        speed = np.hypot(*velocity.T)
         turned = np.mod(bearing - sweep.bearing0, TURN)
         angle = across / np.maximum(distance, across)
         seam = (turned < angle) | (turned > TURN - angle)
@@ -91,8 +91,8 @@ def gate(ahead: Extrapolation, sweep: Sweep, plots: Plots, origin, range_sigma: 
     farthest = np.hypot(distance + along, across)
 
     track, plot = window_pairs(nearest, farthest, bearing, half_width, plots.range, plots.bearing)
-    later = (plots.time[plot] - ahead.time[track])[:, None]
-    apart = plots.position[plot] - ahead.position[track] - later * ahead.velocity[track]
+    later = (plots.time[plot] - time[track])[:, None]
+    apart = plots.position[plot] - position[track] - later * velocity[track]
     de, dn = apart.T
     noise = plots.covariance[plot]
     a, b, d = (noise[:, i, j] + s[track] for i, j, s in ((0, 0, a), (0, 1, b), (1, 1, d)))

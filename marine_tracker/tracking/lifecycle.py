@@ -13,15 +13,29 @@ MATURE = 10         # scans; the standards' "5 of 10" needs that many
 IN_THE_DARK = 30    # scans without a plot after which even a track in the blind zone is lost
 
 
+def _tables():
+    """Set bits of every history, and scans since the last set one."""
+    histories = np.arange(1 << HISTORY, dtype=np.int32)
+    count = np.zeros(len(histories), np.int8)
+    for k in range(HISTORY):
+        count += ((histories >> k) & 1).astype(np.int8)
+    since = np.full(len(histories), HISTORY, np.int8)
+    for k in reversed(range(HISTORY)):
+        since[(histories >> k) & 1 == 1] = k
+    return count, since
+
+
+_COUNT, _SINCE = _tables()
+
+
 def hits(tracks: Tracks, scans: int):
     """Plots [N] of each track in its last `scans` scans (at most types.HISTORY)."""
-    return tracks.history[:, :scans].sum(1)
+    return _COUNT[tracks.history & ((1 << scans) - 1)]
 
 
 def misses_in_a_row(tracks: Tracks):
     """Scans [N] since the last plot, at most types.HISTORY."""
-    run = np.argmax(tracks.history, axis=1)
-    return np.where(tracks.history.any(1), run, HISTORY)
+    return _SINCE[tracks.history]
 
 
 def record(tracks: Tracks, hit, visible) -> Tracks:
@@ -30,15 +44,12 @@ def record(tracks: Tracks, hit, visible) -> Tracks:
     A scan in which the track could not be seen and was not is left out of its history.
     """
     counted = hit | visible
-    history = np.empty_like(tracks.history)
-    history[:, 0] = hit
-    history[:, 1:] = tracks.history[:, :-1]
-    if not counted.all():
-        history = np.where(counted[:, None], history, tracks.history)
-    return tracks._replace(history=history, age=tracks.age + counted)
+    history = ((tracks.history << 1) | hit) & ((1 << HISTORY) - 1)
+    return tracks._replace(history=np.where(counted, history, tracks.history),
+                           age=tracks.age + counted)
 
 
-def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, now: float):
+def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now: float):
     """Status [N] and reason [N] of a loss, by the named rules.
 
     hit [N] had a plot in this scan; beyond [N] lies outside the radar's range; now s.
@@ -56,7 +67,7 @@ def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, now: float
     young = tracks.age < MATURE
     # Of the window's scans still to come none may be missing more than it can.
     hopeless = tentative & ~confirmed & (tracks.age + needed - recent > window)
-    gone = ~tentative & np.where(young, run >= parameters.delete_misses,
+    gone = (~tentative & ~hit & (drift > parameters.max_drift)) | ~tentative & np.where(young, run >= parameters.delete_misses,
                                  hits(tracks, MATURE) < parameters.hold_hits)
     left = beyond & ~hit
     dark = now - tracks.last_time > IN_THE_DARK * parameters.scan_period_s

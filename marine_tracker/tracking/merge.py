@@ -31,6 +31,8 @@ def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, statu
     one, other = track[look], owner[plot[look]]
     keep = status[other] >= status[one]
     one, other = one[keep], other[keep]
+    if not len(one):
+        return double
     apart = np.concatenate([ahead.position, ahead.velocity], 1)
     apart = apart[one] - apart[other]
     spread = ahead.covariance[one] + ahead.covariance[other]

@@ -8,15 +8,14 @@ from numpy.typing import NDArray
 from ..estimators import ESTIMATORS
 from ..geometry import locate, own_ship_at, to_range_bearing, wrap_bearing
 from ..parameters import TrackerParameters
-from ..types import HISTORY, Array, Extrapolation, Plots, Scan, Tracks, append, take
+from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
 from .associate import associate
 from .gate import gate, gate_size
-from .initiate import pair_up
+from .initiate import pair_up, reach
 from .lifecycle import CONFIRMED, LOST, MERGED, NOT_LOST, TENTATIVE, judge, record
 from .merge import duplicates
 from .sweep import sweep_of
 
-PAIRING_GATE = gate_size(0.99)      # of a new target's first two plots
 
 
 class Memory(NamedTuple):
@@ -91,11 +90,22 @@ class Tracker:
 
         # extrapolate: every track to the time the beam passes it
         ahead = self.estimator.extrapolate(tracks.state, sweep.time_at(tracks.bearing))
-        origin, _ = own_ship_at(scan.own_ship, ahead.time)
 
-        # gate, associate
-        track, plot, nis, log_det = gate(ahead, sweep, plots, origin, p.range_sigma_m,
-                                         self.bearing_sigma, self.gate_size)
+        # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
+        lone = memory.leftover
+        time, position, velocity, covariance = (np.concatenate(pair) for pair in (
+            (ahead.time, lone.time), (ahead.position, lone.position),
+            (ahead.velocity, np.zeros_like(lone.position)),
+            (ahead.covariance[:, :2, :2], reach(lone, scan.end, p.max_target_speed_mps))))
+        origin, _ = own_ship_at(scan.own_ship, time)
+        track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
+                                         p.range_sigma_m, self.bearing_sigma, self.gate_size)
+        held = np.searchsorted(track, count)
+        first, second = track[held:] - count, plot[held:]
+        track, plot, nis, log_det = track[:held], plot[:held], nis[:held], log_det[:held]
+        origin = origin[:count]
+
+        # associate
         gain = self.gate_size - nis + (log_det.max(initial=0.0) - log_det) + 1e-9
         plot_of = associate(track, plot, gain, count, len(plots.time))
         hit = plot_of >= 0
@@ -115,7 +125,9 @@ class Tracker:
         last_time[rows] = updated.time
         tracks = record(tracks._replace(state=state, last_time=last_time, bearing=bearing), hit,
                         visible=(distance >= p.min_range_m) & (distance <= p.max_range_m))
-        status, reason = judge(tracks, p, hit, distance > p.max_range_m, scan.end)
+        drift = np.sqrt((ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])
+                        / (p.range_sigma_m ** 2 + (distance * self.bearing_sigma) ** 2))
+        status, reason = judge(tracks, p, hit, distance > p.max_range_m, drift, scan.end)
         double = duplicates(track, plot, plot_of, ahead, tracks, status)
         status[double], reason[double] = LOST, MERGED
         newly = (tracks.number == 0) & (status == CONFIRMED)
@@ -127,13 +139,13 @@ class Tracker:
         free = np.ones(len(plots.time), bool)
         free[taken] = False
         free[plot[tracks.status[track] != TENTATIVE]] = False       # echoes of held targets
-        leftover = np.flatnonzero(free)
-        first, second = pair_up(memory.leftover, take(plots, leftover), p.max_target_speed_mps,
-                                PAIRING_GATE)
+        candidates = free[second]
+        first, second = pair_up(lone, plots, first[candidates], second[candidates],
+                                p.max_target_speed_mps)
         alive = status != LOST
         room = max(p.max_tracks - np.count_nonzero(alive), 0)
-        first, second = first[:room], leftover[second[:room]]
-        new = self._initiate(take(memory.leftover, first), take(plots, second), memory.next_id)
+        first, second = first[:room], second[:room]
+        new = self._initiate(take(lone, first), take(plots, second), memory.next_id)
         free[second] = False
 
         everyone = append(tracks, new)
@@ -176,10 +188,8 @@ class Tracker:
         """Tentative tracks of two plots each."""
         count = len(first.time)
         state = self.estimator.update(self.estimator.init(first), second, np.arange(count))
-        history = np.zeros((count, HISTORY), bool)
-        history[:, :2] = True
         return Tracks(
             id=np.arange(next_id, next_id + count), number=np.zeros(count, np.int64),
-            status=np.full(count, TENTATIVE, np.int8), history=history,
-            age=np.full(count, 2), first_time=first.time, last_time=second.time,
+            status=np.full(count, TENTATIVE, np.int8),
+            history=np.full(count, 0b11), age=np.full(count, 2), first_time=first.time, last_time=second.time,
             bearing=wrap_bearing(second.bearing), state=state)

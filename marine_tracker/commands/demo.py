@@ -1,0 +1,248 @@
+"""Simulator (or recorded radar) and tracker as two processes over ROS 2, and a table of targets.
+
+Ends with Ctrl-C, after --duration, or when the recording or scenario has ended."""
+
+import contextlib
+import ctypes
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, Any, NamedTuple
+
+from ..estimators import ESTIMATORS
+from ..parameters import (
+    RadarSimulatorParameters,
+    RecordingPlayerParameters,
+    TrackerParameters,
+    from_mapping,
+)
+
+HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
+
+COLUMNS = (('target', 'name'), ('status', 'status'), ('range NM', 'range_nm'),
+           ('bearing', 'bearing_deg'), ('course', 'course_deg'), ('speed kn', 'speed_kn'),
+           ('hits in 10', 'hits_in_10'), ('estimator', 'estimator'))
+STYLES = {'COASTING': 'yellow', 'LOST': 'red'}
+PLAIN_EVERY_S = 2.0         # between two tables where there is no terminal
+STOP_S = 5.0                # for a process to end by itself after SIGINT, then after SIGTERM
+
+
+class Child(NamedTuple):
+    """A node as a process; what it says goes into `log`."""
+
+    name: str
+    process: subprocess.Popen
+    log: IO[bytes]
+
+
+def add_arguments(parser) -> None:
+    """Options of the command."""
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument('--scenario', default='encounters', metavar='NAME',
+                        help='a shipped scenario or a scenario file (default: %(default)s)')
+    source.add_argument('--recording', metavar='FOLDER', help='a recorded folder instead')
+    parser.add_argument('--rate', type=float, default=1.0, metavar='F',
+                        help='simulated seconds in a second (default: 1)')
+    parser.add_argument('--estimator', choices=sorted(ESTIMATORS), help='filter of the tracker')
+    parser.add_argument('--seed', type=int, default=1, help='seed of the simulator (default: 1)')
+    parser.add_argument('--duration', type=float, metavar='S', help='end after so many seconds')
+    parser.add_argument('--domain', type=int, metavar='ID',
+                        help='ROS domain (default: one that is free)')
+
+
+def run(args) -> int:
+    """0 after a stop that was asked for, 1 when a process died or ROS is missing."""
+    stop = threading.Event()
+    before = {number: signal.signal(number, lambda *_: stop.set())
+              for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    try:
+        return _demo(args, stop)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _demo(args, stop: threading.Event) -> int:
+    source, source_parameters, tracker_parameters = _parameters(args)
+    try:
+        from ..nodes import domain
+        from ..nodes.targets_listener import TargetsListener
+    except ModuleNotFoundError as error:
+        print(f'marine_tracker demo needs ROS 2 ({error}): '
+              "pip install 'marine_tracker[ros]', or source a ROS 2 Jazzy", file=sys.stderr)
+        return 1
+    with contextlib.ExitStack() as context:
+        number = args.domain
+        if number is None:
+            number = context.enter_context(domain.free_domain())
+        domain.set_local(os.environ, number)
+        children = [context.enter_context(_child('tracker', tracker_parameters)),
+                    context.enter_context(_child(source, source_parameters))]
+        listener = TargetsListener()
+        context.callback(listener.close)
+        title = Path(args.recording).name if args.recording else args.scenario
+        return _watch(listener, children, stop, title, args.duration, number)
+
+
+def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
+    """The source node's name and parameters, and the tracker's. ValueError when one is wrong."""
+    source: str
+    if args.recording:
+        from ..recording import csv_folder
+        source = 'recording_player'
+        given = {'folder': os.path.abspath(args.recording), 'rate': args.rate}
+        from_mapping(RecordingPlayerParameters, given)
+        for_tracker = dict(csv_folder.read(args.recording).tracker_parameters)
+    else:
+        from ..simulation import scenario
+        source = 'radar_simulator'
+        name = args.scenario
+        given = {'scenario': os.path.abspath(name) if os.path.isfile(name) else name,
+                 'rate': args.rate, 'seed': args.seed}
+        from_mapping(RadarSimulatorParameters, given)
+        for_tracker = dict(scenario.load(name).tracker_parameters())
+    if args.estimator:
+        for_tracker['estimator'] = args.estimator
+    checked = from_mapping(TrackerParameters, for_tracker)
+    for_tracker = {name: getattr(checked, name) for name in for_tracker}     # ints become floats
+    if args.rate != 1:
+        for_tracker['use_sim_time'] = True
+    return source, given, for_tracker
+
+
+@contextlib.contextmanager
+def _child(name: str, parameters: dict[str, Any]) -> Iterator[Child]:
+    """A node of this package as a process; ended with the context, come what may."""
+    arguments = [sys.executable, '-P', '-m', f'marine_tracker.nodes.{name}', '--ros-args']
+    for key, value in parameters.items():
+        arguments += ['-p', f'{key}:={json.dumps(value)}']
+    package_home = os.fspath(Path(__file__).resolve().parents[2])
+    search = os.pathsep.join(filter(None, [package_home, os.environ.get('PYTHONPATH')]))
+    with tempfile.TemporaryFile() as log:
+        # A session of its own: Ctrl-C reaches this command alone, which then ends its children.
+        process = subprocess.Popen(
+            arguments, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
+            env={**os.environ, 'PYTHONPATH': search}, preexec_fn=_end_with_parent)
+        try:
+            yield Child(name, process, log)
+        finally:
+            for ask in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+                if process.poll() is not None:
+                    break
+                process.send_signal(ask)
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(STOP_S)
+
+
+def _end_with_parent() -> None:
+    """In the child: be told to end should the parent be killed. Linux only; elsewhere nothing."""
+    pr_set_pdeathsig = 1
+    with contextlib.suppress(AttributeError, OSError):
+        ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
+
+
+def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:
+    """Show the targets until it is over; the exit code."""
+    began = time.monotonic()
+    with _display() as show:
+        while not stop.is_set():
+            listener.spin(0.1)
+            seconds = time.monotonic() - began
+            show(listener.picture, f'{title}, ROS domain {domain}')
+            if duration is not None and seconds >= duration:
+                break
+            ended = next((child for child in children if child.process.poll() is not None), None)
+            if ended is None:
+                continue
+            if ended.process.returncode == 0 and ended.name != 'tracker':
+                _drain(listener, show, f'{title}, ended')
+                break
+            stop.set()
+            return _told_why(ended)
+    return 0
+
+
+def _drain(listener, show, title: str) -> None:
+    """Take in what is still on its way after the source has ended."""
+    until = time.monotonic() + 0.5
+    while time.monotonic() < until:
+        listener.spin(0.1)
+    show(listener.picture, title)
+
+
+def _told_why(child: Child) -> int:
+    child.log.seek(0)
+    said = child.log.read().decode(errors='replace').strip().splitlines()[-10:]
+    print(f'marine_tracker demo: {child.name} ended with code {child.process.returncode}'
+          + (', saying' if said else ''), *said, sep='\n  ', file=sys.stderr)
+    return 1
+
+
+@contextlib.contextmanager
+def _display():
+    """A function that shows a picture: live on a terminal, else as plain tables."""
+    if not sys.stdout.isatty():
+        yield _plain()
+        return
+    from rich.console import Console
+    from rich.live import Live
+    console = Console()
+    with Live(console=console, auto_refresh=False) as live:
+        last: list[Any] = []
+
+        def show(picture, title):
+            if last[:1] != [(picture, title)]:
+                live.update(_rich_table(picture, title, console.height), refresh=True)
+                last[:] = [(picture, title)]
+        yield show
+
+
+def _plain():
+    """Shows a picture as lines, once a scan and not more often than people can read."""
+    last = {'scans': 0, 'at': -PLAIN_EVERY_S}
+
+    def show(picture, title):
+        now = time.monotonic()
+        if picture.scans == last['scans'] or now - last['at'] < PLAIN_EVERY_S:
+            return
+        last.update(scans=picture.scans, at=now)
+        lines = [f'{_clock(picture)}  {title}  {_facts(picture)}',
+                 '  '.join(f'{head:>10}' for head, _ in COLUMNS)]
+        lines += ['  '.join(f'{target[key]:>10}' for _, key in COLUMNS)
+                  for target in picture.targets]
+        print('\n'.join(lines), flush=True)
+    return show
+
+
+def _rich_table(picture, title: str, height: int):
+    from rich.table import Table
+    table = Table(title=f'{title}   {_clock(picture)}', title_justify='left',
+                  caption='\n'.join((_facts(picture), *picture.warnings, 'Ctrl-C ends')),
+                  caption_justify='left')
+    for head, key in COLUMNS:
+        table.add_column(head, justify='left' if key in ('name', 'status', 'estimator')
+                         else 'right')
+    room = max(height - 8 - len(picture.warnings), 1)
+    for target in picture.targets[:room]:
+        table.add_row(*(target[key] for _, key in COLUMNS), style=STYLES.get(target['status']))
+    if len(picture.targets) > room:
+        table.add_row(f'and {len(picture.targets) - room} more')
+    return table
+
+
+def _clock(picture) -> str:
+    return time.strftime('%H:%M:%S', time.gmtime(picture.time)) if picture.scans else '--:--:--'
+
+
+def _facts(picture) -> str:
+    if not picture.scans:
+        return 'waiting for the first revolution'
+    return (f'{len(picture.targets)} targets, {picture.plots} plots a scan, '
+            f'own ship {picture.own_ship}')

@@ -1,0 +1,183 @@
+"""Say what is installed, what is missing, and what to do about it.
+
+Where ROS is there, also listen for a few seconds whether plots, own ship and a tracker are on the
+graph. The exit code is 0 when the core (replay, score, bench, scenario) works, 1 when something
+that it requires is missing.
+"""
+
+import importlib
+import json
+import os
+import sys
+from collections.abc import Iterator
+from importlib import metadata
+from importlib.util import find_spec
+from typing import NamedTuple
+
+from .. import config
+
+HELP = 'say what is installed, what is missing and what to do'
+
+PYTHON = (3, 11)
+# Names to import, and the packages they come in.
+REQUIRED = {'numpy': 'numpy', 'scipy': 'scipy', 'pywt': 'PyWavelets', 'yaml': 'PyYAML',
+            'rich': 'rich'}
+OPTIONAL = {'matplotlib': ('matplotlib', 'to draw plots'),
+            'stonesoup': ('stonesoup', 'bench compares with it')}
+SHIPPED = ('tracker.yaml', 'scenarios', 'fastdds_local.xml')
+PROFILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
+MESSAGES = ('builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs', 'nav_msgs', 'rosgraph_msgs',
+            'sensor_msgs', 'std_msgs', 'visualization_msgs')
+INSTALL_ROS = ("in the source folder: pip install '.[ros]'; or where ROS 2 is installed: source "
+               '/opt/ros/jazzy/setup.bash (only demo and the nodes need it)')
+# Who to start where nobody publishes a topic, by the end of its name.
+STARTERS = {
+    'radar/plots': ('plots', 'start radar_simulator, recording_player or a radar driver'),
+    'own_ship/odometry': ('own ship', 'start what publishes own ship (radar_simulator and '
+                          'recording_player do), or the tracker takes it to be at rest'),
+    'tracks': ('tracker', 'start tracker'),
+}
+
+
+class Check(NamedTuple):
+    """One line of the report.
+
+    name      what was looked at            found     what is there
+    ok        whether it is as it should    required  whether the core needs it
+    advice    what to do; '' where nothing
+    """
+
+    name: str
+    ok: bool
+    found: str
+    advice: str = ''
+    required: bool = False
+
+
+def add_arguments(parser) -> None:
+    """The command line of `doctor`."""
+    parser.add_argument('--listen', type=float, default=3.0, metavar='S',
+                        help='how long to listen on the ROS graph, s; 0 for not (default: 3)')
+    parser.add_argument('--namespace', default='/', help='of the radar to look for (default: /)')
+    parser.add_argument('--json', metavar='FILE',
+                        help='write the checks as JSON instead; - for standard output')
+
+
+def run(args) -> int:
+    """Print the checks; 0 when all that is required is there, else 1."""
+    if not 0 <= args.listen <= 60:
+        raise ValueError(f'--listen is {args.listen:g} s; it must be between 0 and 60')
+    checks = []
+    for check in examine(args.listen, args.namespace):
+        checks.append(check)
+        if args.json != '-':
+            print(line(check), flush=True)
+    if args.json:
+        text = json.dumps({'checks': [check._asdict() for check in checks]}, indent=1) + '\n'
+        if args.json == '-':
+            print(text, end='')
+        else:
+            with open(args.json, 'w') as file:
+                file.write(text)
+    return 1 if any(check.required and not check.ok for check in checks) else 0
+
+
+def line(check: Check) -> str:
+    """A check as people read it."""
+    mark = 'ok  ' if check.ok else 'MISS' if check.required else 'note'
+    advice = f'\n{"":7}-> {check.advice}' if check.advice else ''
+    return f'{mark}   {check.name}: {check.found}{advice}'
+
+
+def examine(listen: float, namespace: str = '/') -> Iterator[Check]:
+    """All checks; those of the graph only where rclpy is there and `listen` s is above 0."""
+    yield _python()
+    for module, package in REQUIRED.items():
+        yield _module(module, package, f'pip install {package}', required=True)
+    for module, (package, use) in OPTIONAL.items():
+        yield _module(module, package, f'pip install {package} ({use})', required=False)
+    yield _configuration()
+    yield from _environment()
+    rclpy = _module('rclpy', 'ros-jazzy-rclpy', INSTALL_ROS, required=False)
+    yield rclpy
+    missing = [name for name in MESSAGES if find_spec(name) is None]
+    yield Check('ROS message packages', not missing,
+                f'missing {", ".join(missing)}' if missing else f'all {len(MESSAGES)}',
+                INSTALL_ROS if missing else '')
+    if rclpy.ok and not missing and listen > 0:
+        yield from _graph(listen, namespace)
+
+
+def _python() -> Check:
+    found = '.'.join(map(str, sys.version_info[:3]))
+    ok = sys.version_info >= PYTHON
+    wanted = '.'.join(map(str, PYTHON))
+    return Check('Python', ok, f'{found}, {sys.executable}',
+                 '' if ok else f'install Python {wanted} or later', True)
+
+
+def _module(module: str, package: str, advice: str, *, required: bool) -> Check:
+    if find_spec(module) is None:
+        return Check(package, False, 'not installed', advice, required)
+    try:
+        importlib.import_module(module)
+    except Exception as error:      # a broken installation raises whatever it likes
+        return Check(package, False, f'cannot be imported: {_words(error)}', advice, required)
+    try:
+        found = metadata.version(package)
+    except metadata.PackageNotFoundError:       # not put there by pip
+        found = 'installed'
+    return Check(package, True, found, '', required)
+
+
+def _configuration() -> Check:
+    again = 'install marine_tracker again'
+    try:
+        folder = config.path()
+    except FileNotFoundError as error:
+        return Check('configuration', False, _words(error), again, True)
+    lacks = [name for name in SHIPPED if not (folder / name).exists()]
+    if lacks:
+        return Check('configuration', False, f'{folder} lacks {", ".join(lacks)}', again, True)
+    return Check('configuration', True, str(folder), '', True)
+
+
+def _environment() -> Iterator[Check]:
+    profile = os.environ.get(PROFILE)
+    if profile:
+        there = os.path.isfile(profile)
+        yield Check('Fast DDS profile', there, profile if there else f'{profile} does not exist',
+                    '' if there else f'correct or unset {PROFILE}')
+    else:
+        yield Check('Fast DDS profile', True, f'{PROFILE} is not set: nodes started by hand may '
+                    'take 3 s to find each other (demo sets it)')
+    for name, otherwise in (('ROS_DISTRO', 'not set: no ROS set-up file was sourced'),
+                            ('AMENT_PREFIX_PATH', f'not set: {sys.prefix} is used'),
+                            ('ROS_DOMAIN_ID', 'not set: domain 0 is used')):
+        yield Check(name, True, os.environ.get(name) or otherwise)
+
+
+def _graph(listen: float, namespace: str) -> Iterator[Check]:
+    """The middleware, and whether plots, own ship and tracks are published."""
+    # The core must not need ROS: only here is it known to be installed.
+    from ..nodes import graph
+    try:
+        seen = graph.look(listen, namespace)
+    except Exception as error:      # each middleware has its own exceptions
+        yield Check('ROS middleware', False, f'does not start: {_words(error)}',
+                    f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
+                    f"({os.environ.get('RMW_IMPLEMENTATION') or 'not set'}) and ROS_DOMAIN_ID")
+        return
+    yield Check('ROS middleware', True, seen.middleware)
+    yield Check('nodes running', bool(seen.nodes), ', '.join(seen.nodes) or 'none',
+                '' if seen.nodes else 'try: marine_tracker demo')
+    for topic, ends in seen.topics.items():
+        what, start = next(about for name, about in STARTERS.items() if topic.endswith(name))
+        if ends.publishers:
+            yield Check(topic, True, f'{ends.publishers} publish, {ends.subscribers} listen')
+        else:
+            yield Check(topic, False, f'no {what} on {topic}', start)
+
+
+def _words(error: Exception) -> str:
+    return ' '.join(str(error).split()) or type(error).__name__

@@ -1,0 +1,46 @@
+"""A chart of a scenario: where every ship goes, in the frame of own ship's start."""
+
+import numpy as np
+
+from ..geometry import NAUTICAL_MILE
+
+STEPS = 241
+
+
+def draw(loaded, file):
+    """Draw the ways of own ship and targets into an image file; a dot marks each start.
+
+    Raises ValueError without matplotlib (extra `plot`).
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ModuleNotFoundError as error:
+        raise ValueError('drawing needs matplotlib: pip install "marine_tracker[plot]"') from error
+    times = np.linspace(0.0, loaded.duration, STEPS)
+    own = loaded.own_ship_at(times).position / NAUTICAL_MILE
+    ways = np.full((len(loaded.target_names), STEPS, 2), np.nan)
+    for step, time in enumerate(times):
+        truth = loaded.truth_at(time)
+        ways[truth.target - 1, step] = truth.position / NAUTICAL_MILE
+
+    figure = Figure(figsize=(9, 9), layout='constrained')
+    axes = figure.add_subplot(aspect='equal', xlabel='east, NM', ylabel='north, NM',
+                              title=f'{loaded.name} ({loaded.duration / 60:g} min)')
+    reach = loaded.radar.max_range / NAUTICAL_MILE
+    around = np.linspace(0, 2 * np.pi, 361)
+    for centre, style in ((own[0], '-'), (own[-1], ':')):
+        axes.plot(centre[0] + reach * np.sin(around), centre[1] + reach * np.cos(around), style,
+                  color='0.8', linewidth=1)
+    for number, way in enumerate(ways, 1):
+        known = np.flatnonzero(~np.isnan(way[:, 0]))
+        if not len(known):
+            continue
+        line, = axes.plot(*way.T, linewidth=1.2)
+        axes.plot(*way[known[0]], 'o', color=line.get_color(), markersize=4)
+        axes.annotate(f'{number}', way[known[0]], xytext=(4, 4), textcoords='offset points',
+                      fontsize=7, color=line.get_color())
+    axes.plot(*own.T, color='black', linewidth=2)
+    axes.plot(*own[0], 'o', color='black', markersize=7, fillstyle='none')
+    axes.margins(0.03)
+    axes.grid(color='0.92')
+    figure.savefig(file, dpi=110)

@@ -1,0 +1,179 @@
+"""What a scan costs, for this tracker and for Stone Soup on the same plots in the same run."""
+
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..geometry import KNOT, NAUTICAL_MILE, unit_vector, wrap_bearing
+from ..parameters import TrackerParameters
+from ..tracking.tracker import Tracker
+from ..types import OwnShip, PolarPlots, Scan
+
+PERIOD = 60 / 22                    # s
+RANGE_SIGMA = 20.0                  # m
+BEARING_SIGMA = float(np.radians(0.5))
+DETECTION = 0.9
+NEAREST, FARTHEST = 0.25 * NAUTICAL_MILE, 24 * NAUTICAL_MILE
+WARM_UP = 12                        # scans in which the tracker finds the targets by itself
+KEPT_WITHIN = 4.0                   # of the plot noise at that range, plus 50 m
+
+
+class Traffic(NamedTuple):
+    """scans: K scans of plots; position [K, N, 2] m and velocity [K, N, 2] m/s: the truth."""
+
+    scans: list[Scan]
+    position: np.ndarray
+    velocity: np.ndarray
+
+
+class Result(NamedTuple):
+    """cpu_s: mean CPU time of a scan; kept: share of targets with a track; rmse of those, m."""
+
+    cpu_s: float
+    kept: float
+    rmse: float
+
+
+def traffic(targets: int, clutter: int, scans: int, seed: int) -> Traffic:
+    """Ships of up to 30 kn spread over 24 NM, one in ten turning; own ship at rest.
+
+    Every plot of a scan carries one time, as both trackers then extrapolate every track once.
+    """
+    rng = np.random.default_rng(seed)
+    distance = np.sqrt(rng.uniform(NEAREST ** 2, FARTHEST ** 2, targets))
+    position = distance[:, None] * unit_vector(rng.uniform(0, 2 * np.pi, targets))
+    speed, course = rng.uniform(0, 30 * KNOT, targets), rng.uniform(0, 2 * np.pi, targets)
+    turning = np.where(np.arange(targets) < targets // 10,
+                       np.radians(rng.uniform(0.5, 1.5, targets)), 0.0)
+    own = np.zeros((1, 2))
+    out, positions, velocities = [], [], []
+    for k in range(scans):
+        velocity = speed[:, None] * unit_vector(course)
+        positions.append(position)
+        velocities.append(velocity)
+        seen = rng.random(targets) < DETECTION
+        range_ = np.hypot(*position[seen].T) + rng.normal(0, RANGE_SIGMA, seen.sum())
+        bearing = np.arctan2(*position[seen].T) + rng.normal(0, BEARING_SIGMA, seen.sum())
+        range_ = np.r_[range_, np.sqrt(rng.uniform(NEAREST ** 2, FARTHEST ** 2, clutter))]
+        bearing = np.r_[bearing, rng.uniform(0, 2 * np.pi, clutter)]
+        order = rng.permutation(len(range_))
+        at = np.full(len(range_), k * PERIOD)
+        out.append(Scan(k * PERIOD, k * PERIOD, PolarPlots(
+            at, range_[order], wrap_bearing(bearing[order]), np.zeros(len(at))),
+            OwnShip(np.array([k * PERIOD]), own, own)))
+        course = course + (turning * PERIOD if scans // 3 <= k < 2 * scans // 3 else 0.0)
+        position = position + velocity * PERIOD
+    return Traffic(out, np.stack(positions), np.stack(velocities))
+
+
+def run_tracker(scene: Traffic, estimator: str) -> Result:
+    """This tracker: whole steps, from extrapolation to the initiation of new tracks."""
+    targets = scene.position.shape[1]
+    parameters = TrackerParameters(
+        estimator=estimator, range_sigma_m=RANGE_SIGMA, bearing_sigma_deg=0.5,
+        scan_period_s=PERIOD, max_tracks=min(2 * targets + 1000, 100000))
+    tracker = Tracker(parameters)
+    memory = tracker.start()
+    for scan in scene.scans[:WARM_UP]:
+        memory, _ = tracker.step(memory, scan)
+    after = []
+    begin = time.process_time()
+    for scan in scene.scans[WARM_UP:]:
+        memory, _ = tracker.step(memory, scan)
+        after.append(memory.tracks)
+    cpu = time.process_time() - begin
+    found = [tracker.extrapolate(tracks, scan.end).position[tracks.number > 0]
+             for tracks, scan in zip(after, scene.scans[WARM_UP:], strict=True)]
+    return _result(cpu, found, scene)
+
+
+def run_stone_soup(scene: Traffic) -> Result:
+    """Stone Soup's EKF and DetectionKDTreeGNN2D with five neighbours, its fastest set-up.
+
+    Its tracks are given to it (truth with noise) and it neither initiates nor deletes, so its
+    figure is the lower bound of what a whole step would cost it.
+    """
+    import datetime
+
+    from stonesoup.dataassociator.tree import DetectionKDTreeGNN2D
+    from stonesoup.hypothesiser.distance import DistanceHypothesiser
+    from stonesoup.measures import Mahalanobis
+    from stonesoup.models.measurement.nonlinear import CartesianToBearingRange
+    from stonesoup.models.transition.linear import (
+        CombinedLinearGaussianTransitionModel,
+        ConstantVelocity,
+    )
+    from stonesoup.predictor.kalman import ExtendedKalmanPredictor
+    from stonesoup.types.detection import Detection
+    from stonesoup.types.state import GaussianState
+    from stonesoup.types.track import Track
+    from stonesoup.updater.kalman import ExtendedKalmanUpdater
+
+    start = datetime.datetime(2000, 1, 1)
+    axis = ConstantVelocity(0.05)
+    predictor = ExtendedKalmanPredictor(CombinedLinearGaussianTransitionModel([axis, axis]))
+    radar = CartesianToBearingRange(
+        ndim_state=4, mapping=(0, 2), noise_covar=np.diag([BEARING_SIGMA ** 2, RANGE_SIGMA ** 2]))
+    updater = ExtendedKalmanUpdater(radar)
+    associator = DetectionKDTreeGNN2D(
+        DistanceHypothesiser(predictor, updater, Mahalanobis(), missed_distance=4),
+        predictor, updater, number_of_neighbours=5, max_distance_covariance_multiplier=3)
+
+    rng = np.random.default_rng(0)
+    first = WARM_UP - 1
+    position, velocity = scene.position[first], scene.velocity[first]
+    distance = np.hypot(*position.T)
+    tracks = set()
+    for (e, n), (ve, vn), r in zip(position, velocity, distance, strict=True):
+        sigma = np.array([RANGE_SIGMA + r * BEARING_SIGMA, 3, RANGE_SIGMA + r * BEARING_SIGMA, 3])
+        state = np.array([e, ve, n, vn]) + rng.normal(0, 0.5, 4) * sigma
+        tracks.add(Track([GaussianState(state, np.diag(sigma ** 2),
+                                        start + datetime.timedelta(seconds=first * PERIOD))]))
+    cpu, found = 0.0, []
+    for k in range(WARM_UP, len(scene.scans)):
+        plots = scene.scans[k].plots
+        now = start + datetime.timedelta(seconds=k * PERIOD)
+        detections = {
+            Detection(np.array([[np.pi / 2 - b], [r]]), timestamp=now, measurement_model=radar)
+            for b, r in zip(plots.bearing, plots.range, strict=True)}
+        begin = time.process_time()
+        for track, hypothesis in associator.associate(tracks, detections, now).items():
+            track.append(updater.update(hypothesis) if hypothesis else hypothesis.prediction)
+        cpu += time.process_time() - begin
+        found.append(np.array([[float(t.state_vector[0]), float(t.state_vector[2])]
+                               for t in tracks]))
+    return _result(cpu, found, scene)
+
+
+def _nearest(truth, found):
+    """Distance [N] m from each target to the nearest track."""
+    if not len(found):
+        return np.full(len(truth), np.inf)
+    return cKDTree(found).query(truth)[0]
+
+
+def _result(cpu, found, scene: Traffic) -> Result:
+    truth = scene.position[WARM_UP:]
+    errors = np.array([_nearest(*pair) for pair in zip(truth, found, strict=True)])
+    distance = np.hypot(*np.moveaxis(truth, -1, 0))
+    kept = errors < KEPT_WITHIN * np.hypot(RANGE_SIGMA, distance * BEARING_SIGMA) + 50
+    rmse = float(np.sqrt(np.mean(errors[kept] ** 2))) if kept.any() else float('nan')
+    return Result(cpu / len(truth), float(kept[-1].mean()), rmse)
+
+
+def benchmark(targets: int, clutter: int, estimator: str, timed_scans: int, seed: int,
+              progress: Callable[[str], None] = lambda text: None) -> dict[str, Result]:
+    """Both trackers on one scene: {'marine_tracker': Result, 'Stone Soup': Result if installed}."""
+    scene = traffic(targets, clutter, WARM_UP + timed_scans, seed)
+    progress(f'marine_tracker, {estimator}')
+    results = {'marine_tracker': run_tracker(scene, estimator)}
+    try:
+        import stonesoup  # noqa: F401
+    except ImportError:
+        return results
+    progress('Stone Soup')
+    results['Stone Soup'] = run_stone_soup(scene)
+    return results

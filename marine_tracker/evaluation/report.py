@@ -1,0 +1,105 @@
+"""Figures for people and machines: a table, and with --json one JSON object."""
+
+import json
+import math
+import sys
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+
+class Figure(NamedTuple):
+    """One measured figure.
+
+    name     stable: scripts look for it         value    None where there was nothing to measure
+    unit     '' for a plain number               limit    what is demanded, e.g. '<= 5.5'
+    ok       whether the demand is met           against  the baseline or source of the demand
+    limit and ok are None where nothing is demanded.
+    """
+
+    name: str
+    value: Any
+    unit: str = ''
+    limit: str | None = None
+    ok: bool | None = None
+    against: str | None = None
+
+
+def at_most(name: str, value, limit: float, unit: str = '', against: str | None = None) -> Figure:
+    """A figure that must not exceed `limit`; one that could not be measured fails."""
+    return Figure(name, value, unit, f'<= {limit:g}', value is not None and bool(value <= limit),
+                  against)
+
+
+def at_least(name: str, value, limit: float, unit: str = '', against: str | None = None) -> Figure:
+    """A figure that must reach `limit`; one that could not be measured fails."""
+    return Figure(name, value, unit, f'>= {limit:g}', value is not None and bool(value >= limit),
+                  against)
+
+
+def add_arguments(parser) -> None:
+    """--json, for every command that measures."""
+    parser.add_argument('--json', metavar='FILE',
+                        help='also write the figures as JSON; - for standard output, the table '
+                             'then goes to standard error')
+
+
+def publish(title: str, figures: Sequence[Figure], json_to: str | None = None,
+            facts: dict[str, Any] | None = None) -> int:
+    """Print the table, write the JSON where asked, and return the exit code.
+
+    json_to  a file, '-' for standard output, None for no JSON
+    facts    what else the JSON object holds beside `figures`, e.g. {'seed': 1}
+    Returns 0, or 1 where a figure misses its limit.
+    """
+    print(f'{title}\n{table(figures)}', file=sys.stderr if json_to == '-' else sys.stdout)
+    if json_to is not None:
+        text = to_json(figures, facts)
+        if json_to == '-':
+            print(text)
+        else:
+            with open(json_to, 'w') as file:
+                file.write(text + '\n')
+    return 1 if any(figure.ok is False for figure in figures) else 0
+
+
+def to_json(figures: Sequence[Figure], facts: dict[str, Any] | None = None) -> str:
+    """One object, {**facts, 'figures': [...]}; numbers that are not finite become null."""
+    rows = [figure._asdict() for figure in figures]
+    return json.dumps(_plain({**(facts or {}), 'figures': rows}), indent=1, allow_nan=False)
+
+
+def table(figures: Sequence[Figure]) -> str:
+    """The figures as aligned lines; a column that says nothing is left out."""
+    verdict = {None: '', True: 'ok', False: 'MISSED'}
+    rows = [('figure', 'value', 'unit', 'limit', '', 'against')]
+    rows += [(f.name, number(f.value), f.unit, f.limit or '', verdict[f.ok], f.against or '')
+             for f in figures]
+    columns = [column for column in zip(*rows) if any(column[1:])]
+    widths = [max(map(len, column)) for column in columns]
+    return '\n'.join(
+        '  '.join(cell.rjust(width) if cell and column[0] == 'value' else cell.ljust(width)
+                  for cell, width, column in zip(cells, widths, columns)).rstrip()
+        for cells in zip(*columns))
+
+
+def number(value) -> str:
+    """A value as people read it: up to four digits after the point, - for none."""
+    value = _plain(value)
+    if value is None:
+        return '-'
+    if not isinstance(value, float):
+        return str(value)
+    return f'{value:.3f}' if value == 0 or 1e-2 <= abs(value) < 1e6 else f'{value:.3g}'
+
+
+def _plain(value):
+    """The value in JSON's own types, numpy's numbers and arrays included."""
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if hasattr(value, 'tolist'):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,96 @@
+"""ROS parameters from the dataclasses of parameters.py, and back."""
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from ..parameter_files import limits
+from ..parameters import from_mapping
+
+P = TypeVar('P')
+
+WORDS = {bool: 'a bool', int: 'an integer', float: 'a double', str: 'a string'}
+
+
+def declare(node: Node, kind: type[P]) -> P:
+    """Declare every field of the dataclass on the node; the values it was started with.
+
+    ValueError names the parameter if one that was given (YAML file, command line, launch) is
+    unknown, has no value, has the wrong type or lies outside its limits. rclpy alone would pass
+    over unknown ones in silence.
+    """
+    fields = {field.name: field for field in dataclasses.fields(kind)}   # type: ignore[arg-type]
+    # Parameters that rclpy itself declared (use_sim_time, ...) and QoS overrides are not ours.
+    given = {name: override.value for name, override in node._parameter_overrides.items()
+             if not node.has_parameter(name) and not name.startswith('qos_overrides.')}
+    for name, value in given.items():
+        if name in fields:
+            _check_type(name, value, fields[name].type)
+    parameters = from_mapping(kind, given)
+    for name, field in fields.items():
+        node.declare_parameter(name, getattr(parameters, name), descriptor(field))
+    return parameters
+
+
+def descriptor(field) -> ParameterDescriptor:
+    """What a dataclass field says of itself, in ROS terms."""
+    about = field.metadata
+    described = ParameterDescriptor(
+        name=field.name,
+        description=about['text'] + (f' [{about["unit"]}]' if about['unit'] else ''),
+        additional_constraints=limits(field), read_only=not about['live'])
+    if about['low'] is not None and about['high'] is not None:
+        if field.type is float:
+            described.floating_point_range = [FloatingPointRange(
+                from_value=float(about['low']), to_value=float(about['high']), step=0.0)]
+        else:
+            described.integer_range = [IntegerRange(
+                from_value=int(about['low']), to_value=int(about['high']), step=1)]
+    return described
+
+
+def follow(node: Node, kind: type[P], apply: Callable[[P], None]) -> None:
+    """Call `apply` with the new parameters whenever live ones were changed.
+
+    A change that the dataclass refuses is refused with the dataclass's reason. The check has no
+    side effect: another callback may still refuse the same change.
+    """
+    names = [field.name for field in dataclasses.fields(kind)]           # type: ignore[arg-type]
+
+    def values(changed: list[Parameter]) -> dict[str, Any]:
+        now = {name: node.get_parameter(name).value for name in names}
+        return now | {p.name: p.value for p in changed if p.name in now}
+
+    def validate(changed: list[Parameter]) -> SetParametersResult:
+        try:
+            from_mapping(kind, values(changed))
+        except ValueError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def changed(changed: list[Parameter]) -> None:
+        if any(parameter.name in names for parameter in changed):
+            apply(from_mapping(kind, values([])))
+
+    node.add_on_set_parameters_callback(validate)
+    node.add_post_set_parameters_callback(changed)
+
+
+def _check_type(name: str, value: Any, wanted: Any) -> None:
+    if value is None:
+        raise ValueError(f'parameter {name} has no value (an empty entry or list); '
+                         f'it must be {WORDS[wanted]}')
+    if type(value) is not wanted:
+        hint = f' (write {value}.0)' if wanted is float and type(value) is int else ''
+        found = WORDS.get(type(value), 'a list')
+        raise ValueError(f'parameter {name} is {value!r}, {found}; '
+                         f'it must be {WORDS[wanted]}{hint}')

@@ -1,0 +1,229 @@
+"""Antenna revolutions published when they are due: what simulator and recording player share.
+
+At rate 1 the stamps are the node's clock. At any other rate simulated time runs: the stamps are
+the scenario's or recording's own seconds (moved to begin at 1 s where they would begin earlier,
+for 0 means "no time yet" in ROS), `/clock` is published, and other nodes need use_sim_time.
+
+Due times are counted from the start, so nothing drifts. Where the machine is too slow for the
+rate, time runs slower; no revolution is left out. The first revolution waits a moment for someone
+to listen, so that a tracker started together with this node misses nothing.
+"""
+
+import itertools
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from nav_msgs.msg import Odometry
+from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rosgraph_msgs.msg import Clock as ClockMessage
+from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
+
+from ..geometry import geodetic_from_local
+from ..types import OwnShip, Scan, Truth
+from . import convert, topics
+from .convert import OdometryPool
+
+FIRST_S = 1.0                   # s, where simulated time begins
+TICK_S = 0.05                   # longest wait between two looks at the time
+AT_ONCE_S = 0.05                # longest work before the executor gets its turn
+LAG_S = 0.5                     # further behind than this, time runs slower
+LISTENER_S = 3.0                # longest wait for the first listener ...
+SETTLE_S = 0.2                  # ... and for it to know us, too
+OWN_SHIP_PERIOD_S = 0.1         # of simulated time, and at most
+OWN_SHIP_PER_S = 25.0           # samples in a second of the wall
+
+
+class Revolution(NamedTuple):
+    """scan and truth, and the own-ship samples that become known up to its end."""
+
+    scan: Scan
+    truth: Truth
+    own_ship: OwnShip
+
+
+def own_ship_period(rate: float) -> float:
+    """s of simulated time between two own-ship samples at this rate."""
+    return max(OWN_SHIP_PERIOD_S, rate / OWN_SHIP_PER_S)
+
+
+class Playback:
+    """Publishes revolutions from a node's timer.
+
+    make    begins the revolutions, in time order; called again for every loop
+    rate    simulated seconds in a second
+    loop    begin again at the end, one revolution later
+    origin  latitude and longitude in degrees of the local plane's origin; None: no fix
+
+    `done` becomes true when the last revolution is out (never in a loop).
+    """
+
+    def __init__(self, node: Node, make: Callable[[], Iterator[Revolution]], rate: float,
+                 loop: bool, origin: tuple[float, float] | None = None):
+        self.node, self.rate, self.origin = node, rate, origin
+        self.done = False
+        self._revolutions = _repeat(make) if loop else make()
+        self._next = next(self._revolutions, None)
+        if self._next is None:
+            raise ValueError('there is no revolution to play')
+        first = self._next
+        self._first = min(float(first.own_ship.time[0]), first.scan.start)
+        self._sample = 0                        # of the next revolution's own-ship samples
+        reliable = topics.reliable
+        self._plots = node.create_publisher(PointCloud2, topics.PLOTS, reliable())
+        self._readable = node.create_publisher(PointCloud, topics.PLOTS_READABLE, reliable())
+        self._odometry = node.create_publisher(Odometry, topics.ODOMETRY, reliable())
+        self._truth = node.create_publisher(Odometry, topics.TRUTH, reliable(topics.BURST))
+        self._fix = node.create_publisher(NavSatFix, topics.FIX, reliable()) if origin else None
+        self._clock = (node.create_publisher(ClockMessage, '/clock', reliable(1))
+                       if rate != 1 else None)
+        self._pool = OdometryPool()
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._created = self._wall()
+        self._heard: float | None = None
+        self._told_waiting = False
+        self._start_ns: int | None = None       # stamp of the time _first
+        self._anchor = (0.0, self._first)       # a moment of the wall and the time it stands for
+        self._timer = node.create_timer(TICK_S, self._tick, clock=self._steady)
+
+    def close(self) -> None:
+        """Stop, and see that what was published arrives."""
+        self._timer.cancel()
+        for publisher in (self._plots, self._odometry, self._truth):
+            publisher.wait_for_all_acked(Duration(seconds=0.5))
+
+    def _tick(self) -> None:
+        if self._start_ns is None and not self._begin():
+            return
+        began = self._wall()
+        now = self._now()
+        due = self._due()
+        while due is not None and due <= now:
+            self._publish_clock(due)
+            self._publish_next()
+            due = self._due()
+            if self._wall() - began > AT_ONCE_S:
+                break
+        if due is None:
+            self._timer.cancel()
+            self.done = True
+            return
+        if now - due > LAG_S * self.rate:
+            self._anchor = (self._elapsed(), due)
+        self._publish_clock(min(now, due))
+        wait = (due - self._now()) / self.rate
+        self._timer.timer_period_ns = int(1e9 * min(max(wait, 1e-3), TICK_S))
+        self._timer.reset()
+
+    def _begin(self) -> bool:
+        """Whether time runs now; sets the stamp of the first moment."""
+        node = self.node
+        wall = self._wall()
+        if self._clock is not None:
+            start_ns = round(1e9 * max(self._first, FIRST_S))
+            self._clock.publish(ClockMessage(clock=convert.time_message(start_ns)))
+        else:
+            start_ns = node.get_clock().now().nanoseconds
+            if start_ns == 0:
+                if not self._told_waiting:
+                    node.get_logger().warning(
+                        'use_sim_time is set and /clock is silent: waiting for it')
+                    self._told_waiting = True
+                return False
+        if self._heard is None and (self._plots.get_subscription_count()
+                                    and self._odometry.get_subscription_count()):
+            self._heard = wall
+        settled = self._heard is not None and wall - self._heard >= SETTLE_S
+        if not settled and wall - self._created < LISTENER_S:
+            return False
+        self._start_ns = start_ns
+        self._anchor = (self._elapsed(), self._first)
+        return True
+
+    def _wall(self) -> float:
+        return self._steady.now().nanoseconds * 1e-9
+
+    def _elapsed(self) -> float:
+        """s of the clock that drives the playback: the steady one, or another node's /clock."""
+        if self._clock is None and self.node.get_parameter('use_sim_time').value:
+            return self.node.get_clock().now().nanoseconds * 1e-9
+        return self._wall()
+
+    def _now(self) -> float:
+        """s, scenario's or recording's time."""
+        at, time = self._anchor
+        return time + (self._elapsed() - at) * self.rate
+
+    def _stamp(self, time) -> int:
+        assert self._start_ns is not None
+        return self._start_ns + round((float(time) - self._first) * 1e9)
+
+    def _due(self) -> float | None:
+        """When the next thing is to be published; None at the end."""
+        if self._next is None:
+            return None
+        samples = self._next.own_ship.time
+        if self._sample < len(samples):
+            return float(samples[self._sample])
+        return self._next.scan.end
+
+    def _publish_clock(self, time: float) -> None:
+        if self._clock is not None:
+            self._clock.publish(ClockMessage(clock=convert.time_message(self._stamp(time))))
+
+    def _publish_next(self) -> None:
+        revolution, k = self._next, self._sample
+        assert revolution is not None
+        samples = revolution.own_ship
+        if k < len(samples.time):
+            self._publish_own_ship(samples.time[k], samples.position[k], samples.velocity[k])
+            self._sample += 1
+            return
+        scan, truth = revolution.scan, revolution.truth
+        start_ns = self._stamp(scan.start)
+        self._plots.publish(convert.plots_to_cloud(scan, start_ns))
+        if self._readable.get_subscription_count():
+            self._readable.publish(convert.plots_to_readable(scan, start_ns))
+        if self._truth.get_subscription_count():
+            exact = np.zeros((len(truth.time), 4, 4))
+            for message in self._pool.fill(
+                    [self._stamp(time) for time in truth.time],
+                    [f'target_{number}' for number in truth.target], truth.position,
+                    truth.velocity, exact):
+                self._truth.publish(message)
+        self._next = next(self._revolutions, None)
+        self._sample = 0
+
+    def _publish_own_ship(self, time, position, velocity) -> None:
+        stamp = self._stamp(time)
+        self._odometry.publish(convert.own_ship_to_odometry(stamp, position, velocity))
+        if self._fix is not None and self.origin is not None:
+            latitude, longitude = geodetic_from_local(position, *self.origin)
+            self._fix.publish(convert.fix_message(stamp, latitude, longitude))
+
+
+def _repeat(make: Callable[[], Iterator[Revolution]]) -> Iterator[Revolution]:
+    """The revolutions over and over; each round follows the one before by one revolution."""
+    shift, starts = 0.0, [0.0, 0.0]
+    for round_ in itertools.count():
+        for k, revolution in enumerate(make()):
+            start = revolution.scan.start
+            if k == 0 and round_:
+                shift = 2 * starts[1] - starts[0] - start
+            yield _moved(revolution, shift)
+            # A single revolution has no neighbour to take the period from.
+            before = start + shift - max(revolution.scan.end - start, 1.0) if k == 0 else starts[1]
+            starts = [before, start + shift]
+
+
+def _moved(revolution: Revolution, shift: float) -> Revolution:
+    """The same at another time, s later."""
+    scan, truth, own_ship = revolution
+    return Revolution(
+        Scan(scan.start + shift, scan.end + shift,
+             scan.plots._replace(time=scan.plots.time + shift),
+             scan.own_ship._replace(time=scan.own_ship.time + shift)),
+        truth._replace(time=truth.time + shift),
+        own_ship._replace(time=own_ship.time + shift))

@@ -1,0 +1,50 @@
+"""The radar simulator as a node: a scenario's plots, own ship and truth, in their own time.
+
+Publishes `radar/plots` and `radar/plots_readable` at the end of each antenna revolution,
+`own_ship/odometry` (and `own_ship/fix` where the scenario has a place on earth) at 10 Hz, `truth`
+once a revolution. Rate and `/clock`: see playback.py. The node ends when the scenario has ended,
+unless it loops.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..geometry import own_ship_at
+from ..parameters import RadarSimulatorParameters
+from ..simulation import radar, scenario
+from ..types import OwnShip
+from .declare import declare
+from .playback import Playback, Revolution, own_ship_period
+from .runnable import RunnableNode
+
+
+class RadarSimulatorNode(RunnableNode):
+    """Plays a scenario. ValueError where the parameters or the scenario are wrong."""
+
+    def __init__(self, **node_arguments):
+        super().__init__('radar_simulator', **node_arguments)
+        parameters = declare(self, RadarSimulatorParameters)
+        chosen = scenario.load(parameters.scenario)
+        step = own_ship_period(parameters.rate)
+
+        def revolutions() -> Iterator[Revolution]:
+            for scan, truth in radar.simulate(chosen, parameters.seed):
+                # Evenly up to the end, which is always one of them.
+                count = max(round((scan.end - scan.start) / step), 1)
+                time = np.linspace(scan.start, scan.end, count + 1)[1:]
+                yield Revolution(scan, truth, OwnShip(time, *own_ship_at(scan.own_ship, time)))
+
+        self._playback = Playback(self, revolutions, parameters.rate, parameters.loop,
+                                  chosen.origin)
+        self.get_logger().info(
+            f'scenario {parameters.scenario}, seed {parameters.seed}, rate {parameters.rate:g}')
+
+    @property
+    def done(self) -> bool:
+        """Whether the scenario has ended."""
+        return self._playback.done
+
+    def close(self) -> None:
+        """Let the last messages arrive."""
+        self._playback.close()

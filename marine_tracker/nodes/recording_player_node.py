@@ -1,0 +1,47 @@
+"""A recorded folder as a node: its plots, own ship and truth, in their own time.
+
+Publishes what radar_simulator does, from plots.csv, own_ship.csv and truth.csv; own ship as often
+as it was recorded. Rate and `/clock`: see playback.py. The node ends when the recording has ended,
+unless it loops. What radar.yaml says belongs to the tracker: the tracker gets it as parameters.
+"""
+
+from collections.abc import Iterator
+
+from ..parameters import RecordingPlayerParameters
+from ..recording import csv_folder
+from ..types import take
+from .declare import declare
+from .playback import Playback, Revolution
+from .runnable import RunnableNode
+
+
+class RecordingPlayerNode(RunnableNode):
+    """Plays a recording. ValueError where the parameters or the recording are wrong."""
+
+    def __init__(self, **node_arguments):
+        super().__init__('recording_player', **node_arguments)
+        parameters = declare(self, RecordingPlayerParameters)
+        if not parameters.folder:
+            raise ValueError('parameter folder is empty; it must name the folder of a recording')
+        recording = csv_folder.read(parameters.folder)
+
+        def revolutions() -> Iterator[Revolution]:
+            for k, (scan, truth) in enumerate(zip(recording.scans, recording.truths)):
+                yield Revolution(scan, truth, take(recording.own_ship, slice(k, k + 1)))
+
+        self._playback = Playback(self, revolutions, parameters.rate, parameters.loop)
+        self.get_logger().info(f'recording {recording.name}, {len(recording.scans)} scans, '
+                               f'rate {parameters.rate:g}')
+        if recording.tracker_parameters:
+            named = ', '.join(f'{name}: {value}'
+                              for name, value in recording.tracker_parameters.items())
+            self.get_logger().info(f'its radar.yaml has for the tracker {named}')
+
+    @property
+    def done(self) -> bool:
+        """Whether the recording has ended."""
+        return self._playback.done
+
+    def close(self) -> None:
+        """Let the last messages arrive."""
+        self._playback.close()

@@ -1,0 +1,52 @@
+"""The one main of all nodes: start, spin, stop.
+
+`rclpy.spin` with rclpy's own signal handlers may hang on SIGTERM or exit with 1. Here the
+handlers only set an event; the loop ends within its time-out, and everything is closed in order.
+They stand before anything large is imported: a signal during the start ends the node as well.
+"""
+
+import importlib
+import os
+import signal
+import sys
+import threading
+
+
+def run(name: str, class_name: str) -> int:
+    """Run the class of module `NAME_node` until it is done or SIGINT or SIGTERM comes.
+
+    The exit code: 0 after a stop that was asked for, 1 with one line on stderr when the node
+    cannot start.
+    """
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    # ament looks packages up by this; a virtual environment is a prefix like any other.
+    os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
+    import rclpy
+    from rclpy.exceptions import NameValidationException, ParameterException
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.impl.implementation_singleton import rclpy_implementation as implementation
+    from rclpy.signals import SignalHandlerOptions
+
+    make_node = getattr(importlib.import_module(f'.{name}_node', __package__), class_name)
+    try:
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        node = make_node()
+    except (ValueError, OSError, ParameterException, NameValidationException,
+            implementation.RCLError, implementation.UnknownROSArgsError,
+            implementation.RCLInvalidROSArgsError) as error:
+        print(f'{name}: {" ".join(str(error).split())}', file=sys.stderr, flush=True)
+        rclpy.try_shutdown()
+        return 1
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    try:
+        while not stop.is_set() and not node.done:
+            executor.spin_once(timeout_sec=0.1)
+        node.close()
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.try_shutdown()
+    return 0

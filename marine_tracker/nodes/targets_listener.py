@@ -1,0 +1,87 @@
+"""Listens to `targets` for those who show them: what came last, as plain Python values."""
+
+import math
+from typing import NamedTuple
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+from sensor_msgs.msg import PointCloud2
+
+from ..geometry import KNOT
+from . import topics
+from .convert import nanoseconds, odometry_to_own_ship
+from .diagnostics import OK
+from .readable import degrees
+
+
+class Picture(NamedTuple):
+    """What is known at the moment.
+
+    scans     messages on `targets` so far
+    time      s, stamp of the last one
+    targets   one mapping a target: name, status, and the values of `targets`
+    plots     plots in the last revolution
+    own_ship  course and speed, in words
+    warnings  what /diagnostics says is not in order
+    """
+
+    scans: int = 0
+    time: float = 0.0
+    targets: tuple[dict[str, str], ...] = ()
+    plots: int = 0
+    own_ship: str = 'not heard'
+    warnings: tuple[str, ...] = ()
+
+
+class TargetsListener:
+    """A node with a context of its own; the caller spins it and handles the signals."""
+
+    def __init__(self):
+        self.picture = Picture()
+        self._context = Context()
+        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        self._node = rclpy.create_node('targets_listener', context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        for kind, topic, callback, quality in (
+                (DiagnosticArray, topics.TARGETS, self._on_targets, topics.latched()),
+                (PointCloud2, topics.PLOTS, self._on_plots, topics.best_effort(1)),
+                (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort(1)),
+                (DiagnosticArray, topics.DIAGNOSTICS, self._on_diagnostics, topics.reliable())):
+            self._node.create_subscription(kind, topic, callback, quality)
+
+    def spin(self, seconds: float) -> None:
+        """Take in at most one message, waiting at most so long for it."""
+        self._executor.spin_once(timeout_sec=seconds)
+
+    def close(self) -> None:
+        """Leave the network."""
+        self._executor.shutdown()
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+    def _on_targets(self, message: DiagnosticArray) -> None:
+        targets = tuple(
+            {'name': entry.name, 'status': entry.message,
+             **{pair.key: pair.value for pair in entry.values}} for entry in message.status)
+        self.picture = self.picture._replace(
+            scans=self.picture.scans + 1, time=nanoseconds(message.header.stamp) * 1e-9,
+            targets=targets)
+
+    def _on_plots(self, message: PointCloud2) -> None:
+        self.picture = self.picture._replace(plots=message.width * message.height)
+
+    def _on_odometry(self, message: Odometry) -> None:
+        _, (east, north) = odometry_to_own_ship(message)
+        speed = math.hypot(east, north) / KNOT
+        course = degrees(math.degrees(math.atan2(east, north)))
+        self.picture = self.picture._replace(
+            own_ship=f'course {course}, {speed:.1f} kn' if speed >= 0.05 else 'at rest')
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        self.picture = self.picture._replace(warnings=tuple(
+            f'{entry.name}: {entry.message}' for entry in message.status if entry.level != OK))

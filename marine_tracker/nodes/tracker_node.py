@@ -1,0 +1,319 @@
+"""The tracker as a node: plots and own ship in, tracks out. The core does the work.
+
+What comes in is screened (tracking/intake.py): what is bad is rejected, counted by a named reason
+on /diagnostics and logged once; the tracks live on. See there for how jumps of the clock and of
+own ship are taken. No exception leaves a callback.
+
+`tracks`, `extrapolations`, `targets` and `markers` show confirmed and coasting targets; a lost one
+stands once more in `targets`, as STALE. `tracks_cloud` has all tracks with their status. In
+`tracks` each target is stamped with the time the beam passed it.
+"""
+
+import functools
+import time
+from collections import deque
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from nav_msgs.msg import Odometry
+from rclpy.clock import Clock, ClockType
+from rclpy.event_handler import SubscriptionEventCallbacks
+from sensor_msgs.msg import PointCloud2
+from visualization_msgs.msg import MarkerArray
+
+from ..geometry import own_ship_at, wrap_bearing
+from ..parameters import TrackerParameters
+from ..tracking import intake
+from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, TENTATIVE
+from ..tracking.tracker import Report, Tracker
+from ..types import Extrapolation, Scan, take
+from . import convert, diagnostics, topics
+from .convert import ConversionError, OdometryPool
+from .declare import declare, follow
+from .diagnostics import OK, WARN, Durations, Tally
+from .markers import MarkersWriter
+from .readable import TargetsWriter
+from .runnable import RunnableNode
+from .view import view
+
+MISSED = 'revolutions missed'
+FAILED = 'callbacks failed'
+SILENT_S = 5.0              # s of the wall, and three scans, without plots: the radar is silent
+
+
+def guarded(callback):
+    """No exception leaves the callback: it is counted, and told once for each kind."""
+    @functools.wraps(callback)
+    def run_guarded(self, *arguments):
+        try:
+            callback(self, *arguments)
+        except Exception as error:
+            self.failures.add(f'{FAILED}: {type(error).__name__} in {callback.__name__}',
+                              time.monotonic(), detail=str(error))
+    return run_guarded
+
+
+class TrackerNode(RunnableNode):
+    """See the module. ValueError where the parameters are wrong."""
+
+    def __init__(self, **node_arguments):
+        super().__init__('tracker', **node_arguments)
+        parameters = declare(self, TrackerParameters)
+        follow(self, TrackerParameters, self._change)
+        self._tracker = Tracker(parameters)
+        self._memory = self._tracker.start()
+        self._base_ns: int | None = None            # stamps are seconds after this
+        self._order = intake.TimeOrder()
+        self._own_log = intake.empty_log()
+        self._fallback = intake.OWN_NEVER_HEARD
+        self._starts: deque[float] = deque(maxlen=10)
+        self._stamped_alike = False
+        self._started = time.monotonic()
+        self._heard: float | None = None            # wall time of the last plots
+        self._taken = self._samples = self._plots_in_scan = 0
+        self._status_count = np.zeros(4, int)
+        self._processing, self._lateness = Durations(), Durations()
+        self.bad_input = Tally((*convert.CLOUD_REASONS, *intake.PLOT_REASONS,
+                                *intake.SCAN_REASONS, MISSED), self._tell)
+        self.bad_own_ship = Tally(intake.OWN_REASONS, self._tell)
+        self.failures = Tally((), self._tell)
+
+        where = self.get_namespace().strip('/')
+        self._label = f'{where}/{self.get_name()}' if where else self.get_name()
+        self._hardware_id = f'{where}/radar' if where else 'radar'
+        burst = topics.reliable(topics.BURST)
+        self._to_tracks = self.create_publisher(Odometry, topics.TRACKS, burst)
+        self._to_extrapolations = self.create_publisher(Odometry, topics.EXTRAPOLATIONS, burst)
+        self._to_cloud = self.create_publisher(
+            PointCloud2, topics.TRACKS_CLOUD, topics.reliable())
+        self._to_targets = self.create_publisher(DiagnosticArray, topics.TARGETS, topics.latched())
+        self._to_markers = self.create_publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
+        self._to_diagnostics = self.create_publisher(
+            DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
+        self._pool = OdometryPool()
+        self._targets = TargetsWriter(self._hardware_id)
+        self._markers = MarkersWriter()
+
+        # Own ship first: of messages that wait together it is taken first.
+        self._inputs = {}
+        self._mismatched: set[str] = set()
+        for kind, topic, callback in ((Odometry, topics.ODOMETRY, self._on_odometry),
+                                      (PointCloud2, topics.PLOTS, self._on_plots)):
+            self._listen(kind, topic, callback, topics.best_available())
+        # The wall's second, whatever the node's clock does.
+        self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.get_logger().info(f'estimator {parameters.estimator}, waiting for {topics.PLOTS}')
+
+    def close(self) -> None:
+        """A last word on /diagnostics."""
+        self._on_second()
+
+    # -- in ------------------------------------------------------------------------------------
+
+    def _listen(self, kind, topic, callback, quality):
+        """Subscribe; to be repeated as best effort once a publisher asks for it (_on_second)."""
+        events = SubscriptionEventCallbacks(
+            incompatible_qos=lambda _: self._mismatched.add(topic))
+        self._inputs[topic] = (kind, callback, self.create_subscription(
+            kind, topic, callback, quality, event_callbacks=events))
+
+    @guarded
+    def _on_odometry(self, message: Odometry) -> None:
+        position, velocity = convert.odometry_to_own_ship(message)
+        at = self._seconds(convert.nanoseconds(message.header.stamp))
+        self._own_log, reason = intake.admit_own_ship(self._own_log, at, position, velocity)
+        self._samples += 1
+        if reason:
+            self.bad_own_ship.add(reason, time.monotonic(), detail=f'at {position}')
+
+    @guarded
+    def _on_plots(self, message: PointCloud2) -> None:
+        began = time.perf_counter()
+        self._heard = wall = time.monotonic()
+        try:
+            plots = convert.cloud_to_plots(message)
+        except ConversionError as error:
+            self.bad_input.add(error.reason, wall, detail=str(error))
+            return
+        parameters, period = self._tracker.parameters, self.period
+        plots, rejected = intake.screen_plots(plots, period, parameters.max_plots)
+        for reason, count in rejected.items():
+            self.bad_input.add(reason, wall, count)
+        start_ns = convert.nanoseconds(message.header.stamp)
+        start = self._seconds(start_ns)
+        before = self._order.last
+        self._order, taken, reason = intake.admit_scan(self._order, start, period)
+        if reason:
+            self.bad_input.add(reason, wall, detail=f'stamp {start_ns * 1e-9:.3f} s')
+        if not taken:
+            return
+        if reason == intake.REBASED:
+            self._starts.clear()
+        elif start - before > 1.5 * period:
+            self.bad_input.add(MISSED, wall, round((start - before) / period) - 1)
+        self._starts.append(start)
+
+        # Recordings may stamp all plots of a scan alike; an antenna never does.
+        if len(plots.time):
+            self._stamped_alike = not plots.time.any()
+        length = 0.0 if self._stamped_alike else max(period, plots.time.max(initial=0.0))
+        end, shift = start + length, self._order.shift
+        own_ship, self._fallback = intake.own_ship_for(
+            self._own_log, start, end, parameters.own_ship_timeout_s)
+        scan = Scan(start + shift, end + shift, plots._replace(time=plots.time + start + shift),
+                    own_ship._replace(time=own_ship.time + shift))
+        self._memory, report = self._tracker.step(self._memory, scan)
+        self._taken += 1
+        self._plots_in_scan = len(plots.time)
+        self._publish(scan, report)
+        now = self.get_clock().now().nanoseconds
+        if now:                                         # 0: no /clock yet
+            self._lateness.add((now - start_ns) * 1e-9 - length)
+        self._processing.add(time.perf_counter() - began)
+
+    def _change(self, parameters: TrackerParameters) -> None:
+        """Live parameters were changed: another tracker takes the tracks over."""
+        tracker = Tracker(parameters)
+        self._memory = tracker.adopt(self._memory, self._tracker)
+        self._tracker = tracker
+        self.get_logger().info(f'parameters changed; estimator {parameters.estimator}')
+
+    @property
+    def period(self) -> float:
+        """s of one revolution: as measured, or by parameter until there is enough to measure."""
+        if len(self._starts) < 4:
+            return self._tracker.parameters.scan_period_s
+        return float(np.median(np.diff(self._starts)))
+
+    def _seconds(self, time_ns: int) -> float:
+        """s of a stamp after the first stamp that came in."""
+        if self._base_ns is None:
+            self._base_ns = time_ns
+        return (time_ns - self._base_ns) * 1e-9
+
+    def _stamps(self, time):
+        """Stamps [N] in ns of the tracker's times [N] s."""
+        return self._base_ns + np.round((time - self._order.shift) * 1e9).astype(np.int64)
+
+    # -- out -----------------------------------------------------------------------------------
+
+    def _publish(self, scan: Scan, report: Report) -> None:
+        tracks, tracker = report.tracks, self._tracker
+        self._status_count = np.bincount(tracks.status, minlength=4)
+        listeners = [publisher.get_subscription_count() for publisher in (
+            self._to_tracks, self._to_extrapolations, self._to_cloud, self._to_markers)]
+        estimate = tracker.extrapolate(tracks, report.time)
+        targets = np.flatnonzero(tracks.number > 0)
+        targets = targets[np.argsort(tracks.number[targets])]
+        alive = targets[tracks.status[targets] != LOST]
+        frames = [f'track_{n:02d}' for n in tracks.number[alive].tolist()]
+        if listeners[0]:
+            self._publish_each(self._to_tracks, frames, take(estimate, alive))
+        if listeners[1]:
+            self._publish_each(self._to_extrapolations, frames, tracker.extrapolate(
+                take(tracks, alive), report.time[alive] + self.period))
+        if listeners[2]:
+            self._to_cloud.publish(self._cloud(scan, report, estimate))
+        own_position, _ = own_ship_at(scan.own_ship, scan.end)
+        shown = take(tracks, targets)
+        seen = view(shown, report.reason[targets], tracker.extrapolate(shown, scan.end),
+                    own_position)
+        end_ns = int(self._stamps(scan.end))
+        self._to_targets.publish(
+            self._targets.message(seen, tracker.parameters.estimator, end_ns))
+        self._markers.remember(seen, scan.end)
+        if listeners[3]:
+            self._to_markers.publish(self._markers.message(seen, end_ns))
+
+    def _publish_each(self, publisher, frames, estimate: Extrapolation) -> None:
+        for message in self._pool.fill(self._stamps(estimate.time), frames, estimate.position,
+                                       estimate.velocity, estimate.covariance):
+            publisher.publish(message)
+
+    def _cloud(self, scan: Scan, report: Report, estimate: Extrapolation) -> PointCloud2:
+        tracks, velocity, covariance = report.tracks, estimate.velocity, estimate.covariance
+        rows = np.zeros(len(tracks.id), convert.TRACK_TYPE)
+        rows['id'], rows['number'], rows['status'] = tracks.id, tracks.number, tracks.status
+        rows['time_offset'] = estimate.time - scan.start
+        rows['x'], rows['y'] = estimate.position.T
+        rows['vx'], rows['vy'] = velocity.T
+        for name, row, column in (
+                ('xx', 0, 0), ('xy', 0, 1), ('yy', 1, 1), ('vxvx', 2, 2), ('vxvy', 2, 3),
+                ('vyvy', 3, 3), ('xvx', 0, 2), ('xvy', 0, 3), ('yvx', 1, 2), ('yvy', 1, 3)):
+            rows[name] = covariance[:, row, column]
+        rows['course'] = wrap_bearing(np.arctan2(velocity[:, 0], velocity[:, 1]))
+        rows['speed'] = np.hypot(velocity[:, 0], velocity[:, 1])
+        return convert.cloud_message(rows, int(self._stamps(scan.start)))
+
+    # -- how it fares --------------------------------------------------------------------------
+
+    def _tell(self, reason: str, detail: str) -> None:
+        """Log the first of its kind; /diagnostics counts the rest."""
+        self.get_logger().warning(f'{reason}{": " + detail if detail else ""} '
+                                  '(told once; counted on /diagnostics)')
+
+    @guarded
+    def _on_second(self) -> None:
+        for topic in tuple(self._mismatched):
+            kind, callback, subscription = self._inputs[topic]
+            self.destroy_subscription(subscription)
+            self._listen(kind, topic, callback, topics.best_effort())
+            self._mismatched.discard(topic)
+            self.get_logger().info(f'{topic} is published best effort: taken so')
+        wall, now = time.monotonic(), self.get_clock().now().nanoseconds
+        self._to_diagnostics.publish(diagnostics.array(
+            now, [self._input_status(wall, now), self._tracking_status(wall),
+                  self._own_ship_status(wall)]))
+
+    def _input_status(self, wall: float, now: int) -> DiagnosticStatus:
+        level, message = OK, 'plots come in'
+        fresh = self.bad_input.fresh(wall)
+        silent = wall - (self._heard or self._started)
+        if self._heard is None:
+            level, message = WARN, f'no plots yet on {topics.PLOTS}'
+        elif silent > SILENT_S + 3 * self.period:
+            level, message = WARN, f'no plots for {silent:.0f} s'
+        elif fresh:
+            level, message = WARN, 'lately: ' + ', '.join(fresh)
+        if now == 0:
+            level, message = WARN, message + '; use_sim_time is set and /clock is silent'
+        values = {'scans taken': self._taken, 'plots in last scan': self._plots_in_scan,
+                  'period_s': f'{self.period:.3f}', **self.bad_input.counts}
+        return self._status('input', level, message, values)
+
+    def _tracking_status(self, wall: float) -> DiagnosticStatus:
+        level, message = OK, f'{self._status_count[[CONFIRMED, COASTING]].sum()} targets'
+        slow = self._processing.percentile(99)
+        if slow > 0.5 * self.period:
+            level, message = WARN, f'a scan takes up to {slow:.2f} s of {self.period:.2f} s'
+        elif self._lateness.percentile(50) > self.period:
+            level, message = WARN, 'plots come more than a revolution late'
+        fresh = self.failures.fresh(wall)
+        if fresh:
+            level, message = diagnostics.ERROR, 'lately: ' + ', '.join(fresh)
+        parameters = self._tracker.parameters
+        values = {
+            'estimator': parameters.estimator,
+            'confirmed': self._status_count[CONFIRMED], 'coasting': self._status_count[COASTING],
+            'tentative': self._status_count[TENTATIVE],
+            'at max_tracks': len(self._memory.tracks.id) >= parameters.max_tracks,
+            'processing_p50_ms': f'{1e3 * self._processing.percentile(50):.1f}',
+            'processing_p99_ms': f'{1e3 * slow:.1f}',
+            'lateness_p50_ms': f'{1e3 * self._lateness.percentile(50):.1f}',
+            'lateness_p99_ms': f'{1e3 * self._lateness.percentile(99):.1f}',
+            FAILED: sum(self.failures.counts.values()), **self.failures.counts}
+        return self._status('tracking', level, message, values)
+
+    def _own_ship_status(self, wall: float) -> DiagnosticStatus:
+        level, message = OK, 'heard'
+        fresh = self.bad_own_ship.fresh(wall)
+        if fresh:
+            level, message = WARN, 'lately: ' + ', '.join(fresh)
+        if self._fallback and self._taken or not self._samples:
+            level, message = WARN, self._fallback
+        return self._status('own ship', level, message,
+                            {'samples': self._samples, **self.bad_own_ship.counts})
+
+    def _status(self, task, level, message, values):
+        return diagnostics.status(f'{self._label}: {task}', self._hardware_id, level, message,
+                                  values)

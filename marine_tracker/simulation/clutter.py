@@ -1,0 +1,37 @@
+"""False plots: uniform noise, and sea clutter that crowds around own ship."""
+
+import numpy as np
+
+from ..types import Array
+from .scenario import Clutter, Radar
+
+# Power over the noise of false plots: they only just pass the threshold, sea spikes by more.
+UNIFORM_EXCESS = 1.0
+SEA_EXCESS = 5.0
+
+
+def uniform_plots(clutter: Clutter, radar: Radar, random: np.random.Generator
+                  ) -> tuple[Array, Array, Array]:
+    """Range m, bearing rad and power above the threshold [M] of one revolution's noise plots.
+
+    They lie evenly over the area between blind and maximum range; M is Poisson.
+    """
+    count = random.poisson(clutter.uniform)
+    near, far = radar.blind_range ** 2, radar.max_range ** 2
+    distance = np.sqrt(near + (far - near) * random.random(count))
+    return (distance, random.uniform(0, 2 * np.pi, count),
+            random.exponential(UNIFORM_EXCESS, count))
+
+
+def sea_plots(clutter: Clutter, radar: Radar, random: np.random.Generator
+              ) -> tuple[Array, Array, Array]:
+    """The same of sea clutter: range is exponential from the blind range, cut at the maximum.
+
+    A radar resolves cells of equal angle, so an even false-alarm rate a cell is an even number a
+    metre of range; the waves' echo falls off with range on top of it.
+    """
+    count = random.poisson(clutter.sea)
+    within = -np.expm1(-(radar.max_range - radar.blind_range) / clutter.sea_scale)
+    distance = radar.blind_range - clutter.sea_scale * np.log1p(-within * random.random(count))
+    return (distance, random.uniform(0, 2 * np.pi, count),
+            random.exponential(SEA_EXCESS, count))

@@ -1,0 +1,208 @@
+"""The simulated radar: one scan, and the truth behind it, for each revolution of the antenna.
+
+The beam starts each revolution at true north and turns evenly, so a plot's time is that at which
+the beam, turning, met the moving target from the moving own ship.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ..geometry import to_range_bearing, wrap_angle, wrap_bearing
+from ..types import Array, PolarPlots, Scan, Truth, append, take
+from . import clutter, motion, sensor_errors
+from .scenario import Radar, Scenario
+
+THRESHOLD = 20.0                 # power over noise at which a plot is declared: 13 dB
+STRONGEST = 0.9999               # probability of detection that sets the amplitude of a sure plot
+OWN_SHIP_SAMPLES = 4             # a revolution, both ends included
+NEAR_SEAM = 0.25                 # of a revolution: how near to north a beam passage may be doubled
+
+
+class Passages(NamedTuple):
+    """The beam passing targets in one revolution, one row a passage.
+
+    target    [P]     its number, from 1; a target may be passed 0, 1 or 2 times
+    turn      [P]     0, or 1 where it is the target's second passage
+    time      [P]     s
+    offset    [P, 2]  m, from own ship at that time
+    velocity  [P, 2]  m/s, of the target over ground
+    """
+
+    target: NDArray[np.int64]
+    turn: NDArray[np.int64]
+    time: Array
+    offset: Array
+    velocity: Array
+
+
+def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
+    """The scans of a scenario and the truth behind each, a pair for every whole revolution.
+
+    Plots are in time order. Truth has a row for every target that exists, at the time when the
+    beam passed it (the first time, if twice; the nearest end of the revolution, if not at all).
+    Same scenario and seed give the same plots to the bit. Each kind of chance has its own
+    stream of random numbers: clutter or detection do not change the noise of targets.
+    """
+    detection, noise, uniform, sea, errors, reckoning = (
+        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(6))
+    radar = scenario.radar
+    imo = sensor_errors.draw(errors) if radar.sensor_errors == 'imo' else None
+    drift = np.zeros(2)
+    for number in range(scenario.scans):
+        start, end = number * radar.scan_period, (number + 1) * radar.scan_period
+        passages, truth = _passages(scenario, start, end)
+        # Draws for every ship (own ship's are idle) and both possible passages, seen or not: a stream's use must not
+        # depend on what another stream brought about.
+        shape = (2, scenario.paths.ships)
+        chance = detection.exponential(size=shape)
+        white = noise.standard_normal(shape + (2,))
+        deviation = white * [radar.range_sigma, radar.bearing_sigma]
+        if imo is not None:
+            passages, deviation = _imo(scenario, imo, passages, errors, shape)
+
+        distance, _ = to_range_bearing(passages.offset)
+        seen, power = _detect(
+            scenario, passages.target, distance, chance[passages.turn, passages.target])
+        plots, row = _resolve(radar, take(passages, seen), distance[seen], power[seen], start)
+        range_error, bearing_error = deviation[passages.turn[seen][row],
+                                               passages.target[seen][row]].T
+        plots = plots._replace(
+            range=plots.range + range_error + radar.range_bias,
+            bearing=wrap_bearing(plots.bearing + bearing_error + radar.bearing_bias))
+        plots = take(plots, plots.range > 0)
+        plots = append(plots, _false_plots(scenario, start, uniform, sea))
+        plots = take(plots, np.argsort(plots.time, kind='stable'))
+
+        own_ship = scenario.own_ship_at(np.linspace(start, end, OWN_SHIP_SAMPLES))
+        if imo is not None:
+            own_ship, drift = sensor_errors.reckon(imo, own_ship, drift, reckoning)
+        yield Scan(start, end, plots, own_ship), truth
+
+
+def _passages(scenario, start, end):
+    """The beam's passages in [start, end), by target and time, and the revolution's truth."""
+    period = end - start
+    target = np.arange(1, scenario.paths.ships)
+    offset, _, _ = _from_own_ship(scenario, target, np.full(len(target), 0.5 * (start + end)))
+    time = start + to_range_bearing(offset)[1] * (period / (2 * np.pi))
+    # A target drifting over north may be met at both ends of the revolution, or at neither.
+    late, early = time > end - NEAR_SEAM * period, time < start + NEAR_SEAM * period
+    target = np.concatenate([target, target[late], target[early]])
+    time = _meet(scenario, target, np.concatenate([time, time[late] - period, time[early] + period]),
+                 start, period)
+    order = np.lexsort((time, target))
+    target, time = target[order], time[order]
+    inside = (time >= start) & (time < end)
+
+    # Truth: the first passage inside, else the end of the revolution that is nearest.
+    rank = np.where(inside, time - start, period + np.abs(time - 0.5 * (start + end)))
+    best = np.lexsort((rank, target))
+    best = best[np.diff(target[best], prepend=0) > 0]
+    time = np.clip(time, start, end)
+    offset, position, velocity = _from_own_ship(scenario, target, time)
+    there = motion.exist(scenario.paths, target, time)
+    best = best[there[best]]
+    inside &= there
+    second = np.diff(target[inside], prepend=0) == 0
+    return (Passages(target[inside], second.astype(np.int64), time[inside], offset[inside],
+                     velocity[inside]),
+            Truth(time[best], target[best], position[best], velocity[best]))
+
+
+def _meet(scenario, target, time, start, period):
+    """When the beam meets the targets [N]: the passages nearest to the times [N], by Newton."""
+    turn = 2 * np.pi / period
+    for _ in range(3):
+        offset, _, velocity = _from_own_ship(scenario, target, time, relative=True)
+        distance, bearing = to_range_bearing(offset)
+        rate = ((offset[:, 1] * velocity[:, 0] - offset[:, 0] * velocity[:, 1])
+                / np.maximum(distance, 1e-3) ** 2)
+        # A bearing that outruns half the beam's turn occurs only within metres of own ship.
+        rate = np.clip(rate, -0.5 * turn, 0.5 * turn)
+        time = time + wrap_angle(bearing - turn * (time - start)) / (turn - rate)
+    return time
+
+
+def _from_own_ship(scenario, target, time, relative=False):
+    """Offset from own ship, position, and velocity (or that relative to own ship) [N, 2]."""
+    count = len(target)
+    position, velocity = motion.locate_ships(
+        scenario.paths, np.concatenate([target, np.zeros_like(target)]), np.tile(time, 2))
+    offset = position[:count] - position[count:]
+    return (offset, position[:count],
+            velocity[:count] - velocity[count:] if relative else velocity[:count])
+
+
+def _detect(scenario, target, distance, chance):
+    """[P] which passages give an echo over the threshold, and its power over noise.
+
+    A slowly fluctuating ship (Swerling 1) of mean power s is seen with probability
+    exp(-threshold / s), and s falls with the fourth power of range: so the probability is
+    pd_near (pd_far / pd_near)^((range / max_range)^4).
+    """
+    radar = scenario.radar
+    pd = radar.pd_near * (radar.pd_far / radar.pd_near) ** ((distance / radar.max_range) ** 4)
+    pd = np.where(np.isnan(scenario.pd[target - 1]), pd * scenario.pd_factor[target - 1],
+                  scenario.pd[target - 1])
+    with np.errstate(divide='ignore'):
+        mean = THRESHOLD / -np.log(np.minimum(pd, STRONGEST))
+    power = chance * mean
+    seen = ((power > THRESHOLD) | (pd >= 1)) & (distance >= radar.blind_range) & (
+        distance <= radar.max_range)
+    return seen, np.maximum(power, THRESHOLD)
+
+
+def _resolve(radar: Radar, passages, distance, power, start):
+    """Plots without noise, one a resolution cell, and for each the row of its strongest echo.
+
+    Echoes closer than a cell in range and in the beam's angle merge, chains of them too; the plot
+    lies at the centre weighted by amplitude. Echoes on either side of north belong to different
+    revolutions and stay apart.
+    """
+    turn = 2 * np.pi / radar.scan_period
+    time, row = passages.time, np.arange(len(distance))
+    if radar.range_resolution > 0 and radar.beam_width > 0 and len(row) > 1:
+        cells = np.column_stack([distance / radar.range_resolution,
+                                 (time - start) * turn / radar.beam_width])
+        pairs = cKDTree(cells).query_pairs(1.0, p=np.inf, output_type='ndarray')
+        if len(pairs):
+            graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(row), len(row)))
+            count, group = connected_components(graph, directed=False)
+            weight = np.sqrt(power)
+            total = np.bincount(group, weight, count)
+            distance = np.bincount(group, weight * distance, count) / total
+            time = start + np.bincount(group, weight * (time - start), count) / total
+            strongest = np.lexsort((-power, group))
+            row = strongest[np.append(True, np.diff(group[strongest]) > 0)]
+            power = np.bincount(group, power, count)
+    return PolarPlots(time, distance, turn * (time - start), 10 * np.log10(power)), row
+
+
+def _false_plots(scenario, start, uniform, sea):
+    radar = scenario.radar
+    distance, bearing, excess = (np.concatenate(columns) for columns in zip(
+        clutter.uniform_plots(scenario.clutter, radar, uniform),
+        clutter.sea_plots(scenario.clutter, radar, sea), strict=True))
+    return PolarPlots(start + bearing * radar.scan_period / (2 * np.pi), distance, bearing,
+                      10 * np.log10(THRESHOLD + excess))
+
+
+def _imo(scenario, imo, passages, random, shape):
+    """The passages moved by glint, and errors of range and bearing [2, 1 + T, 2] of any passage."""
+    row = (passages.turn, passages.target)
+    velocity = np.zeros(shape + (2,))
+    relative, time = np.zeros(shape), np.zeros(shape)
+    heading = scenario.own_ship_at(passages.time).velocity
+    relative[row] = (to_range_bearing(passages.offset)[1]
+                     - np.arctan2(heading[:, 0], heading[:, 1]))
+    time[row], velocity[row] = passages.time, passages.velocity
+    length = np.concatenate([[0.0], scenario.target_length])
+    glint = sensor_errors.glint(velocity, np.broadcast_to(length, shape), random)[row]
+    errors = sensor_errors.measurement_errors(imo, time, relative, random)
+    return passages._replace(offset=passages.offset + glint), np.stack(errors, -1)

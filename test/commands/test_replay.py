@@ -1,0 +1,142 @@
+import csv
+import sys
+
+import numpy as np
+import pytest
+
+from marine_tracker import cli
+from marine_tracker.commands.replay import open_source
+from marine_tracker.evaluation import metrics
+from marine_tracker.recording import csv_folder, track_file
+from marine_tracker.simulation import radar, scenario
+
+SCENARIO = 'clean'
+
+
+def replay(out, *arguments):
+    assert cli.main(['replay', *map(str, arguments), '--out', str(out)]) == 0
+    return out
+
+
+@pytest.fixture(scope='module')
+def tracks(tmp_path_factory):
+    return replay(tmp_path_factory.mktemp('replay') / 'tracks.csv', SCENARIO)
+
+
+def test_a_replay_has_the_documented_columns_and_names(tracks):
+    with open(tracks, newline='') as file:
+        reader = csv.DictReader(file)
+        rows = list(reader)
+    assert tuple(reader.fieldnames) == track_file.COLUMNS
+    assert {row['status'] for row in rows} <= {'tentative', 'confirmed', 'coasting', 'lost'}
+    assert {row['estimator'] for row in rows} == {'imm'}
+    assert {bool(row['pred_north_m']) for row in rows} == {True, False}
+    assert [row['pred_north_m'] for row in rows if row['track'] == rows[0]['track']][0] == ''
+
+
+def test_twice_the_same_is_byte_equal_and_another_seed_is_not(tracks, tmp_path):
+    assert replay(tmp_path / 'again.csv', SCENARIO).read_bytes() == tracks.read_bytes()
+    other = replay(tmp_path / 'other.csv', SCENARIO, '--seed', 2)
+    assert other.read_bytes() != tracks.read_bytes()
+
+
+def test_two_processes_give_byte_equal_files(command, recordings, tmp_path):
+    for name in ('a', 'b'):
+        done = command('replay', recordings / 'autosea_joyride', '--estimator', 'imm', '--out',
+                       tmp_path / name, PYTHONHASHSEED={'a': '1', 'b': '2'}[name])
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.startswith('238 scans, ') and done.stdout.count('\n') == 1
+        assert done.stderr == ''                            # no progress bar without a terminal
+    assert (tmp_path / 'a').read_bytes() == (tmp_path / 'b').read_bytes()
+
+
+def test_standard_output_gets_tracks_alone(command, tracks):
+    done = command('replay', SCENARIO, '--out', '-')
+    assert done.stdout.encode() == tracks.read_bytes()
+    assert 'tracks confirmed' in done.stderr
+
+
+def test_a_written_scenario_replays_and_scores_like_the_scenario_itself(tracks, tmp_path):
+    chosen = scenario.load(SCENARIO)
+    csv_folder.write(tmp_path / 'folder', SCENARIO, radar.simulate(chosen, 1),
+                     chosen.tracker_parameters())
+    again = track_file.read(replay(tmp_path / 'tracks.csv', tmp_path / 'folder'))
+    first = track_file.read(tracks)
+    assert again.track.tolist() == first.track.tolist()
+    assert again.status.tolist() == first.status.tolist()
+    np.testing.assert_allclose(again.position, first.position, atol=0.01)
+    figures = metrics.score(csv_folder.read(tmp_path / 'folder'), again).figures
+    assert figures['truth_targets'] == len(chosen.target_names)
+    assert figures['held'] > 0.95 and figures['never_confirmed'] == 0
+
+
+def test_rows_carry_the_numbers_of_the_sources_scans(recordings, tmp_path):
+    folder = recordings / 'autoferry_13'
+    rows = track_file.read(replay(tmp_path / 'tracks.csv', folder))
+    assert set(rows.scan.tolist()) <= set(csv_folder.read(folder).numbers.tolist())
+
+
+def parameters_of(monkeypatch, folder, *arguments):
+    """The tracker parameters that a replay of the folder runs with."""
+    seen = []
+    module = sys.modules['marine_tracker.commands.replay']
+    real = module.Tracker
+    monkeypatch.setattr(module, 'Tracker', lambda given: seen.append(given) or real(given))
+    assert cli.main(['replay', str(folder), '--out', str(folder / 'out.csv'), *arguments]) == 0
+    return seen[0]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / 'plots.csv').write_text('scan,time_s,range_m,bearing_deg\n')
+    (tmp_path / 'own_ship.csv').write_text('scan,time_s,north_m,east_m\n0,0,0,0\n1,2.5,0,0\n')
+    (tmp_path / 'radar.yaml').write_text('range_sigma_m: 3.0\nbearing_sigma_deg: 0.9\n'
+                                         'max_target_speed_mps: 6.0\n')
+    return tmp_path
+
+
+def test_parameters_overrule_each_other_in_the_documented_order(monkeypatch, folder):
+    file = folder / 'mine.yaml'
+    file.write_text('bearing_sigma_deg: 1.5\nmax_target_speed_mps: 7\nestimator: imm\n')
+    used = parameters_of(monkeypatch, folder, '--parameters', str(file),
+                         '--set', 'max_target_speed_mps=8', '--set', 'vessel_class=small_craft',
+                         '--estimator', 'cs_kalman')
+    assert (used.range_sigma_m, used.bearing_sigma_deg) == (3.0, 1.5)
+    assert (used.max_target_speed_mps, used.vessel_class) == (8.0, 'small_craft')
+    assert used.estimator == 'cs_kalman'
+
+
+def test_a_nodes_parameter_file_is_taken_too(monkeypatch, folder):
+    file = folder / 'node.yaml'
+    file.write_text('/**:\n  ros__parameters:\n    range_sigma_m: 9.0\n'
+                    'tracker:\n  ros__parameters:\n    bearing_sigma_deg: 2.0\n'
+                    'other:\n  ros__parameters:\n    bearing_sigma_deg: 3.0\n')
+    used = parameters_of(monkeypatch, folder, '--parameters', str(file))
+    assert (used.range_sigma_m, used.bearing_sigma_deg) == (9.0, 2.0)
+
+
+@pytest.mark.parametrize(('arguments', 'message'), [
+    (['--set', 'range_sigma=3'], 'unknown parameter range_sigma; did you mean range_sigma_m?'),
+    (['--set', 'range_sigma_m=-3'], 'parameter range_sigma_m is -3'),
+    (['--set', 'range_sigma_m=far'], "parameter range_sigma_m is 'far'"),
+    (['--set', 'range_sigma_m'], '--set range_sigma_m: it must be NAME=VALUE'),
+    (['--set', 'range_sigma_m=['], '--set range_sigma_m=[: its value is not YAML'),
+    (['--seed', '-1'], '--seed is -1; it must not be negative'),
+    (['--parameters', 'none.yaml'], 'none.yaml: no such file or directory'),
+])
+def test_wrong_parameters_are_named(folder, capsys, arguments, message):
+    assert cli.main(['replay', str(folder), '--out', str(folder / 'out.csv'), *arguments]) == 2
+    assert capsys.readouterr().err.startswith(f'marine_tracker: {message}')
+    assert not (folder / 'out.csv').exists()
+
+
+def test_a_parameter_file_of_other_nodes_is_refused(folder, capsys):
+    (folder / 'node.yaml').write_text('player:\n  ros__parameters:\n    rate: 2.0\n')
+    assert cli.main(['replay', str(folder), '--out', str(folder / 'out.csv'),
+                     '--parameters', str(folder / 'node.yaml')]) == 2
+    assert 'has no parameters of the tracker; it has those of player' in capsys.readouterr().err
+
+
+def test_a_recording_knows_how_many_scans_it_has(folder):
+    source = open_source(str(folder))
+    assert source.total == 2 and [number for number, _ in source.scans] == [0, 1]

@@ -1,0 +1,66 @@
+import json
+
+import pytest
+
+from marine_tracker.evaluation import metrics
+
+COLUMNS = 'time_s,track,status,north_m,east_m,vel_north_mps,vel_east_mps\n'
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """One target that goes north at 4 m/s, seen in each of 8 scans, 10 m east of its track."""
+    plots, own_ship, truth, tracks = ([] for _ in range(4))
+    for k in range(8):
+        plots += [f'{k},{2 * k},{500 + 8 * k},0', f'{k},{2 * k},100,180', f'{k},{2 * k},900,180']
+        own_ship.append(f'{k},{2 * k},0,0')
+        truth.append(f'{k},{2 * k},3,{500 + 8 * k},0,4,0')
+        tracks.append(f'{2 * k},1,confirmed,{500 + 8 * k},10,4,0')
+    for name, header, rows in (
+            ('plots', 'scan,time_s,range_m,bearing_deg\n', plots),
+            ('own_ship', 'scan,time_s,north_m,east_m\n', own_ship),
+            ('truth', 'scan,time_s,target,north_m,east_m,vel_north_mps,vel_east_mps\n', truth),
+            ('tracks', COLUMNS, tracks)):
+        (tmp_path / f'{name}.csv').write_text(header + '\n'.join(rows) + '\n')
+    return tmp_path
+
+
+def figures(text):
+    return {figure['name']: figure['value'] for figure in json.loads(text)['figures']}
+
+
+def test_json_on_standard_output_is_one_object_and_the_table_goes_beside(command, folder):
+    done = command('score', folder, folder / 'tracks.csv', '--json', '-')
+    assert done.returncode == 0
+    found = figures(done.stdout)
+    assert found['position_rmse_m'] == pytest.approx(10) and found['held'] == 1
+    assert list(found) == [*metrics.FIGURES,
+                           *(f'target_3_{name}' for name in metrics.TARGET_FIGURES)]
+    assert json.loads(done.stdout)['recording'] == folder.name
+    assert 'position_rmse_m' in done.stderr
+
+
+def test_options_reach_the_scorer(command, folder):
+    done = command('score', folder, folder / 'tracks.csv', '--json', folder / 'figures.json',
+                   '--cutoff', '5', '--lag-s', '2', '--bias-deg', '-3')
+    assert done.returncode == 0 and 'position_rmse_m' in done.stdout
+    found = figures((folder / 'figures.json').read_text())
+    assert found['cutoff_m'] == 5 and found['held'] == 0
+    assert found['position_rmse_m'] is None and found['never_confirmed'] == 1
+
+
+def test_help_says_what_each_figure_is(command):
+    done = command('score', '--help')
+    for name, (_, text) in metrics.FIGURES.items():
+        assert f'{name} ' in done.stdout and text in done.stdout
+
+
+def test_a_recording_without_truth_and_a_bad_track_file_are_one_line_errors(command, folder):
+    (folder / 'tracks.csv').write_text(COLUMNS + '0,1,confirmed,x,0,0,0\n')
+    done = command('score', folder, folder / 'tracks.csv')
+    assert done.returncode == 2 and 'tracks.csv, line 2: north_m is' in done.stderr
+    (folder / 'tracks.csv').write_text(COLUMNS)
+    (folder / 'truth.csv').unlink()
+    done = command('score', folder, folder / 'tracks.csv')
+    assert done.returncode == 2 and 'has no truth to score against' in done.stderr
+    assert done.stderr.count('\n') == 1

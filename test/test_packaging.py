@@ -1,0 +1,146 @@
+"""What pip and colcon read says the same thing everywhere, and installs all that is needed."""
+
+import ast
+import os
+import re
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from importlib.metadata import Distribution
+from pathlib import Path
+
+import pytest
+import yaml
+
+import marine_tracker
+
+ROOT = Path(marine_tracker.__file__).resolve().parents[1]
+MANIFEST = ET.parse(ROOT / 'package.xml').getroot()
+
+# Distribution on PyPI -> key of rosdep. Wheels of ROS packages stand for ROS packages.
+ROSDEP_KEY = {
+    'hypothesis': 'python3-hypothesis',
+    'numpy': 'python3-numpy',
+    'psutil': 'python3-psutil',
+    'pytest': 'python3-pytest',
+    'pytest-timeout': 'python3-pytest-timeout',
+    'PyWavelets': 'python3-pywavelets',
+    'PyYAML': 'python3-yaml',
+    'rich': 'python3-rich',
+    'ros-jazzy-domain-coordinator': 'domain_coordinator',
+    'scipy': 'python3-scipy',
+    'setuptools': 'python3-setuptools',
+}
+
+
+def manifest(tag):
+    return {element.text for element in MANIFEST.findall(tag)}
+
+
+@pytest.fixture(scope='module')
+def installed(tmp_path_factory):
+    """A prefix into which the package was installed with the commands that colcon uses."""
+    folder = tmp_path_factory.mktemp('packaging')
+    source = folder / 'source'
+    shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns(
+        '.*', '__pycache__', '*.egg-info', 'build', 'install', 'log', 'test', 'tracks.csv'))
+    run = subprocess.run(
+        [sys.executable, '-W', 'ignore', 'setup.py', '-q',
+         'egg_info', '--egg-base', folder, 'build', '--build-base', folder / 'build',
+         'install', '--prefix', folder / 'prefix', '--single-version-externally-managed',
+         '--record', folder / 'record.txt'],
+        cwd=source, capture_output=True, text=True, timeout=100)
+    assert run.returncode == 0, run.stderr
+    return folder / 'prefix'
+
+
+@pytest.fixture(scope='module')
+def distribution(installed):
+    """What setup.py tells pip."""
+    return Distribution.at(next(installed.rglob('*.egg-info')))
+
+
+@pytest.fixture(scope='module')
+def requirements(distribution):
+    """Required distributions by extra; '' for those always required."""
+    by_extra = {}
+    for line in distribution.requires:
+        name = re.match(r'[\w.-]+', line).group()
+        extra = re.search(r'extra == .(\w+).', line)
+        by_extra.setdefault(extra.group(1) if extra else '', set()).add(name)
+    return by_extra
+
+
+def test_version_is_the_same_everywhere(distribution):
+    version = MANIFEST.findtext('version')
+    latest = re.search(r'^(\d+\.\d+\.\d+) \(', (ROOT / 'CHANGELOG.rst').read_text(), re.M)
+    assert distribution.version == version == latest.group(1)
+
+
+def test_requirements_of_setup_py_and_package_xml_agree(requirements):
+    # A requirement that is not in ROSDEP_KEY needs its rosdep key there.
+    def keys(names):
+        return {ROSDEP_KEY[name] for name in names}
+    assert keys(requirements['']) == {
+        key for key in manifest('exec_depend') if key.startswith('python3-')}
+    assert keys(requirements['test']) == manifest('test_depend')
+
+
+def test_ros_is_never_required_by_pip_outside_the_extra(requirements):
+    assert not [name for name in requirements[''] if name.startswith('ros-')]
+    assert {'ros-jazzy-rclpy', 'ros-jazzy-common-interfaces'} <= requirements['ros']
+
+
+def test_every_ros_package_imported_is_in_package_xml():
+    imported = set()
+    for file in (ROOT / 'marine_tracker').rglob('*.py'):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.ImportFrom) and not node.level:
+                imported.add(node.module.split('.')[0])
+            elif isinstance(node, ast.Import):
+                imported |= {alias.name.split('.')[0] for alias in node.names}
+    ros = {name for name in imported
+           if name == 'rclpy' or name.endswith(('_msgs', '_srvs', '_interfaces'))}
+    assert ros == {key for key in manifest('exec_depend') if not key.startswith('python3-')}
+
+
+def test_every_rosdep_key_of_our_own_has_a_rule_for_debian_and_ubuntu():
+    rules = yaml.safe_load((ROOT / 'rosdep.yaml').read_text())
+    assert set(rules) == {'python3-pywavelets'} <= manifest('exec_depend')
+    assert all({'debian', 'ubuntu'} <= set(rule) for rule in rules.values())
+
+
+def test_all_configuration_is_installed(installed):
+    shipped = {file.relative_to(ROOT) for file in (ROOT / 'config').rglob('*') if file.is_file()}
+    share = installed / 'share' / 'marine_tracker'
+    assert shipped
+    assert {file.relative_to(share) for file in share.rglob('*') if file.is_file()} == (
+        shipped | {Path('package.xml')})
+
+
+def test_all_of_the_package_is_installed(installed):
+    site = next(installed.rglob('site-packages'))
+    source = {file.relative_to(ROOT) for file in (ROOT / 'marine_tracker').rglob('*')
+              if file.is_file() and '__pycache__' not in file.parts}
+    assert source <= {file.relative_to(site) for file in site.rglob('*')}
+    assert not (site / 'test').exists()
+
+
+def test_package_is_in_the_ament_index(installed):
+    index = installed / 'share' / 'ament_index' / 'resource_index' / 'packages'
+    assert (index / 'marine_tracker').is_file()
+    assert MANIFEST.findtext('export/build_type') == 'ament_python'
+
+
+def test_executables_stand_where_ros2_run_looks(installed, distribution):
+    folder = installed / 'lib' / 'marine_tracker'
+    names = {'marine_tracker', 'radar_simulator', 'recording_player', 'tracker'}
+    assert {entry.name for entry in distribution.entry_points} == names
+    assert {file.name for file in folder.iterdir() if os.access(file, os.X_OK)} == names
+
+
+def test_executables_have_something_to_run(distribution):
+    pytest.importorskip('rclpy')
+    for entry in distribution.entry_points:
+        assert callable(entry.load()), entry

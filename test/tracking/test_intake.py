@@ -1,0 +1,174 @@
+import numpy as np
+import pytest
+
+from marine_tracker.geometry import KNOT
+from marine_tracker.tracking import intake
+from marine_tracker.types import PolarPlots
+
+PERIOD = 60 / 22
+
+
+def plots(range_=(1000.0,), bearing=(1.0,), amplitude=None, time=None):
+    count = len(range_)
+    return PolarPlots(
+        np.zeros(count) if time is None else np.asarray(time, float),
+        np.asarray(range_, float), np.asarray(bearing, float),
+        np.zeros(count) if amplitude is None else np.asarray(amplitude, float))
+
+
+@pytest.mark.parametrize('bad, reason', [
+    (plots([np.nan], [1.0]), intake.NOT_FINITE),
+    (plots([np.inf], [1.0]), intake.NOT_FINITE),
+    (plots([-np.inf], [1.0]), intake.NOT_FINITE),
+    (plots([10.0], [np.nan]), intake.NOT_FINITE),
+    (plots([10.0], [1.0], [np.nan]), intake.NOT_FINITE),
+    (plots([10.0], [1.0], time=[np.inf]), intake.NOT_FINITE),
+    (plots([-5.0], [1.0]), intake.BAD_RANGE),
+    (plots([0.0], [1.0]), intake.BAD_RANGE),
+    (plots([1e30], [1.0]), intake.TOO_FAR),
+    (plots([10.0], [6.4]), intake.BAD_BEARING),
+    (plots([10.0], [-3.2]), intake.BAD_BEARING),
+    (plots([10.0], [1.0], time=[-1.0]), intake.BAD_OFFSET),
+    (plots([10.0], [1.0], time=[60.0]), intake.BAD_OFFSET),
+])
+def test_a_bad_plot_is_left_out_and_counted_by_its_reason_alone(bad, reason):
+    good = plots()
+    both = PolarPlots(*(np.concatenate(columns) for columns in zip(bad, good)))
+    kept, counts = intake.screen_plots(both, PERIOD, 100)
+    assert counts == {reason: 1}
+    assert kept.range.tolist() == [1000.0]
+
+
+def test_bearings_of_one_turn_back_and_forth_are_wrapped():
+    kept, counts = intake.screen_plots(
+        plots([1.0] * 4, [-np.pi, -0.5, 0.0, np.float32(2 * np.pi)]), PERIOD, 100)
+    assert counts == {}
+    assert kept.bearing == pytest.approx([np.pi, 2 * np.pi - 0.5, 0.0, 0.0], abs=1e-6)
+
+
+def test_an_empty_scan_is_fine():
+    kept, counts = intake.screen_plots(plots([], []), PERIOD, 100)
+    assert counts == {} and len(kept.range) == 0
+
+
+def test_the_strongest_plots_are_kept_in_their_order():
+    kept, counts = intake.screen_plots(
+        plots(np.arange(1.0, 100001), np.ones(100000), np.arange(100000) % 977), PERIOD, 500)
+    assert counts == {intake.TOO_MANY: 99500}
+    assert len(kept.range) == 500
+    assert kept.amplitude.min() >= 971
+    assert (np.diff(kept.range) > 0).all()
+
+
+def run_scans(starts):
+    order, results = intake.TimeOrder(), []
+    for start in starts:
+        order, taken, reason = intake.admit_scan(order, start, PERIOD)
+        results.append((taken, reason, start + order.shift))
+    return results
+
+
+def test_scans_in_order_are_taken_also_after_a_pause():
+    results = run_scans([0.0, 2.7, 5.4, 20.0, 22.7])
+    assert all(taken and not reason for taken, reason, _ in results)
+
+
+@pytest.mark.parametrize('wrong, reason', [
+    (5.4, intake.REPEATED), (2.7, intake.WENT_BACK), (-1e6, intake.WENT_BACK),
+    (1e6, intake.JUMPED_AHEAD)])
+def test_one_wrong_stamp_costs_one_scan(wrong, reason):
+    results = run_scans([0.0, 2.7, 5.4, wrong, 8.1, 10.8])
+    assert [taken for taken, _, _ in results] == [True, True, True, False, True, True]
+    assert results[3][1] == reason
+
+
+@pytest.mark.parametrize('jump', [3600.0, -3600.0, -1.7e9])
+def test_a_clock_that_was_set_is_followed_and_the_trackers_time_goes_on(jump):
+    before = [k * PERIOD for k in range(5)]
+    after = [jump + k * PERIOD for k in range(5, 10)]
+    results = run_scans(before + after)
+    assert [taken for taken, _, _ in results] == [True] * 5 + [False, False] + [True] * 3
+    assert results[7][1] == intake.REBASED
+    times = [time for taken, _, time in results if taken]
+    # 4, then 7, 8, 9: the two rejected ones count as revolutions.
+    assert np.diff(times) == pytest.approx([PERIOD] * 4 + [3 * PERIOD] + [PERIOD] * 2, abs=1e-5)
+
+
+def test_stamps_that_stand_still_are_never_taken():
+    results = run_scans([0.0] * 20)
+    assert [taken for taken, _, _ in results] == [True] + [False] * 19
+    assert {reason for _, reason, _ in results[1:]} == {intake.REPEATED}
+
+
+def test_stamps_at_random_do_not_move_the_order():
+    rng = np.random.default_rng(1)
+    wild = rng.uniform(-1e9, 1e9, 200)
+    results = run_scans([0.0, *wild, 2.7])
+    assert results[-1] == (True, '', 2.7)
+
+
+def run_own_ship(samples):
+    log, reasons = intake.empty_log(), []
+    for time, east, north, *velocity in samples:
+        log, reason = intake.admit_own_ship(
+            log, time, np.array([east, north]), np.array(velocity or [0.0, 5.0]))
+        reasons.append(reason)
+    return log, reasons
+
+
+@pytest.mark.parametrize('bad, reason', [
+    ((3.0, np.nan, 0.0), intake.OWN_NOT_FINITE),
+    ((3.0, 1e12, 0.0), intake.OWN_NOT_FINITE),
+    ((np.inf, 0.0, 0.0), intake.OWN_NOT_FINITE),
+    ((3.0, 0.0, 15.0, np.inf, 0.0), intake.OWN_NOT_FINITE),
+    ((2.0, 0.0, 10.0), intake.OWN_REPEATED),
+    ((1.5, 0.0, 10.0), intake.OWN_WENT_BACK),
+    ((3.0, 5000.0, 15.0), intake.OWN_TELEPORTED),
+    ((3.0, 0.0, 15.0, 101 * KNOT, 0.0), intake.OWN_TELEPORTED),
+])
+def test_a_bad_own_ship_sample_is_left_out(bad, reason):
+    log, reasons = run_own_ship([(1.0, 0.0, 5.0), (2.0, 0.0, 10.0), bad, (4.0, 0.0, 20.0)])
+    assert reasons == ['', '', reason, '']
+    assert log.taken.time.tolist() == [1.0, 2.0, 4.0]
+
+
+def test_own_ship_elsewhere_for_good_is_believed_after_five_samples():
+    there = [(3.0 + k, 90e3, 5.0 * k) for k in range(6)]
+    log, reasons = run_own_ship([(1.0, 0.0, 5.0), (2.0, 0.0, 10.0), *there])
+    assert reasons == ['', ''] + [intake.OWN_TELEPORTED] * 4 + [intake.OWN_REBASED, '']
+    assert log.taken.position[-1].tolist() == [90e3, 25.0]
+    assert log.taken.time[0] == 3.0
+
+
+def test_own_ship_that_teleports_to_and_fro_is_never_believed():
+    samples = [(1.0 + k, 80e3 * (k % 3), 0.0) for k in range(1, 30)]
+    log, reasons = run_own_ship([(1.0, 0.0, 0.0), *samples])
+    assert intake.OWN_REBASED not in reasons
+    assert (log.taken.position[:, 0] == 0).all()
+
+
+def test_the_log_does_not_grow_for_ever():
+    log, _ = run_own_ship([(0.1 * k, 0.0, 0.5 * k) for k in range(intake.MAX_OWN_SAMPLES + 100)])
+    assert len(log.taken.time) == intake.MAX_OWN_SAMPLES
+
+
+def test_own_ship_during_a_scan_is_what_lies_around_it():
+    log, _ = run_own_ship([(0.1 * k, 0.0, 0.5 * k) for k in range(100)])
+    own_ship, fallback = intake.own_ship_for(log, 2.05, 4.0, 10.0)
+    assert fallback == ''
+    assert own_ship.time[0] <= 2.05 and own_ship.time[-1] >= 4.0
+    assert len(own_ship.time) < 25
+
+
+def test_a_silent_own_ship_is_taken_at_rest_where_it_was():
+    log, _ = run_own_ship([(1.0, 0.0, 5.0), (2.0, 0.0, 10.0)])
+    assert intake.own_ship_for(log, 11.0, 13.0, 10.0)[1] == ''
+    own_ship, fallback = intake.own_ship_for(log, 12.1, 14.0, 10.0)
+    assert fallback == intake.OWN_SILENT
+    assert own_ship.position.tolist() == [[0.0, 10.0]] and not own_ship.velocity.any()
+
+
+def test_own_ship_never_heard_is_taken_at_rest_at_the_origin():
+    own_ship, fallback = intake.own_ship_for(intake.empty_log(), 5.0, 7.0, 10.0)
+    assert fallback == intake.OWN_NEVER_HEARD
+    assert not own_ship.position.any() and not own_ship.velocity.any()
