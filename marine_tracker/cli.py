@@ -33,6 +33,9 @@ def main(arguments: list[str] | None = None) -> int:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())   # reader left: be quiet
         return 141
+    except ModuleNotFoundError as error:
+        print(f'marine_tracker: {_missing(error)}; see marine_tracker doctor', file=sys.stderr)
+        return 2
     except (ValueError, OSError) as error:
         print(f'marine_tracker: {_one_line(error)}', file=sys.stderr)
         return 2
@@ -56,7 +59,10 @@ def _parser(argv: list[str]) -> _Parser:
     for name in COMMANDS if asked not in COMMANDS else (asked,):
         try:
             command = importlib.import_module(f'.commands.{name}', __package__)
-        except ModuleNotFoundError:
+        except ModuleNotFoundError as error:
+            if name == asked:
+                raise
+            commands.add_parser(name, help=f'(cannot run: {_missing(error)})')
             continue
         sub = commands.add_parser(name, help=command.HELP, description=command.__doc__,
                                   formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -70,6 +76,10 @@ def _version() -> str:
         return metadata.version('marine_tracker')
     except metadata.PackageNotFoundError:
         return '(not installed)'
+
+
+def _missing(error: ModuleNotFoundError) -> str:
+    return f'the Python module {error.name} is not installed'
 
 
 def _one_line(error: Exception) -> str:

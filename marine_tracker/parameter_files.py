@@ -8,6 +8,8 @@ import json
 import textwrap
 from pathlib import Path
 
+import yaml
+
 from .parameters import NODES
 
 COMMAND = 'python -m marine_tracker.parameter_files'
@@ -30,7 +32,8 @@ def limits(field) -> str:
 def yaml_value(value) -> str:
     """A parameter's value as YAML that every reader takes for the same type."""
     if isinstance(value, str):
-        return value if value.isidentifier() else json.dumps(value)
+        plain = value.isidentifier() and yaml.safe_load(value) == value     # not yes, no, null
+        return value if plain else json.dumps(value)
     return json.dumps(value)
 
 

@@ -105,17 +105,26 @@ class TrackerParameters:
     gate_probability: float = parameter(
         0.999, 'Probability that the gate holds the plot of a track.', low=0.5, high=0.999999,
         live=True)
+    detection_probability: float = parameter(
+        0.8, 'Probability that a target gives a plot, as the track score assumes it.', low=0.1,
+        high=0.99, live=True)
     confirm_hits: int = parameter(
-        4, 'M of M-of-N confirmation: plots needed ...', low=2, high=20, live=True)
+        3, 'M of M-of-N confirmation: plots needed ...', low=2, high=20, live=True)
     confirm_scans: int = parameter(
-        6, 'N of M-of-N confirmation: ... within this many scans.', low=2, high=20, live=True)
-    delete_misses: int = parameter(
-        5, 'A young confirmed track (under 10 scans) is lost after this many misses in a row.',
-        low=1, high=60, live=True)
+        5, 'N of M-of-N confirmation: ... within this many scans.', low=2, high=20, live=True)
+    confirm_score: float = parameter(
+        5.0, 'Track score (log-odds against clutter) that confirmation needs as well.',
+        low=-10.0, high=50.0, live=True)
+    max_score: float = parameter(
+        14.0, 'Cap of the track score: how long a good track outlives its plots. A miss costs '
+        '-ln(1 - detection_probability); a confirmed track is lost below 0.',
+        low=1.0, high=100.0, live=True)
     hold_hits: int = parameter(
-        2, 'An older track is lost when it has fewer plots than this in its last 10 scans.',
+        1, 'A confirmed track is lost when its last 10 scans held fewer plots than this.',
         low=1, high=10, live=True)
-    max_drift: float = parameter(6.0, 'drift', low=0.0, high=1e6, live=True)
+    max_drift: float = parameter(
+        4.0, 'A coasting track is lost when its position has grown this many times less certain '
+        'than a plot.', low=1.0, high=1000.0, live=True)
     max_tracks: int = parameter(
         2000, 'Most tracks held, tentative ones included; no new ones are initiated beyond it.',
         low=1, high=100000, live=True)

@@ -116,6 +116,7 @@ class Tracks(NamedTuple):
     number      [N]  the ARPA's target number, given at confirmation; 0 while tentative
     status      [N]  one of tracking.lifecycle.TENTATIVE, CONFIRMED, COASTING, LOST
     history     [N]  bits: bit k tells whether the track had a plot k scans ago
+    score       [N]  log-odds that the plots come from a target and not from clutter
     age         [N]  scans since its first plot in which the track could be seen
     first_time  [N]  s, first plot
     last_time   [N]  s, last plot
@@ -127,6 +128,7 @@ class Tracks(NamedTuple):
     number: NDArray[np.int64]
     status: NDArray[np.int8]
     history: NDArray[np.int64]
+    score: Array
     age: NDArray[np.int64]
     first_time: Array
     last_time: Array

@@ -8,6 +8,7 @@ that it requires is missing.
 import importlib
 import json
 import os
+import subprocess
 import sys
 from collections.abc import Iterator
 from importlib import metadata
@@ -19,6 +20,7 @@ from .. import config
 HELP = 'say what is installed, what is missing and what to do'
 
 PYTHON = (3, 11)
+START_S = 20.0      # for a middleware to start and stop, on a slow machine
 # Names to import, and the packages they come in.
 REQUIRED = {'numpy': 'numpy', 'scipy': 'scipy', 'pywt': 'PyWavelets', 'yaml': 'PyYAML',
             'rich': 'rich'}
@@ -98,13 +100,14 @@ def examine(listen: float, namespace: str = '/') -> Iterator[Check]:
         yield _module(module, package, f'pip install {package} ({use})', required=False)
     yield _configuration()
     yield from _environment()
-    rclpy = _module('rclpy', 'ros-jazzy-rclpy', INSTALL_ROS, required=False)
-    yield rclpy
+    here = find_spec('rclpy') is not None       # not imported: a broken one may end the process
+    yield Check('rclpy', here, _version('ros-jazzy-rclpy') if here else 'not installed',
+                '' if here else INSTALL_ROS)
     missing = [name for name in MESSAGES if find_spec(name) is None]
     yield Check('ROS message packages', not missing,
                 f'missing {", ".join(missing)}' if missing else f'all {len(MESSAGES)}',
                 INSTALL_ROS if missing else '')
-    if rclpy.ok and not missing and listen > 0:
+    if here and not missing and listen > 0:
         yield from _graph(listen, namespace)
 
 
@@ -123,11 +126,14 @@ def _module(module: str, package: str, advice: str, *, required: bool) -> Check:
         importlib.import_module(module)
     except Exception as error:      # a broken installation raises whatever it likes
         return Check(package, False, f'cannot be imported: {_words(error)}', advice, required)
+    return Check(package, True, _version(package), '', required)
+
+
+def _version(package: str) -> str:
     try:
-        found = metadata.version(package)
+        return metadata.version(package)
     except metadata.PackageNotFoundError:       # not put there by pip
-        found = 'installed'
-    return Check(package, True, found, '', required)
+        return 'installed'
 
 
 def _configuration() -> Check:
@@ -159,24 +165,34 @@ def _environment() -> Iterator[Check]:
 
 def _graph(listen: float, namespace: str) -> Iterator[Check]:
     """The middleware, and whether plots, own ship and tracks are published."""
-    # The core must not need ROS: only here is it known to be installed.
-    from ..nodes import graph
     try:
-        seen = graph.look(listen, namespace)
-    except Exception as error:      # each middleware has its own exceptions
-        yield Check('ROS middleware', False, f'does not start: {_words(error)}',
+        listener = subprocess.run(
+            [sys.executable, '-m', f'{__package__.rpartition(".")[0]}.nodes.graph', str(listen),
+             namespace], capture_output=True, text=True, timeout=listen + START_S)
+        seen = json.loads(listener.stdout)
+    except subprocess.TimeoutExpired:
+        seen, why = None, f'no answer in {listen + START_S:g} s'
+    except json.JSONDecodeError:
+        seen, why = None, _last_line(listener.stderr) or f'exit code {listener.returncode}'
+    if seen is None:
+        yield Check('ROS middleware', False, f'does not start: {why}',
                     f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
                     f"({os.environ.get('RMW_IMPLEMENTATION') or 'not set'}) and ROS_DOMAIN_ID")
         return
-    yield Check('ROS middleware', True, seen.middleware)
-    yield Check('nodes running', bool(seen.nodes), ', '.join(seen.nodes) or 'none',
-                '' if seen.nodes else 'try: marine_tracker demo')
-    for topic, ends in seen.topics.items():
+    yield Check('ROS middleware', True, seen['middleware'])
+    yield Check('nodes running', bool(seen['nodes']), ', '.join(seen['nodes']) or 'none',
+                '' if seen['nodes'] else 'try: marine_tracker demo')
+    for topic, (publishers, subscribers) in seen['topics'].items():
         what, start = next(about for name, about in STARTERS.items() if topic.endswith(name))
-        if ends.publishers:
-            yield Check(topic, True, f'{ends.publishers} publish, {ends.subscribers} listen')
+        if publishers:
+            yield Check(topic, True, f'{publishers} publish, {subscribers} listen')
         else:
             yield Check(topic, False, f'no {what} on {topic}', start)
+
+
+def _last_line(text: str) -> str:
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    return lines[-1] if lines else ''
 
 
 def _words(error: Exception) -> str:

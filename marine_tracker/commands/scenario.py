@@ -43,7 +43,7 @@ def _list(args):
     rows = []
     for name in scenario.shipped():
         loaded = scenario.load(name)
-        rows.append((name, f'{len(loaded.target_names)}', f'{loaded.duration / 60:g} min',
+        rows.append((name, f'{len(loaded.fleet.names)}', f'{loaded.duration / 60:g} min',
                      loaded.description))
     _print_table(('scenario', 'targets', 'duration', ''), rows, '<><<')
     return 0
@@ -58,7 +58,7 @@ def _check(args):
             print(error, file=sys.stderr)
             wrong = 1
         else:
-            print(f'{file}: ok, {len(loaded.target_names)} targets, {loaded.scans} scans')
+            print(f'{file}: ok, {len(loaded.fleet.names)} targets, {loaded.scans} scans')
     return wrong
 
 
@@ -109,10 +109,10 @@ def _conditions(loaded):
 def _target_rows(loaded):
     """Each target where it first appears, and its closest approach in the scenario."""
     times = np.arange(0.0, loaded.duration + 0.5, 1.0)
-    count = len(loaded.target_names)
+    count = len(loaded.fleet.names)
     first = np.full(count, np.nan)
     closest, when = np.full(count, np.inf), np.full(count, np.nan)
-    rows = [('',)] * count
+    rows: list[tuple[str, ...]] = [()] * count
     for time in times:
         truth, own = loaded.truth_at(time), loaded.own_ship_at(time)
         target = truth.target - 1
@@ -121,13 +121,13 @@ def _target_rows(loaded):
             first[target[row]] = time
             velocity = take(truth, row).velocity
             rows[target[row]] = (
-                f'{truth.target[row]}', loaded.target_names[target[row]],
+                f'{truth.target[row]}', loaded.fleet.names[target[row]],
                 f'{distance[row] / NAUTICAL_MILE:.2f}', f'{np.degrees(bearing[row]):05.1f}',
                 _course(velocity), f'{np.hypot(*velocity) / KNOT:.1f}')
         nearer = distance < closest[target]
         closest[target[nearer]], when[target[nearer]] = distance[nearer], time
     return [(*row, f'{near / NAUTICAL_MILE:.2f}', f'{time / 60:.1f}')
-            for row, near, time in zip(rows, closest, when) if len(row) > 1]
+            for row, near, time in zip(rows, closest, when) if row]
 
 
 def _course(velocity):

@@ -8,7 +8,9 @@ STEPS = 241
 
 
 def draw(loaded, file):
-    """Draw the ways of own ship and targets into an image file; a dot marks each start.
+    """Draw the ways of own ship and targets into an image file, as far as the radar reaches.
+
+    A dot marks each start; the circles are the radar's range at the start and at the end.
 
     Raises ValueError without matplotlib (extra `plot`).
     """
@@ -18,7 +20,7 @@ def draw(loaded, file):
         raise ValueError('drawing needs matplotlib: pip install "marine_tracker[plot]"') from error
     times = np.linspace(0.0, loaded.duration, STEPS)
     own = loaded.own_ship_at(times).position / NAUTICAL_MILE
-    ways = np.full((len(loaded.target_names), STEPS, 2), np.nan)
+    ways = np.full((len(loaded.fleet.names), STEPS, 2), np.nan)
     for step, time in enumerate(times):
         truth = loaded.truth_at(time)
         ways[truth.target - 1, step] = truth.position / NAUTICAL_MILE
@@ -38,9 +40,11 @@ def draw(loaded, file):
         line, = axes.plot(*way.T, linewidth=1.2)
         axes.plot(*way[known[0]], 'o', color=line.get_color(), markersize=4)
         axes.annotate(f'{number}', way[known[0]], xytext=(4, 4), textcoords='offset points',
-                      fontsize=7, color=line.get_color())
+                      annotation_clip=True, fontsize=7, color=line.get_color())
     axes.plot(*own.T, color='black', linewidth=2)
     axes.plot(*own[0], 'o', color='black', markersize=7, fillstyle='none')
-    axes.margins(0.03)
+    low, high = (edge(own[[0, -1]], axis=0) for edge in (np.min, np.max))
+    axes.set(xlim=(low[0] - 1.03 * reach, high[0] + 1.03 * reach),
+             ylim=(low[1] - 1.03 * reach, high[1] + 1.03 * reach))
     axes.grid(color='0.92')
     figure.savefig(file, dpi=110)

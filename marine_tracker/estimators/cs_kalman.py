@@ -69,7 +69,6 @@ def _series_coefficients():
 
 
 _SERIES = _series_coefficients()
-_SYMMETRIC = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])    # q11, q12, q13, q22, q23, q33 laid out
 
 
 def model(frequency: float, step):
@@ -123,32 +122,45 @@ def acceleration_variance(acceleration, max_acceleration: float):
     return RAYLEIGH * np.maximum(room * room, VARIANCE_FLOOR * max_acceleration ** 2)
 
 
-def predict(mean, covariance, step, manoeuvre: Manoeuvre, rows=None):
+def _per_axis(block):
+    """The layout of a state's matrix from that of one axis."""
+    block = np.asarray(block)
+    zero = np.zeros_like(block)
+    return np.block([[block, zero], [zero, block]])
+
+
+# Which coefficient stands where, as rows of `predict`'s table: 0, 1, T, phi_0..2, U_1..3.
+_F = _per_axis([[1, 2, 5], [0, 1, 4], [0, 0, 3]])
+_U = _per_axis([[6], [7], [8]])
+# Rows of its noise table: 0, then q11, q12, q13, q22, q23, q33 of east, and of north.
+_Q = _per_axis([[1, 2, 3], [2, 4, 5], [3, 5, 6]])
+_Q[3:, 3:] += 6
+
+
+def predict(mean, covariance, step, manoeuvre: Manoeuvre, rows=slice(None)):
     """States [N, 6] and covariances [N, 6, 6] moved by the steps [N] s.
 
     rows: the entries of the state wanted (then [N, n] and [N, n, n]); all by default.
     """
-    count = len(step)
     phi, q = model(manoeuvre.frequency, step)
-    transition = np.zeros((count, 6, 6))
-    noise = np.zeros((count, 6, 6))
-    x = mean.reshape(count, 2, 3)
+    acceleration = mean[:, [2, 5]]
     limit = manoeuvre.max_acceleration
-    variance = 2 * manoeuvre.frequency * acceleration_variance(x[..., 2], limit)
-    for axis in (0, 1):
-        f = transition[:, 3 * axis:3 * axis + 3, 3 * axis:3 * axis + 3]
-        f[:, 0, 0] = f[:, 1, 1] = 1.0
-        f[:, 0, 1] = step
-        f[:, 2, 2], f[:, 1, 2], f[:, 0, 2] = phi
-        noise[:, 3 * axis:3 * axis + 3, 3 * axis:3 * axis + 3] = (
-            q * variance[:, axis]).T[:, _SYMMETRIC]
-    u = np.stack([0.5 * step * step - phi[2], step - phi[1], 1 - phi[0]], 1)
-    drive = np.clip(x[..., 2], -limit, limit)[..., None] * u[:, None]       # U abar
-    drive = drive.reshape(count, 6)
-    if rows is not None:
-        transition, drive = transition.take(rows, 1), drive.take(rows, 1)
-        noise = noise.take(rows, 1).take(rows, 2)
-    mean = np.matmul(transition, mean[..., None])[..., 0] + drive
+    variance = 2 * manoeuvre.frequency * acceleration_variance(acceleration, limit)
+
+    table = np.empty((9, len(step)))
+    table[0], table[1], table[2], table[3:6] = 0.0, 1.0, step, phi
+    table[6], table[7] = 0.5 * step * step - phi[2], step - phi[1]
+    table[8] = 1 - phi[0]
+    table = table.T
+    transition = table.take(_F[rows], 1)
+    drive = table.take(_U[rows], 1)
+
+    table = np.zeros((13, len(step)))
+    table[1:7], table[7:] = q * variance[:, 0], q * variance[:, 1]
+    noise = table.T.take(_Q[rows][:, rows], 1)
+
+    mean = (np.matmul(transition, mean[..., None])
+            + np.matmul(drive, np.clip(acceleration, -limit, limit)[..., None]))[..., 0]
     return mean, sandwich(transition, covariance) + noise
 
 

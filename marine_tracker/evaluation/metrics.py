@@ -103,18 +103,16 @@ def score(recording: Recording, tracks: TrackRows, cutoff: float | None = None,
     bias_deg  what the bearings of plots and tracks are too great by, deg; default the notes'
               azimuth_bias_deg, else 0
     lag       s by which plots are later than their times; default the notes' plot_lag_s, else 0
-    ValueError for a recording without truth, or a cutoff that is not above 0.
+    ValueError for a recording without truth, for a distance that is not above 0, and for what is
+    no finite number.
     """
-    notes = recording.notes
-    cutoff = notes.get('cutoff_m', CUTOFF) if cutoff is None else cutoff
-    if not 0 < cutoff < np.inf:
-        raise ValueError(f'cutoff is {cutoff} m; it must be above 0 and finite')
-    truth = as_plotted(recording,
-                    notes.get('azimuth_bias_deg', 0.0) if bias_deg is None else bias_deg,
-                    notes.get('plot_lag_s', 0.0) if lag is None else lag)
+    cutoff = _chosen(recording, 'cutoff_m', cutoff, CUTOFF, above=0.0)
+    within = _chosen(recording, 'seen_within_m', None, SEEN_WITHIN, above=0.0)
+    truth = as_plotted(recording, _chosen(recording, 'azimuth_bias_deg', bias_deg, 0.0),
+                       _chosen(recording, 'plot_lag_s', lag, 0.0))
     if not len(truth.time):
         raise ValueError(f'recording {recording.name} has no truth to score against')
-    seen, plotted = seen_by_radar(recording, truth, notes.get('seen_within_m', SEEN_WITHIN))
+    seen, plotted = seen_by_radar(recording, truth, within)
     live = _live(recording, tracks)
     scans = len(recording.scans)
     parts = np.zeros((scans, 3))                    # m^2: localisation, missed, false
@@ -143,14 +141,25 @@ def score(recording: Recording, tracks: TrackRows, cutoff: float | None = None,
                for target in dict.fromkeys(truth.target[seen].tolist())
                for rows in [np.flatnonzero(seen & (truth.target == target))]}
     figures = {
-        'cutoff_m': float(cutoff), 'scans': scans, 'truth_targets': len(targets),
+        'cutoff_m': cutoff, 'scans': scans, 'truth_targets': len(targets),
         'truth_rows': len(truth.time), 'scored_rows': int(seen.sum()),
         'plot_fraction_on_scored': _mean(plotted[seen]),
         **_gospa(parts), **_errors(truth, live, np.concatenate(pairs)),
         **_holding(truth, live, np.concatenate(pairs), holder[seen], targets, cutoff),
         **_false(live, false, holder, scans)}
     return Score({name: figures[name] for name in FIGURES}, targets,
-                 bool(notes.get('uncooperative', True)))
+                 bool(recording.notes.get('uncooperative', True)))
+
+
+def _chosen(recording: Recording, name: str, given: float | None, default: float,
+            above: float = -np.inf) -> float:
+    """What was given, else what the recording's notes say, else the default."""
+    value = recording.notes.get(name, default) if given is None else given
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not (
+            above < value < np.inf):
+        limit = 'finite' if above == -np.inf else f'above {above:g} and finite'
+        raise ValueError(f'{name} is {value!r}; it must be a number, {limit}')
+    return float(value)
 
 
 def _live(recording: Recording, tracks: TrackRows) -> _Live:

@@ -1,5 +1,11 @@
-"""What is on the ROS graph: who publishes and who listens, found without sending anything."""
+"""What is on the ROS graph: who publishes and who listens, found without sending anything.
 
+`python -m marine_tracker.nodes.graph SECONDS NAMESPACE` prints it as JSON: a process of its own,
+for a middleware that cannot start may end the process or hang instead of raising.
+"""
+
+import json
+import sys
 import time
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -15,6 +21,7 @@ from . import topics
 
 NODE = 'marine_tracker_doctor'
 NEEDED = (topics.PLOTS, topics.ODOMETRY, topics.TRACKS)
+NOT_YET_NAMED = '_NODE_NAME_UNKNOWN_'       # of an end whose node is still being discovered
 
 
 class Ends(NamedTuple):
@@ -51,21 +58,29 @@ def look(seconds: float, namespace: str = '/', names: Iterable[str] = NEEDED) ->
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
         try:
+            full = [node.resolve_topic_name(name) for name in names]
             deadline = time.monotonic() + seconds
-            while True:
-                ends = {full: Ends(node.count_publishers(full), node.count_subscribers(full))
-                        for full in map(node.resolve_topic_name, names)}
-                left = deadline - time.monotonic()
-                if left <= 0 or all(end.publishers for end in ends.values()):
-                    break
+            while (left := deadline - time.monotonic()) > 0 and not _all_published(node, full):
                 executor.spin_once(timeout_sec=min(0.1, left))
-            others = tuple(sorted(
-                f'{where.rstrip("/")}/{name}'
-                for name, where in node.get_node_names_and_namespaces()
-                if name != NODE and not name.startswith('_')))
+            return Graph(
+                get_rmw_implementation_identifier(),
+                tuple(sorted(f'{where.rstrip("/")}/{name}'
+                             for name, where in node.get_node_names_and_namespaces()
+                             if name != NODE and not name.startswith('_'))),
+                {name: Ends(node.count_publishers(name), node.count_subscribers(name))
+                 for name in full})
         finally:
             executor.shutdown()
             node.destroy_node()
     finally:
         context.try_shutdown()
-    return Graph(get_rmw_implementation_identifier(), others, ends)
+
+
+def _all_published(node: Node, names: list[str]) -> bool:
+    publishers = [node.get_publishers_info_by_topic(name) for name in names]
+    return all(publishers) and all(end.node_name != NOT_YET_NAMED
+                                   for ends in publishers for end in ends)
+
+
+if __name__ == '__main__':
+    print(json.dumps(look(float(sys.argv[1]), sys.argv[2])._asdict()))

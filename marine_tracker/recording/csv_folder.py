@@ -132,7 +132,7 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
     if len(time) > 1:
         velocity = np.gradient(position, time, axis=0)
     recorded = _velocity(table)
-    velocity = np.where(np.isnan(recorded).any(1)[:, None], velocity, recorded)
+    velocity = np.where(np.isnan(recorded).any(axis=1, keepdims=True), velocity, recorded)
     end = np.full(len(time), np.nan)
     if 'end_s' in table.columns:
         end = table.numbers('end_s', missing=True)

@@ -1,8 +1,8 @@
 """Ships driven by AIS reports: a CSV of positions made into smooth ways.
 
 Columns: time_s, vessel, lat_deg, lon_deg; sog_kn, heading_deg, length_m, beam_m and type may be
-there too. Times are whole seconds, so a position is some metres off along the way: the
-way is a cubic smoothing spline, not one through every report.
+there too. Times are whole seconds and sometimes late, so a position is metres off along the way:
+the way is a cubic smoothing spline, not one through every report.
 """
 
 import csv
@@ -20,7 +20,7 @@ from .motion import Piece
 COLUMNS = ('time_s', 'vessel', 'lat_deg', 'lon_deg')
 SMOOTHED_PERIOD = 40.0        # s: slower motion is followed, faster motion is taken for jitter
 MAX_SPEED = 100 * KNOT        # m/s, between two reports
-TIME_STEP = 1.0               # s, of the reports' clock
+CLOCK_ERROR = 10.0            # s, of a report's time, as seen in recorded traffic
 
 
 class Reports(NamedTuple):
@@ -102,7 +102,7 @@ def _reports(found, duration, max_gap, place):
         return None
     step = np.hypot(*np.diff(local_from_geodetic(
         latitude, longitude, latitude[0], longitude[0]), axis=0).T)
-    jump = step > MAX_SPEED * (np.diff(time) + TIME_STEP)
+    jump = step > MAX_SPEED * (np.diff(time) + CLOCK_ERROR)
     if jump.any():
         k = int(np.argmax(jump))
         raise ValueError(f'{place} moves {step[k]:.0f} m in {time[k + 1] - time[k]:g} s; that is '

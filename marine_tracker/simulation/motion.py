@@ -7,7 +7,7 @@ of all ships stand in one table, so hundreds of ships are placed by a few array 
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,9 @@ from scipy.optimize import brentq
 
 from ..geometry import unit_vector
 from ..types import Array
+
+MAX_TURN_RATE = np.radians(45.0)          # rad/s
+MAX_ACCELERATION = 10.0                   # m/s^2
 
 
 class Straight(NamedTuple):
@@ -100,11 +103,11 @@ class Paths(NamedTuple):
 def table(ways: Sequence[Sequence[Piece]], duration: float) -> Paths:
     """The table of the ways of S ships, S > 0; the first piece of each starts at 0 s or before."""
     pieces = [piece for way in ways for piece in way]
-    columns = Piece(*(np.array(column) for column in zip(*pieces, strict=True)))
+    columns: list[Any] = [np.array(column) for column in zip(*pieces, strict=True)]
     ship = np.repeat(np.arange(len(ways)), [len(way) for way in ways])
     span = float(duration) + 1.0
-    key = ship * span + np.clip(columns.start, 0.0, span)
-    return Paths(*columns, key=key, span=span, ships=len(ways))         # type: ignore[arg-type]
+    key = ship * span + np.clip(columns[0], 0.0, span)
+    return Paths._make([*columns, key, span, len(ways)])
 
 
 def locate_ships(paths: Paths, ship: NDArray[np.int64], time) -> tuple[Array, Array]:
@@ -171,11 +174,18 @@ def sail(position, course: float, speed: float, legs: Sequence[Leg] = (),
             duration = (abs(after - speed) / leg.acceleration if leg.acceleration
                         else leg.duration or 0.0)
             acceleration = (after - speed) / duration if duration else 0.0
+            if abs(acceleration) > MAX_ACCELERATION:
+                raise ValueError(f'{here}.speed changes by {abs(acceleration):.3g} m/s each '
+                                 f'second; it must not exceed {MAX_ACCELERATION:g}')
         else:
             if speed <= amplitude:
                 raise ValueError(f'{here}.turn begins at a mean speed of {speed:g} m/s; a ship '
                                  'that stops cannot turn')
             radius = leg.radius if leg.radius else speed / leg.rate         # type: ignore[operator]
+            if speed / radius > MAX_TURN_RATE:
+                raise ValueError(f'{here}.turn has a radius of {radius:g} m; at {speed:.3g} m/s '
+                                 f'that is {np.degrees(speed / radius):.3g} deg/s, more than '
+                                 f'{np.degrees(MAX_TURN_RATE):g}')
             curvature = np.sign(leg.angle) / radius
             duration = _time_to_run(radius * abs(leg.angle), speed, amplitude, wave_rate,
                                     wave_rate * time)

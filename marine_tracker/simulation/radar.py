@@ -57,9 +57,9 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
     for number in range(scenario.scans):
         start, end = number * radar.scan_period, (number + 1) * radar.scan_period
         passages, truth = _passages(scenario, start, end)
-        # Draws for every ship (own ship's are idle) and both possible passages, seen or not: a stream's use must not
-        # depend on what another stream brought about.
-        shape = (2, scenario.paths.ships)
+        # Draws for every ship (own ship's are idle) and both possible passages, seen or not: a
+        # stream's use must not depend on what another stream brought about.
+        shape = (2, scenario.fleet.paths.ships)
         chance = detection.exponential(size=shape)
         white = noise.standard_normal(shape + (2,))
         deviation = white * [radar.range_sigma, radar.bearing_sigma]
@@ -88,14 +88,14 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
 def _passages(scenario, start, end):
     """The beam's passages in [start, end), by target and time, and the revolution's truth."""
     period = end - start
-    target = np.arange(1, scenario.paths.ships)
+    target = np.arange(1, scenario.fleet.paths.ships)
     offset, _, _ = _from_own_ship(scenario, target, np.full(len(target), 0.5 * (start + end)))
     time = start + to_range_bearing(offset)[1] * (period / (2 * np.pi))
     # A target drifting over north may be met at both ends of the revolution, or at neither.
     late, early = time > end - NEAR_SEAM * period, time < start + NEAR_SEAM * period
     target = np.concatenate([target, target[late], target[early]])
-    time = _meet(scenario, target, np.concatenate([time, time[late] - period, time[early] + period]),
-                 start, period)
+    time = np.concatenate([time, time[late] - period, time[early] + period])
+    time = _meet(scenario, target, time, start, period)
     order = np.lexsort((time, target))
     target, time = target[order], time[order]
     inside = (time >= start) & (time < end)
@@ -106,7 +106,7 @@ def _passages(scenario, start, end):
     best = best[np.diff(target[best], prepend=0) > 0]
     time = np.clip(time, start, end)
     offset, position, velocity = _from_own_ship(scenario, target, time)
-    there = motion.exist(scenario.paths, target, time)
+    there = motion.exist(scenario.fleet.paths, target, time)
     best = best[there[best]]
     inside &= there
     second = np.diff(target[inside], prepend=0) == 0
@@ -133,7 +133,7 @@ def _from_own_ship(scenario, target, time, relative=False):
     """Offset from own ship, position, and velocity (or that relative to own ship) [N, 2]."""
     count = len(target)
     position, velocity = motion.locate_ships(
-        scenario.paths, np.concatenate([target, np.zeros_like(target)]), np.tile(time, 2))
+        scenario.fleet.paths, np.concatenate([target, np.zeros_like(target)]), np.tile(time, 2))
     offset = position[:count] - position[count:]
     return (offset, position[:count],
             velocity[:count] - velocity[count:] if relative else velocity[:count])
@@ -146,10 +146,10 @@ def _detect(scenario, target, distance, chance):
     exp(-threshold / s), and s falls with the fourth power of range: so the probability is
     pd_near (pd_far / pd_near)^((range / max_range)^4).
     """
-    radar = scenario.radar
+    radar, fleet = scenario.radar, scenario.fleet
     pd = radar.pd_near * (radar.pd_far / radar.pd_near) ** ((distance / radar.max_range) ** 4)
-    pd = np.where(np.isnan(scenario.pd[target - 1]), pd * scenario.pd_factor[target - 1],
-                  scenario.pd[target - 1])
+    pd = np.where(np.isnan(fleet.pd[target - 1]), pd * fleet.pd_factor[target - 1],
+                  fleet.pd[target - 1])
     with np.errstate(divide='ignore'):
         mean = THRESHOLD / -np.log(np.minimum(pd, STRONGEST))
     power = chance * mean
@@ -202,7 +202,7 @@ def _imo(scenario, imo, passages, random, shape):
     relative[row] = (to_range_bearing(passages.offset)[1]
                      - np.arctan2(heading[:, 0], heading[:, 1]))
     time[row], velocity[row] = passages.time, passages.velocity
-    length = np.concatenate([[0.0], scenario.target_length])
+    length = np.concatenate([[0.0], scenario.fleet.length])
     glint = sensor_errors.glint(velocity, np.broadcast_to(length, shape), random)[row]
     errors = sensor_errors.measurement_errors(imo, time, relative, random)
     return passages._replace(offset=passages.offset + glint), np.stack(errors, -1)

@@ -1,8 +1,31 @@
 """What happens at sea and what the radar is: scenario files, checked and made computable.
 
-A scenario is a YAML file whose keys carry their unit; lengths may be given as `_m` or `_nm`, speeds
-as `_mps` or `_kn`. `load` returns it with everything in SI units, ready to ask for positions at
-any time. Ships are stated by a start and legs, or driven by AIS reports (see ais.py).
+A scenario is a YAML file whose keys carry their unit; a length may be given as `_m` or `_nm`, a
+speed as `_mps` or `_kn`. Only `duration_s` and one target are needed:
+
+    description: A ferry crosses our bow
+    duration_s: 900
+    radar: {max_range_nm: 6, range_sigma_m: 15, bearing_sigma_deg: 0.4, pd_near: 0.98, pd_far: 0.8}
+    clutter: {uniform: 20, sea: 40, sea_scale_nm: 1}      # mean numbers a scan
+    tracker: {max_target_speed_kn: 45}                    # what the tracker is told
+    own_ship: {course_deg: 0, speed_kn: 12}
+    targets:
+      - name: ferry
+        start: {range_nm: 4, bearing_deg: 45}     # or north_m and east_m, or lat_deg and lon_deg
+        course_deg: 270
+        speed_kn: 16
+        pd_factor: 0.9                            # of the radar's probability of detection; or pd
+        speed_wave: {amplitude_kn: 1, period_s: 300}
+        legs:
+          - straight: {duration_s: 240}
+          - turn: {angle_deg: -40, radius_m: 500}     # to port; or rate_deg_per_s
+          - speed: {to_kn: 8, duration_s: 60}         # or acceleration_mps2
+
+Ships can be driven by AIS reports instead, or besides (the file is looked for beside the
+scenario's; its form stands in ais.py); own ship is then one of the vessels, or lies at a place:
+
+    ais: {file: traffic.csv, start_s: 600, vessels: [3, 17]}      # all vessels, if none are named
+    own_ship: {vessel: 1}                                         # or {start: {lat_deg:, lon_deg:}}
 """
 
 import difflib
@@ -15,29 +38,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import config
-from ..geometry import KNOT, NAUTICAL_MILE, local_from_geodetic, unit_vector
+from ..geometry import NAUTICAL_MILE
 from ..parameters import VESSEL_CLASSES, read_yaml_mapping
 from ..types import OwnShip, Truth
-from . import ais, motion, sensor_errors
+from . import motion, sensor_errors, ships
 from .fields import Section
 
-MAX_SPEED = 100 * KNOT                    # m/s: the fastest relative speed an ARPA has to know
-MAX_ACCELERATION = 10.0                   # m/s^2
-MAX_TURN_RATE = 45.0                      # deg/s
-MAX_LENGTH = 200 * NAUTICAL_MILE          # m
-MAX_DURATION = 7 * 86400.0                # s
+MAX_RANGE = 200_000.0                     # m
 
 TOP_KEYS = 'description duration_s origin radar clutter tracker ais own_ship targets'
-AIS_KEYS = 'file vessels start_s max_gap_s pd pd_factor'
 RADAR_KEYS = ('rotation_rpm max_range_m|max_range_nm blind_range_m|blind_range_nm '
               'range_sigma_m|range_sigma_nm bearing_sigma_deg range_bias_m|range_bias_nm '
               'bearing_bias_deg range_resolution_m|range_resolution_nm beam_width_deg '
               'pd_near pd_far sensor_errors')
-SHIP_KEYS = 'start course_deg speed_kn|speed_mps speed_wave legs'
-TARGET_KEYS = 'name ' + SHIP_KEYS + ' length_m|length_nm pd pd_factor'
-START_KEYS = {'range': 'range_m|range_nm bearing_deg',
-              'north': 'north_m|north_nm east_m|east_nm',
-              'lat_deg': 'lat_deg lon_deg'}
+CLUTTER_KEYS = 'uniform sea sea_scale_m|sea_scale_nm'
+TRACKER_KEYS = 'max_target_speed_kn|max_target_speed_mps vessel_class'
 
 
 class Radar(NamedTuple):
@@ -93,28 +108,19 @@ class Clutter(NamedTuple):
 class Scenario:
     """A scenario, ready to be asked where everything is at any time.
 
-    name, description, duration s
-    origin         (latitude, longitude) in degrees of the frame's [0, 0], or None
+    name, description
+    duration  s
     radar, clutter
-    paths          motion.Paths of own ship, ship 0, and the T targets by their numbers, from 1
-    target_names   T texts
-    pd_factor      [T]  1 where `pd` is stated
-    pd             [T]  probability of detection at every range, nan where the radar's curve holds
-    target_length  [T]  m
-    stated         tracker parameters that the scenario states
+    fleet     own ship and the T targets
+    stated    tracker parameters that the scenario states
     """
 
     name: str
     description: str
     duration: float
-    origin: tuple[float, float] | None
     radar: Radar
     clutter: Clutter
-    paths: motion.Paths
-    target_names: tuple[str, ...]
-    pd_factor: NDArray[np.float64]
-    pd: NDArray[np.float64]
-    target_length: NDArray[np.float64]
+    fleet: ships.Fleet
     stated: dict[str, Any]
 
     @property
@@ -126,15 +132,15 @@ class Scenario:
         """Own ship's true motion at the times [K]."""
         times = np.atleast_1d(np.asarray(times, dtype=float))
         position, velocity = motion.locate_ships(
-            self.paths, np.zeros(len(times), np.int64), times)
+            self.fleet.paths, np.zeros(len(times), np.int64), times)
         return OwnShip(times, position, velocity)
 
     def truth_at(self, time: float) -> Truth:
         """Every target that exists at the time."""
-        target = np.arange(1, self.paths.ships)
-        target = target[motion.exist(self.paths, target, float(time))]
+        target = np.arange(1, self.fleet.paths.ships)
+        target = target[motion.exist(self.fleet.paths, target, float(time))]
         times = np.full(len(target), float(time))
-        return Truth(times, target, *motion.locate_ships(self.paths, target, times))
+        return Truth(times, target, *motion.locate_ships(self.fleet.paths, target, times))
 
     def tracker_parameters(self) -> dict[str, Any]:
         """What a tracker is told of this radar and its waters: fields of TrackerParameters.
@@ -180,53 +186,21 @@ def load(name_or_path) -> Scenario:
         path = config.path('scenarios', f'{path.name}.yaml')
     try:
         values = read_yaml_mapping(path)
-        return _scenario(path.stem, values, path.parent)
+        top = Section(values, '', TOP_KEYS)
+        duration = top.number('duration_s', 1.0, ships.MAX_DURATION)
+        radar = _radar(top.section('radar', RADAR_KEYS))
+        if duration < radar.scan_period:
+            raise ValueError(f'duration_s is {duration:g}; it must not be less than a revolution, '
+                             f'{radar.scan_period:.3g} s')
+        return Scenario(path.stem, top.text('description', ''), duration, radar,
+                        _clutter(top.section('clutter', CLUTTER_KEYS), radar),
+                        ships.read(top, path.parent, duration),
+                        _stated(top.section('tracker', TRACKER_KEYS)))
     except OSError as error:
         raise ValueError(f'scenario {path} cannot be read: {error.strerror}') from error
     except ValueError as error:
         text = str(error)
         raise ValueError(text if text.startswith(str(path)) else f'{path}: {text}') from error
-
-
-def _scenario(name, values, folder):
-    top = Section(values, '', TOP_KEYS)
-    duration = top.number('duration_s', 1.0, MAX_DURATION)
-    radar = _radar(top.section('radar', RADAR_KEYS))
-    traffic, options = None, top.section('ais', AIS_KEYS)
-    if 'ais' in top:
-        traffic = ais.read(folder / options.text('file'),
-                           options.number('start_s', 0.0, 1e9, 0.0), duration,
-                           options.number('max_gap_s', 1.0, 3600.0, 120.0))
-    own = top.section('own_ship', SHIP_KEYS + ' vessel')
-    own_vessel = str(own.values['vessel']) if 'vessel' in own else None
-    origin = _origin(top, own, traffic, own_vessel)
-    own_way = (_way(own, origin, None) if own_vessel is None
-               else _driven_own_ship(own, origin, traffic, own_vessel, duration))
-    own_start, _ = motion.locate_ships(motion.table([own_way], duration), np.array(0), 0.0)
-
-    ways, names, chances, lengths = [own_way], [], [], []
-    for number, item in enumerate(top.items('targets')):
-        place = f'targets[{number}]'
-        section = Section(item, place, TARGET_KEYS)
-        ways.append(_way(section, origin, own_start))
-        names.append(section.text('name', f'target {number + 1}'))
-        chances.append(_chance(section))
-        lengths.append(section.length('length', 1.0, 500.0, 100.0))
-    if traffic is not None:
-        for vessel in _chosen_vessels(options, traffic, own_vessel):
-            ways.append(ais.way(traffic[vessel], origin))
-            names.append(f'AIS {vessel}')
-            chances.append(_chance(options))
-            length = traffic[vessel].length
-            lengths.append(length if math.isfinite(length) else 100.0)
-    if not names:
-        raise ValueError('the scenario has no targets; give targets: or ais:')
-    pd, pd_factor = np.array(chances).T
-    return Scenario(
-        name, top.text('description', ''), duration, origin, radar,
-        _clutter(top.section('clutter', 'uniform sea sea_scale_m|sea_scale_nm'), radar),
-        motion.table(ways, duration), tuple(names), pd_factor, pd, np.array(lengths),
-        _stated(top))
 
 
 def _radar(section):
@@ -236,9 +210,10 @@ def _radar(section):
             if any(k.startswith(key) for k in section.values):
                 raise ValueError(f'radar has {key} beside sensor_errors: imo, which states all '
                                  'noise; leave one out')
+    pd_near = section.number('pd_near', 0.01, 1.0, 0.98)
     radar = Radar(
         section.number('rotation_rpm', 1.0, 300.0, 22.0),
-        section.length('max_range', 100.0, MAX_LENGTH, 12 * NAUTICAL_MILE),
+        section.length('max_range', 100.0, MAX_RANGE, 12 * NAUTICAL_MILE),
         section.length('blind_range', 0.0, 10000.0, 50.0),
         section.length('range_sigma', 0.0, 1000.0, 15.0),
         math.radians(section.number('bearing_sigma_deg', 0.0, 10.0, 0.5)),
@@ -246,8 +221,8 @@ def _radar(section):
         math.radians(section.number('bearing_bias_deg', -10.0, 10.0, 0.0)),
         section.length('range_resolution', 0.0, 1000.0, 30.0),
         math.radians(section.number('beam_width_deg', 0.0, 30.0, 1.0)),
-        section.number('pd_near', 0.01, 1.0, 0.98),
-        section.number('pd_far', 0.01, 1.0, 0.8),
+        pd_near,
+        section.number('pd_far', 0.01, 1.0, min(0.8, pd_near)),
         errors)
     if radar.blind_range >= radar.max_range:
         raise ValueError(f'radar.blind_range is {radar.blind_range:g} m; it must be below '
@@ -265,123 +240,10 @@ def _clutter(section, radar):
                        NAUTICAL_MILE, radar.max_range)))
 
 
-def _stated(top):
-    section = top.section('tracker', 'max_target_speed_kn|max_target_speed_mps vessel_class')
+def _stated(section):
     stated = {}
     if section.has('max_target_speed'):
         stated['max_target_speed_mps'] = section.speed('max_target_speed', 0.5, 100.0)
     if 'vessel_class' in section:
         stated['vessel_class'] = section.choice('vessel_class', VESSEL_CLASSES, '')
     return stated
-
-
-def _origin(top, own, traffic, own_vessel):
-    """Where the frame's [0, 0] is: as stated, else where own ship or the first vessel starts."""
-    if 'origin' in top:
-        return _geodetic(top.section('origin', 'lat_deg lon_deg'))
-    start = own.values.get('start')
-    if isinstance(start, dict) and 'lat_deg' in start:
-        return _geodetic(own.section('start', START_KEYS['lat_deg']))
-    if traffic:
-        reports = traffic.get(own_vessel) or next(iter(traffic.values()))
-        return float(reports.latitude[0]), float(reports.longitude[0])
-    return None
-
-
-def _geodetic(section):
-    return section.number('lat_deg', -85.0, 85.0), section.number('lon_deg', -180.0, 180.0)
-
-
-def _driven_own_ship(own, origin, traffic, vessel, duration):
-    if traffic is None:
-        raise ValueError('own_ship.vessel names an AIS vessel, but the scenario has no ais.file')
-    if len(own.values) > 1:
-        raise ValueError('own_ship.vessel drives own ship; it must be the only key of own_ship')
-    if vessel not in traffic:
-        raise ValueError(f'own_ship.vessel is {vessel}; the AIS file has no such vessel in the '
-                         'time of the scenario')
-    way = ais.way(traffic[vessel], origin)
-    ends = [piece.start for piece in way[1:]] + [duration]
-    for piece, end in zip(way, ends, strict=True):
-        if not piece.exists and piece.start < duration and end > 0:
-            raise ValueError(f'own_ship.vessel {vessel} has no reports from {piece.start:g} s to '
-                             f'{end:g} s; own ship must be known throughout')
-    return way
-
-
-def _chosen_vessels(options, traffic, own_vessel):
-    asked = [str(vessel) for vessel in options.items('vessels')]
-    for vessel in asked:
-        if vessel not in traffic:
-            raise ValueError(f'ais.vessels names {vessel}; the AIS file has no such vessel in the '
-                             'time of the scenario')
-    return [vessel for vessel in asked or traffic if vessel != own_vessel]
-
-
-def _chance(section):
-    """Stated probability of detection (nan: the radar's curve) and the curve's factor."""
-    if 'pd' in section and 'pd_factor' in section:
-        raise ValueError(f'{section.where} has both pd and pd_factor; give one')
-    pd = section.number('pd', 0.0, 1.0) if 'pd' in section else math.nan
-    return pd, section.number('pd_factor', 0.0, 1.0, 1.0)
-
-
-def _way(section, origin, own_start):
-    """The way of a target, or of own ship itself, which has no `own_start` and may lie at rest."""
-    if own_start is not None and 'start' not in section:
-        raise ValueError(f'{section.where} has no start')
-    position = (_start(section, origin, own_start) if 'start' in section else np.zeros(2))
-    speed = section.speed('speed', 0.0, MAX_SPEED, None if own_start is not None else 0.0)
-    course = section.number('course_deg', -360.0, 360.0, 0.0 if speed == 0.0 else None)
-    wave = None
-    if 'speed_wave' in section:
-        swing = section.section('speed_wave', 'amplitude_kn|amplitude_mps period_s')
-        wave = motion.Wave(swing.speed('amplitude', 0.0, MAX_SPEED),
-                           swing.number('period_s', 1.0, MAX_DURATION))
-    legs = [_leg(item, f'{section.where}.legs[{number}]')
-            for number, item in enumerate(section.items('legs'))]
-    try:
-        return motion.sail(position, math.radians(course), speed, legs, wave)
-    except ValueError as error:
-        raise ValueError(f'{section.where}.{error}') from error
-
-
-def _start(ship, origin, own_start):
-    kind = ship.section('start', ' '.join(START_KEYS.values())).one_of(*START_KEYS)
-    section = ship.section('start', START_KEYS[kind])
-    if kind == 'range':
-        if own_start is None:
-            raise ValueError(f'{section.where} gives range and bearing, which count from own ship; '
-                             'give north and east, or lat_deg and lon_deg')
-        distance = section.length('range', 0.0, MAX_LENGTH)
-        return own_start + distance * unit_vector(
-            math.radians(section.number('bearing_deg', -360.0, 360.0)))
-    if kind == 'north':
-        return np.array([section.length('east', -MAX_LENGTH, MAX_LENGTH),
-                         section.length('north', -MAX_LENGTH, MAX_LENGTH)])
-    if origin is None:
-        raise ValueError(f'{section.where} gives lat_deg and lon_deg, but the scenario has no '
-                         'origin')
-    return local_from_geodetic(*_geodetic(section), *origin)
-
-
-def _leg(item, where):
-    leg = Section(item, where, 'straight turn speed')
-    kind = leg.one_of('straight', 'turn', 'speed')
-    if kind == 'straight':
-        values = leg.section('straight', 'duration_s')
-        return motion.Straight(values.number('duration_s', 0.0, MAX_DURATION)
-                               if 'duration_s' in values else None)
-    if kind == 'turn':
-        values = leg.section('turn', 'angle_deg radius_m|radius_nm rate_deg_per_s')
-        angle = math.radians(values.number('angle_deg', -3600.0, 3600.0))
-        if values.one_of('radius', 'rate_deg_per_s') == 'radius':
-            return motion.Turn(angle, radius=values.length('radius', 1.0, MAX_LENGTH))
-        return motion.Turn(angle, rate=math.radians(
-            values.number('rate_deg_per_s', 1e-3, MAX_TURN_RATE)))
-    values = leg.section('speed', 'to_kn|to_mps duration_s acceleration_mps2')
-    speed = values.speed('to', 0.0, MAX_SPEED)
-    if values.one_of('duration_s', 'acceleration_mps2') == 'duration_s':
-        return motion.SpeedChange(speed, duration=values.number('duration_s', 0.1, MAX_DURATION))
-    return motion.SpeedChange(speed, acceleration=values.number(
-        'acceleration_mps2', 1e-6, MAX_ACCELERATION))

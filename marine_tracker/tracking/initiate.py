@@ -16,6 +16,18 @@ def reach(before: Plots, now: float, max_speed: float):
     return covariance
 
 
+def first_score(before: Plots, now: Plots, density, max_speed: float,
+                detection_probability: float):
+    """Score [P] of tracks begun by two plots each, where the density [P] of false plots is known.
+
+    A target's second plot may lie anywhere that max_speed, m/s, and the noise allow.
+    """
+    away = max_speed * (now.time - before.time)
+    noise = np.sqrt(np.linalg.det(before.covariance + now.covariance))
+    area = np.pi * away ** 2 + 2 * np.pi * noise
+    return np.log(detection_probability / (density * area))
+
+
 def pair_up(before: Plots, now: Plots, first, second, max_speed: float):
     """Of the pairs (first [P] in before, second [P] in now), those that may be new targets.
 

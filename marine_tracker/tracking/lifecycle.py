@@ -9,7 +9,7 @@ TENTATIVE, CONFIRMED, COASTING, LOST = range(4)
 STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost')
 NOT_LOST, MISSED, OUT_OF_RANGE, MERGED = range(4)
 REASONS = ('', 'missed', 'out of range', 'merged')
-MATURE = 10         # scans; the standards' "5 of 10" needs that many
+TEN = 10            # scans in which the standards count a target's plots
 IN_THE_DARK = 30    # scans without a plot after which even a track in the blind zone is lost
 
 
@@ -38,37 +38,51 @@ def misses_in_a_row(tracks: Tracks):
     return _SINCE[tracks.history]
 
 
-def record(tracks: Tracks, hit, visible) -> Tracks:
+def record(tracks: Tracks, hit, visible, gained, parameters: TrackerParameters) -> Tracks:
     """Enter one scan: hit [N] had a plot; visible [N] lay where the radar can see.
 
-    A scan in which the track could not be seen and was not is left out of its history.
+    gained [N]: what the plot of a hit adds to the score (see `evidence`). A scan in which the
+    track could not be seen and was not is left out of its account.
     """
     counted = hit | visible
     history = ((tracks.history << 1) | hit) & ((1 << HISTORY) - 1)
+    missed = np.log(1 - parameters.detection_probability)
+    score = tracks.score + np.where(hit, gained, np.where(visible, missed, 0.0))
     return tracks._replace(history=np.where(counted, history, tracks.history),
+                           score=np.minimum(score, parameters.max_score),
                            age=tracks.age + counted)
+
+
+def evidence(nis, log_det, density, detection_probability: float):
+    """Log-likelihood ratio [K] of plots: from the track against from clutter.
+
+    nis [K], log_det [K] of the innovations; density [K] of false plots, 1 / m^2. Sittler 1964;
+    Blackman and Popoli 1999, 6.2.
+    """
+    return (np.log(detection_probability / (2 * np.pi * density)) - 0.5 * (nis + log_det))
 
 
 def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now: float):
     """Status [N] and reason [N] of a loss, by the named rules.
 
-    hit [N] had a plot in this scan; beyond [N] lies outside the radar's range; now s.
+    hit [N] had a plot in this scan; beyond [N] lies outside the radar's range; drift [N] is the
+    deviation of the extrapolated position over that of a plot; now s.
 
-    M of N: a tentative track is confirmed by `confirm_hits` plots in `confirm_scans` scans and
-    lost once it cannot get there. A young confirmed track is lost after `delete_misses` misses
-    in a row; a mature one, older than 10 scans, when its last 10 scans held fewer plots than
-    `hold_hits`.
+    M of N: a tentative track is confirmed by `confirm_hits` plots in `confirm_scans` scans, if
+    its score too reaches `confirm_score`, and lost once its plots cannot get there. A confirmed
+    track is lost when its score falls below 0, when its last 10 scans held fewer plots than
+    `hold_hits`, or when it coasts and `drift` exceeds `max_drift`: where the search would be
+    so wide, the next plot found is not the target's.
     """
     needed, window = parameters.confirm_hits, parameters.confirm_scans
     tentative = tracks.status == TENTATIVE
     recent = hits(tracks, window)
-    confirmed = ~tentative | (recent >= needed)
-    run = misses_in_a_row(tracks)
-    young = tracks.age < MATURE
+    confirmed = ~tentative | ((recent >= needed) & (tracks.score >= parameters.confirm_score))
     # Of the window's scans still to come none may be missing more than it can.
-    hopeless = tentative & ~confirmed & (tracks.age + needed - recent > window)
-    gone = (~tentative & ~hit & (drift > parameters.max_drift)) | ~tentative & np.where(young, run >= parameters.delete_misses,
-                                 hits(tracks, MATURE) < parameters.hold_hits)
+    remaining = np.maximum(window - tracks.age, 0)
+    hopeless = tentative & ~confirmed & (recent + remaining < needed)
+    gone = ~tentative & ((tracks.score < 0) | (~hit & (drift > parameters.max_drift))
+                         | (hits(tracks, TEN) < parameters.hold_hits) & (tracks.age >= TEN))
     left = beyond & ~hit
     dark = now - tracks.last_time > IN_THE_DARK * parameters.scan_period_s
     lost = hopeless | gone | left | dark

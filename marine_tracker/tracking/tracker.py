@@ -9,10 +9,21 @@ from ..estimators import ESTIMATORS
 from ..geometry import locate, own_ship_at, to_range_bearing, wrap_bearing
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
+from . import clutter_map
 from .associate import associate
+from .clutter_map import ClutterMap
 from .gate import gate, gate_size
-from .initiate import pair_up, reach
-from .lifecycle import CONFIRMED, LOST, MERGED, NOT_LOST, TENTATIVE, judge, record
+from .initiate import first_score, pair_up, reach
+from .lifecycle import (
+    CONFIRMED,
+    LOST,
+    MERGED,
+    NOT_LOST,
+    TENTATIVE,
+    evidence,
+    judge,
+    record,
+)
 from .merge import duplicates
 from .sweep import sweep_of
 
@@ -23,12 +34,14 @@ class Memory(NamedTuple):
 
     tracks       N tracks, lost ones left out
     leftover     plots of the last scan that belong to no track: one may be a new target's first
+    clutter      the density of false plots
     next_id      the next track's id
     next_number  the next confirmed track's target number
     """
 
     tracks: Tracks
     leftover: Plots
+    clutter: ClutterMap
     next_id: int
     next_number: int
 
@@ -73,7 +86,7 @@ class Tracker:
         none = np.zeros(0)
         plots = Plots(none, none, none, none, np.zeros((0, 2)), np.zeros((0, 2)),
                       np.zeros((0, 2, 2)))
-        return Memory(self._initiate(plots, plots, 0), plots, 1, 1)
+        return Memory(self._initiate(plots, plots, 0), plots, clutter_map.empty(), 1, 1)
 
     def extrapolate(self, tracks: Tracks, time) -> Extrapolation:
         """The tracks at the times [N] s (or one time for all)."""
@@ -123,8 +136,13 @@ class Tracker:
         bearing[rows] = wrap_bearing(updated.bearing)
         last_time = tracks.last_time.copy()
         last_time[rows] = updated.time
+        own = np.flatnonzero(plot_of[track] == plot)
+        gained = np.zeros(count)
+        gained[track[own]] = evidence(
+            nis[own], log_det[own], clutter_map.density(memory.clutter, distance, bearing)[track[own]],
+            p.detection_probability)
         tracks = record(tracks._replace(state=state, last_time=last_time, bearing=bearing), hit,
-                        visible=(distance >= p.min_range_m) & (distance <= p.max_range_m))
+                        (distance >= p.min_range_m) & (distance <= p.max_range_m), gained, p)
         drift = np.sqrt((ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])
                         / (p.range_sigma_m ** 2 + (distance * self.bearing_sigma) ** 2))
         status, reason = judge(tracks, p, hit, distance > p.max_range_m, drift, scan.end)
@@ -145,7 +163,11 @@ class Tracker:
         alive = status != LOST
         room = max(p.max_tracks - np.count_nonzero(alive), 0)
         first, second = first[:room], second[:room]
-        new = self._initiate(take(lone, first), take(plots, second), memory.next_id)
+        begun, plot_now = take(lone, first), take(plots, second)
+        new = self._initiate(begun, plot_now, memory.next_id)
+        new = new._replace(score=first_score(
+            begun, plot_now, clutter_map.density(memory.clutter, plot_now.range, new.bearing),
+            p.max_target_speed_mps, p.detection_probability))
         free[second] = False
 
         everyone = append(tracks, new)
@@ -154,7 +176,10 @@ class Tracker:
                         np.concatenate([plot_of, second]),
                         np.concatenate([reason, np.full(len(second), NOT_LOST, np.int8)]))
         survivors = np.concatenate([alive, np.ones(len(second), bool)])
-        return Memory(take(everyone, survivors), take(plots, free),
+        false = np.ones(len(lone.time), bool)
+        false[first] = False
+        clutter = clutter_map.learn(memory.clutter, lone.range[false], lone.bearing[false])
+        return Memory(take(everyone, survivors), take(plots, free), clutter,
                       memory.next_id + len(second),
                       memory.next_number + np.count_nonzero(newly)), report
 
@@ -191,5 +216,5 @@ class Tracker:
         return Tracks(
             id=np.arange(next_id, next_id + count), number=np.zeros(count, np.int64),
             status=np.full(count, TENTATIVE, np.int8),
-            history=np.full(count, 0b11), age=np.full(count, 2), first_time=first.time, last_time=second.time,
+            history=np.full(count, 0b11), score=np.zeros(count), age=np.full(count, 2), first_time=first.time, last_time=second.time,
             bearing=wrap_bearing(second.bearing), state=state)

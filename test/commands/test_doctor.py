@@ -12,7 +12,7 @@ def test_where_the_core_works_the_exit_code_is_0(command):
     for name in ('Python', 'numpy', 'scipy', 'PyWavelets', 'PyYAML', 'rich', 'matplotlib',
                  'configuration', 'Fast DDS profile', 'ROS_DISTRO', 'AMENT_PREFIX_PATH',
                  'ROS_DOMAIN_ID', 'rclpy', 'ROS message packages'):
-        assert f' {name}: ' in done.stdout or f' ros-jazzy-{name}: ' in done.stdout, name
+        assert f'   {name}: ' in done.stdout, name
 
 
 def test_json_holds_the_same_checks(command, tmp_path):

@@ -2,6 +2,7 @@ import json
 
 import pytest
 
+from marine_tracker import cli
 from marine_tracker.evaluation import metrics
 
 COLUMNS = 'time_s,track,status,north_m,east_m,vel_north_mps,vel_east_mps\n'
@@ -49,18 +50,21 @@ def test_options_reach_the_scorer(command, folder):
     assert found['position_rmse_m'] is None and found['never_confirmed'] == 1
 
 
-def test_help_says_what_each_figure_is(command):
-    done = command('score', '--help')
+def test_help_says_what_each_figure_is(capsys):
+    with pytest.raises(SystemExit):
+        cli.main(['score', '--help'])
+    out = capsys.readouterr().out
     for name, (_, text) in metrics.FIGURES.items():
-        assert f'{name} ' in done.stdout and text in done.stdout
+        assert f'{name} ' in out and text in out
 
 
-def test_a_recording_without_truth_and_a_bad_track_file_are_one_line_errors(command, folder):
-    (folder / 'tracks.csv').write_text(COLUMNS + '0,1,confirmed,x,0,0,0\n')
-    done = command('score', folder, folder / 'tracks.csv')
-    assert done.returncode == 2 and 'tracks.csv, line 2: north_m is' in done.stderr
-    (folder / 'tracks.csv').write_text(COLUMNS)
+def test_a_recording_without_truth_and_a_bad_track_file_are_one_line_errors(capsys, folder):
+    tracks = folder / 'tracks.csv'
+    tracks.write_text(COLUMNS + '0,1,confirmed,x,0,0,0\n')
+    assert cli.main(['score', str(folder), str(tracks)]) == 2
+    assert "tracks.csv, line 2: north_m is 'x'" in capsys.readouterr().err
+    tracks.write_text(COLUMNS)
     (folder / 'truth.csv').unlink()
-    done = command('score', folder, folder / 'tracks.csv')
-    assert done.returncode == 2 and 'has no truth to score against' in done.stderr
-    assert done.stderr.count('\n') == 1
+    assert cli.main(['score', str(folder), str(tracks)]) == 2
+    err = capsys.readouterr().err
+    assert 'has no truth to score against' in err and err.count('\n') == 1

@@ -43,9 +43,9 @@ def roughen(path):
     path.write_text('\n'.join([','.join(header.split(',')[i] for i in keep), *rough]) + '\n')
 
 
-@pytest.mark.parametrize('options', [{}, {'cutoff': 60.0, 'bias_deg': -1.8, 'lag': 0.5}],
-                         ids=['notes', 'options'])
-@pytest.mark.parametrize('rough', [False, True], ids=['tracks', 'rough tracks'])
+@pytest.mark.parametrize(('rough', 'options'), [
+    (False, {}), (True, {'cutoff': 60.0, 'bias_deg': -1.8, 'lag': 0.5})],
+    ids=['tracks and notes', 'rough tracks and options'])
 @pytest.mark.parametrize('name', ['autosea_joyride', 'autoferry_03', 'autoferry_13'])
 def test_every_figure_agrees(recordings, scorer, tmp_path, name, rough, options):
     tracks, figures = tmp_path / 'tracks.csv', tmp_path / 'figures.json'

@@ -1,5 +1,4 @@
 import math
-import re
 
 import numpy as np
 import pytest
@@ -269,8 +268,22 @@ def test_a_recording_without_truth_cannot_be_scored():
 
 @pytest.mark.parametrize('cutoff', [0.0, -5.0, math.inf, math.nan])
 def test_a_cutoff_must_be_above_zero_and_finite(cutoff):
-    with pytest.raises(ValueError, match=re.escape(f'cutoff is {cutoff} m')):
+    with pytest.raises(ValueError, match=f'cutoff_m is {cutoff}; it must be a number, above 0'):
         score(world(), cutoff=cutoff)
+
+
+@pytest.mark.parametrize(('name', 'value'), [
+    ('cutoff_m', 'far'), ('seen_within_m', 0), ('azimuth_bias_deg', None), ('plot_lag_s', True)])
+def test_a_wrong_note_is_named(name, value):
+    with pytest.raises(ValueError, match=f'{name} is {value!r}; it must be a number'):
+        score(world(**{name: value}))
+
+
+@pytest.mark.parametrize(('option', 'name'), [('bias_deg', 'azimuth_bias_deg'),
+                                              ('lag', 'plot_lag_s')])
+def test_bias_and_lag_must_be_finite(option, name):
+    with pytest.raises(ValueError, match=f'{name} is nan; it must be a number, finite'):
+        score(world(), **{option: math.nan})
 
 
 def test_notes_say_whether_strangers_may_count_as_false():

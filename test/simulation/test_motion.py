@@ -4,8 +4,9 @@ import pytest
 from marine_tracker.simulation import motion
 from marine_tracker.simulation.motion import SpeedChange, Straight, Turn, Wave
 
-EVERY_LEG = (Straight(100.0), Turn(np.radians(-200), radius=300.0), SpeedChange(12.0, duration=80.0),
-             Straight(30.0), Turn(np.radians(75), rate=np.radians(0.7)),
+EVERY_LEG = (Straight(100.0), Turn(np.radians(-200), radius=300.0),
+             SpeedChange(12.0, duration=80.0), Straight(30.0),
+             Turn(np.radians(75), rate=np.radians(0.7)),
              SpeedChange(4.0, acceleration=0.05), Straight(None))
 
 
@@ -100,6 +101,8 @@ def test_two_dimensional_questions_are_answered_in_their_shape():
     ([Straight(None), Turn(1.0, radius=100.0)], None, r'legs\[0\]\.straight has no duration_s'),
     ([SpeedChange(0.0, duration=9.0), Turn(1.0, radius=100.0)], None, r'legs\[1\]\.turn .*cannot'),
     ([SpeedChange(1.0, duration=9.0)], Wave(2.0, 60.0), r'legs\[0\]\.speed ends at 1 m/s'),
+    ([Turn(1.0, radius=2.0)], None, r'legs\[0\]\.turn has a radius of 2 m; .* 143 deg/s'),
+    ([SpeedChange(30.0, duration=1.0)], None, r'legs\[0\]\.speed changes by 25 m/s each second'),
     ([], Wave(6.0, 60.0), 'speed_wave has an amplitude of 6 m/s'),
 ])
 def test_impossible_legs_are_refused(legs, wave, text):

@@ -1,4 +1,6 @@
 import math
+import re
+import textwrap
 
 import numpy as np
 import pytest
@@ -29,8 +31,8 @@ def test_shipped_scenarios_load_and_suit_a_tracker(name):
 
 def test_the_promised_scenarios_are_shipped():
     assert {'paper_track', 'busy_strait', 'encounters', 'clean'} <= set(scenario.shipped())
-    assert len(scenario.load('busy_strait').target_names) == 40
-    assert len(scenario.load('encounters').target_names) == 3
+    assert len(scenario.load('busy_strait').fleet.names) == 40
+    assert len(scenario.load('encounters').fleet.names) == 3
 
 
 def test_paper_track_turns_through_50_degrees_at_scan_500():
@@ -66,7 +68,7 @@ def test_geodetic_starts_are_placed_by_the_origin(make_scenario):
     loaded = make_scenario(
         own_ship={'start': {'lat_deg': 60, 'lon_deg': 10}},
         targets=[ship(start={'lat_deg': 60.1, 'lon_deg': 10.1})])
-    assert loaded.origin == (60, 10)
+    assert loaded.fleet.origin == (60, 10)
     assert loaded.truth_at(0).position[0] == pytest.approx([5560, 11120], rel=1e-3)
 
 
@@ -96,6 +98,7 @@ def test_detectable_is_between_blind_and_maximum_range(make_scenario):
     ({'duration_s': '10 min'}, "duration_s is '10 min'; it must be a number"),
     ({'duration_s': math.nan}, 'duration_s is nan; it must be finite'),
     ({'duration_s': True}, 'duration_s is True; it must be a number'),
+    ({'duration_s': 2}, 'duration_s is 2; it must not be less than a revolution, 2.73 s'),
     ({'targets': []}, 'the scenario has no targets'),
     ({'targets': {'a': 1}}, "targets is {'a': 1}; it must be a list"),
     ({'targets': ['ship']}, "targets[0] is 'ship'; it must be a mapping"),
@@ -131,7 +134,7 @@ def test_detectable_is_between_blind_and_maximum_range(make_scenario):
      'targets[0].legs[0].turn has radius and rate_deg_per_s; it must have one of'),
     (leg(turn={'angle_deg': 90, 'rate_deg_per_s': 400}), 'turn.rate_deg_per_s is 400; it must be'),
     (leg(turn={'angle_deg': 90, 'rate_deg': 4}), 'turn.rate_deg is not known'),
-    (leg(speed={'to_kn': 10}), 'targets[0].legs[0].speed has none of duration_s; acceleration_mps2'),
+    (leg(speed={'to_kn': 10}), 'targets[0].legs[0].speed has none of duration_s; accel'),
     (leg(speed={'to_kn': 10, 'acceleration_mps2': 60}), 'acceleration_mps2 is 60; it must be betw'),
     ({'targets': [ship(legs=[{'straight': {}}, {'straight': {}}])]},
      'targets[0].legs[0].straight has no duration_s; only the last leg'),
@@ -171,6 +174,16 @@ def test_files_that_hold_no_scenario_are_refused(tmp_path, text, message):
     file.write_text(text)
     with pytest.raises(ValueError, match=message):
         scenario.load(file)
+
+
+def test_the_example_in_the_documentation_is_right(tmp_path):
+    example = textwrap.dedent(re.search(
+        r'(?s)\n\n(    description:.*?)\n\nShips', scenario.__doc__).group(1))
+    file = tmp_path / 'example.yaml'
+    file.write_text(example)
+    loaded = scenario.load(file)
+    assert loaded.fleet.names == ('ferry',)
+    assert loaded.clutter.sea == 40
 
 
 def test_unknown_names_are_answered_with_the_nearest():

@@ -5,7 +5,7 @@ from marine_tracker.geometry import KNOT, wrap_angle
 from marine_tracker.simulation import sensor_errors
 from marine_tracker.simulation.radar import simulate
 
-RUNS = 60
+RUNS = 40
 
 
 def runs(loaded):
@@ -19,7 +19,7 @@ def runs(loaded):
 def imo_scenario(make_scenario):
     def make(bearing_deg, length_m=1, speed_kn=0.0, course_deg=0):
         return make_scenario(
-            duration_s=120, radar={'sensor_errors': 'imo', 'pd_near': 1, 'pd_far': 1},
+            duration_s=60, radar={'sensor_errors': 'imo', 'pd_near': 1, 'pd_far': 1},
             own_ship={'course_deg': 0, 'speed_kn': speed_kn},
             targets=[{'start': {'range_m': 8000, 'bearing_deg': bearing_deg}, 'course_deg':
                       course_deg, 'speed_kn': speed_kn, 'length_m': length_m}])
@@ -27,17 +27,17 @@ def imo_scenario(make_scenario):
 
 
 def test_random_errors_have_the_stated_budget(imo_scenario):
-    # 60 runs x 44 plots: 4.5 sd of a deviation are 4.5 / sqrt(2 x 2640) = 6 %.
+    # 40 runs x 22 plots: 4.5 sd of a deviation are 4.5 / sqrt(2 x 880) = 11 %.
     distance, bearing = runs(imo_scenario(90))
     range_sigma, bearing_sigma = sensor_errors.IMO_SIGMAS
     assert range_sigma == pytest.approx(22.7, abs=0.05)
     assert np.degrees(bearing_sigma) == pytest.approx(0.149, abs=0.001)
-    assert distance.std() == pytest.approx(range_sigma, rel=0.06)
+    assert distance.std() == pytest.approx(range_sigma, rel=0.11)
     within = bearing - bearing.mean(axis=1, keepdims=True)
-    assert within.std() == pytest.approx(bearing_sigma, rel=0.08)
+    assert within.std() == pytest.approx(bearing_sigma, rel=0.13)
     offset = np.degrees(bearing.mean(axis=1)) - 90
-    assert np.abs(offset) == pytest.approx(np.full(RUNS, 0.5), abs=0.11)    # gyro, of either sign
-    assert 10 < (offset > 0).sum() < 50
+    assert np.abs(offset) == pytest.approx(np.full(RUNS, 0.5), abs=0.15)    # gyro, of either sign
+    assert 5 < (offset > 0).sum() < 35
 
 
 def test_rolling_shifts_bearings_between_the_quadrants_only(imo_scenario):
@@ -52,8 +52,8 @@ def test_glint_runs_along_the_ship(imo_scenario):
     ahead, _ = runs(imo_scenario(0, length_m=200, speed_kn=10))
     across, _ = runs(imo_scenario(0, length_m=200, speed_kn=0.02, course_deg=90))
     range_sigma, _ = sensor_errors.IMO_SIGMAS
-    assert ahead.std() == pytest.approx(np.hypot(range_sigma, 30), rel=0.06)
-    assert across.std() == pytest.approx(np.hypot(range_sigma, 1), rel=0.06)
+    assert ahead.std() == pytest.approx(np.hypot(range_sigma, 30), rel=0.11)
+    assert across.std() == pytest.approx(np.hypot(range_sigma, 1), rel=0.11)
 
 
 def test_own_ship_is_reckoned_from_gyro_and_log_while_truth_is_true(make_scenario):
