@@ -32,11 +32,11 @@ setup(
     zip_safe=False,
     python_requires='>=3.11',
     install_requires=[
-        'numpy>=1.26',
+        'numpy>=1.26.4',
         'PyWavelets>=1.4',
         'PyYAML>=6.0',
         'rich>=13.3',
-        'scipy>=1.11',
+        'scipy>=1.11.4',
     ],
     extras_require={
         # On a machine with ROS 2 the system provides these: never in install_requires.

@@ -8,8 +8,9 @@ names the parameter, the value and the limit.
 import dataclasses
 import difflib
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Mapping, TypeVar
+from typing import Any, TypeVar
 
 import yaml
 

@@ -82,9 +82,17 @@ def _write(args):
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
     csv_folder.write(args.folder, f'{loaded.name}, seed {args.seed}',
-                     radar.simulate(loaded, args.seed), loaded.tracker_parameters())
+                     radar.simulate(loaded, args.seed), loaded.tracker_parameters(),
+                     _notes(loaded))
     print(f'{loaded.name}: {loaded.scans} scans written to {args.folder}')
     return 0
+
+
+def _notes(loaded):
+    """How `score` is to judge tracks: what counts as near, where the radar is least exact."""
+    sigma = np.radians(loaded.tracker_parameters()['bearing_sigma_deg']) * loaded.radar.max_range
+    near = float(round(max(50.0, 2 * sigma)))
+    return {'seen_within_m': near, 'cutoff_m': 2 * near, 'uncooperative': False}
 
 
 def _conditions(loaded):

@@ -1,6 +1,6 @@
 """Estimators by name. An entry makes the estimator from the tracker's parameters."""
 
-from typing import Callable
+from collections.abc import Callable
 
 from ..parameters import TrackerParameters
 from . import cs_kalman, imm

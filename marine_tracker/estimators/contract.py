@@ -1,6 +1,7 @@
 """What every estimator is: three pure functions over arrays with a leading track axis."""
 
-from typing import Any, Callable, NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 from ..types import Array, Extrapolation, Plots
 

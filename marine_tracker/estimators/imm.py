@@ -40,14 +40,10 @@ class ImmState(NamedTuple):
     covariance: Array
 
 
-def rate(degrees):
-    return float(np.radians(degrees))
-
-
 PRESETS = {
-    'ship': Modes(noise=(0.001, 0.6, 0.014, 0.014), turn_rate=(0, 0, rate(1.2), rate(-1.2)),
+    'ship': Modes(noise=(0.001, 0.6, 0.014, 0.014), turn_rate=(0, 0, 0.021, -0.021),
                   stay=(0.99, 0.8, 0.9, 0.9), period=60 / 22),
-    'small_craft': Modes(noise=(0.05, 4.0, 0.2, 0.2), turn_rate=(0, 0, rate(10), rate(-10)),
+    'small_craft': Modes(noise=(0.05, 4.0, 0.2, 0.2), turn_rate=(0, 0, 0.175, -0.175),
                          stay=(0.95, 0.8, 0.8, 0.8), period=60 / 22),
 }
 
@@ -59,7 +55,7 @@ def transition_power(stay, period):
     """
     stay = np.asarray(stay, float)
     count = len(stay)
-    matrix = np.tile(((1 - stay) / (count - 1))[:, None], (1, count))
+    matrix = np.tile(((1 - stay) / max(count - 1, 1))[:, None], (1, count))
     np.fill_diagonal(matrix, stay)
     values, vectors = np.linalg.eig(matrix)
     values, vectors = values.real, vectors.real

@@ -1,7 +1,7 @@
 """What a scan costs, for this tracker and for Stone Soup on the same plots in the same run."""
 
 import time
-from collections.abc import Callable
+from importlib.util import find_spec
 from typing import NamedTuple
 
 import numpy as np
@@ -170,15 +170,13 @@ def _result(cpu, found, scene: Traffic) -> Result:
 
 
 def benchmark(targets: int, clutter: int, estimator: str, timed_scans: int, seed: int,
-              progress: Callable[[str], None] = lambda text: None) -> dict[str, Result]:
-    """Both trackers on one scene: {'marine_tracker': Result, 'Stone Soup': Result if installed}."""
+              alone: bool = False) -> dict[str, Result]:
+    """Both trackers on one scene: {'marine_tracker': Result, 'Stone Soup': Result}.
+
+    Stone Soup is left out where it is not installed, or `alone`.
+    """
     scene = traffic(targets, clutter, WARM_UP + timed_scans, seed)
-    progress(f'marine_tracker, {estimator}')
     results = {'marine_tracker': run_tracker(scene, estimator)}
-    try:
-        import stonesoup  # noqa: F401
-    except ImportError:
-        return results
-    progress('Stone Soup')
-    results['Stone Soup'] = run_stone_soup(scene)
+    if not alone and find_spec('stonesoup'):
+        results['Stone Soup'] = run_stone_soup(scene)
     return results

@@ -9,13 +9,15 @@ A folder holds
   radar.yaml     tracker parameters that belong to this radar and its waters; may be left out
   notes.json     what is known of the recording (plot lag, cutoff for scoring); may be left out
 
-`end_s` is when the revolution that began at `time_s` ended. Without it a scan lasts from its
-first plot to its last one, and has no length where all its plots carry one time.
+`end_s` is when the revolution that began at `time_s` ended. Without it, where plots carry times of
+their own, a revolution is taken to last from its row's time to the next row's, if its plots lie
+between them, else from its first plot to its last one. A scan whose plots all carry one time, as
+most recordings have them, has no length.
 """
 
 import csv
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -65,13 +67,9 @@ def read(folder) -> Recording:
     truths = (_read_truth(folder / 'truth.csv', numbers) if has_truth
               else (_no_truth(),) * len(numbers))
     scans: list[Scan] = []
-    for k, of_scan in enumerate(plots):
+    spans = _spans(own_ship.time, end, [of_scan.time for of_scan in plots])
+    for k, (of_scan, (start, last)) in enumerate(zip(plots, spans)):
         around = slice(max(k - 1, 0), k + 2)
-        start, last = own_ship.time[k], end[k]
-        if np.isnan(last):
-            start = last = own_ship.time[k]
-            if len(of_scan.time):
-                start, last = of_scan.time.min(), of_scan.time.max()
         if scans and start < scans[-1].start:
             raise ValueError(f'{folder / "plots.csv"}: scan {numbers[k]} begins at {start:g} s, '
                              f'before the scan ahead of it, {scans[-1].start:g} s')
@@ -142,6 +140,22 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
             raise ValueError(f'{table.where(row)}: end_s is {end[row]:g}; it must not lie before '
                              f'time_s, {time[row]:g}')
     return numbers, OwnShip(time, position, velocity), end
+
+
+def _spans(begin: Array, end: Array, plots: list[Array]) -> Iterator[tuple[float, float]]:
+    """Start and end of each scan, from the rows' times, known ends, and the plots' times."""
+    swept = any(np.ptp(times) > 0 for times in plots if len(times))
+    step = np.diff(begin, append=2 * begin[-1] - begin[-2] if len(begin) > 1 else begin[-1])
+    for start, known, following, times in zip(begin, end, begin + step, plots):
+        first, last = times.min(initial=np.inf), times.max(initial=-np.inf)
+        if not np.isnan(known):
+            yield start, known
+        elif swept and start <= first and last <= following:
+            yield start, following
+        elif len(times):
+            yield first, last
+        else:
+            yield start, start
 
 
 def _read_plots(path, numbers) -> tuple[PolarPlots, ...]:

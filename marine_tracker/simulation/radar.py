@@ -1,51 +1,31 @@
 """The simulated radar: one scan, and the truth behind it, for each revolution of the antenna.
 
-The beam starts each revolution at true north and turns evenly, so a plot's time is that at which
-the beam, turning, met the moving target from the moving own ship.
+What the beam meets is detected or not, merged within a resolution cell, given its errors, and put
+among false plots; a plot's time is that at which the beam met the target.
 """
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..geometry import to_range_bearing, wrap_angle, wrap_bearing
-from ..types import Array, PolarPlots, Scan, Truth, append, take
-from . import clutter, motion, sensor_errors
+from ..geometry import to_range_bearing, wrap_bearing
+from ..types import PolarPlots, Scan, Truth, append, take
+from . import beam, clutter, sensor_errors
 from .scenario import Radar, Scenario
 
 THRESHOLD = 20.0                 # power over noise at which a plot is declared: 13 dB
 STRONGEST = 0.9999               # probability of detection that sets the amplitude of a sure plot
 OWN_SHIP_SAMPLES = 4             # a revolution, both ends included
-NEAR_SEAM = 0.25                 # of a revolution: how near to north a beam passage may be doubled
-
-
-class Passages(NamedTuple):
-    """The beam passing targets in one revolution, one row a passage.
-
-    target    [P]     its number, from 1; a target may be passed 0, 1 or 2 times
-    turn      [P]     0, or 1 where it is the target's second passage
-    time      [P]     s
-    offset    [P, 2]  m, from own ship at that time
-    velocity  [P, 2]  m/s, of the target over ground
-    """
-
-    target: NDArray[np.int64]
-    turn: NDArray[np.int64]
-    time: Array
-    offset: Array
-    velocity: Array
 
 
 def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
     """The scans of a scenario and the truth behind each, a pair for every whole revolution.
 
     Plots are in time order. Truth has a row for every target that exists, at the time when the
-    beam passed it (the first time, if twice; the nearest end of the revolution, if not at all).
+    beam passed it (see beam.Revolution).
     Same scenario and seed give the same plots to the bit. Each kind of chance has its own
     stream of random numbers: clutter or detection do not change the noise of targets.
     """
@@ -54,9 +34,7 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
     radar = scenario.radar
     imo = sensor_errors.draw(errors) if radar.sensor_errors == 'imo' else None
     drift = np.zeros(2)
-    for number in range(scenario.scans):
-        start, end = number * radar.scan_period, (number + 1) * radar.scan_period
-        passages, truth = _passages(scenario, start, end)
+    for start, end, passages, truth in beam.revolutions(scenario):
         # Draws for every ship (own ship's are idle) and both possible passages, seen or not: a
         # stream's use must not depend on what another stream brought about.
         shape = (2, scenario.fleet.paths.ships)
@@ -83,60 +61,6 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
         if imo is not None:
             own_ship, drift = sensor_errors.reckon(imo, own_ship, drift, reckoning)
         yield Scan(start, end, plots, own_ship), truth
-
-
-def _passages(scenario, start, end):
-    """The beam's passages in [start, end), by target and time, and the revolution's truth."""
-    period = end - start
-    target = np.arange(1, scenario.fleet.paths.ships)
-    offset, _, _ = _from_own_ship(scenario, target, np.full(len(target), 0.5 * (start + end)))
-    time = start + to_range_bearing(offset)[1] * (period / (2 * np.pi))
-    # A target drifting over north may be met at both ends of the revolution, or at neither.
-    late, early = time > end - NEAR_SEAM * period, time < start + NEAR_SEAM * period
-    target = np.concatenate([target, target[late], target[early]])
-    time = np.concatenate([time, time[late] - period, time[early] + period])
-    time = _meet(scenario, target, time, start, period)
-    order = np.lexsort((time, target))
-    target, time = target[order], time[order]
-    inside = (time >= start) & (time < end)
-
-    # Truth: the first passage inside, else the end of the revolution that is nearest.
-    rank = np.where(inside, time - start, period + np.abs(time - 0.5 * (start + end)))
-    best = np.lexsort((rank, target))
-    best = best[np.diff(target[best], prepend=0) > 0]
-    time = np.clip(time, start, end)
-    offset, position, velocity = _from_own_ship(scenario, target, time)
-    there = motion.exist(scenario.fleet.paths, target, time)
-    best = best[there[best]]
-    inside &= there
-    second = np.diff(target[inside], prepend=0) == 0
-    return (Passages(target[inside], second.astype(np.int64), time[inside], offset[inside],
-                     velocity[inside]),
-            Truth(time[best], target[best], position[best], velocity[best]))
-
-
-def _meet(scenario, target, time, start, period):
-    """When the beam meets the targets [N]: the passages nearest to the times [N], by Newton."""
-    turn = 2 * np.pi / period
-    for _ in range(3):
-        offset, _, velocity = _from_own_ship(scenario, target, time, relative=True)
-        distance, bearing = to_range_bearing(offset)
-        rate = ((offset[:, 1] * velocity[:, 0] - offset[:, 0] * velocity[:, 1])
-                / np.maximum(distance, 1e-3) ** 2)
-        # A bearing that outruns half the beam's turn occurs only within metres of own ship.
-        rate = np.clip(rate, -0.5 * turn, 0.5 * turn)
-        time = time + wrap_angle(bearing - turn * (time - start)) / (turn - rate)
-    return time
-
-
-def _from_own_ship(scenario, target, time, relative=False):
-    """Offset from own ship, position, and velocity (or that relative to own ship) [N, 2]."""
-    count = len(target)
-    position, velocity = motion.locate_ships(
-        scenario.fleet.paths, np.concatenate([target, np.zeros_like(target)]), np.tile(time, 2))
-    offset = position[:count] - position[count:]
-    return (offset, position[:count],
-            velocity[:count] - velocity[count:] if relative else velocity[:count])
 
 
 def _detect(scenario, target, distance, chance):

@@ -1,4 +1,4 @@
-"""Where false plots come from: their density around own ship, learnt from plots without a successor.
+"""Where false plots come from: their density about own ship, learnt from plots that led nowhere.
 
 Rings grow with range and are cut into sectors, so near own ship, where sea clutter is dense, the
 cells are small. The map lies in range and true bearing: clutter goes with own ship.
@@ -24,9 +24,9 @@ _RING_AREA = np.pi * np.diff(_EDGES ** 2)
 
 
 class ClutterMap(NamedTuple):
-    """count [RINGS * SECTORS]: mean number of false plots a scan, begun at 0; scans: seen so far."""
+    """plots [RINGS * SECTORS]: mean number a scan, begun at 0; scans: how many were learnt from."""
 
-    count: Array
+    plots: Array
     scans: int
 
 
@@ -49,7 +49,7 @@ def learn(before: ClutterMap, range_, bearing) -> ClutterMap:
     count against it.
     """
     found = np.bincount(_cell(range_, bearing), minlength=RINGS * SECTORS)
-    return ClutterMap(before.count + (found - before.count) / MEMORY, before.scans + 1)
+    return ClutterMap(before.plots + (found - before.plots) / MEMORY, before.scans + 1)
 
 
 def density(clutter: ClutterMap, range_, bearing):
@@ -59,7 +59,7 @@ def density(clutter: ClutterMap, range_, bearing):
     be trusted where it is emptier than its ring. The ring's mean is set right for its start
     at 0 (it is known after a few scans), the cell's is not.
     """
-    count = clutter.count.reshape(RINGS, SECTORS)
+    count = clutter.plots.reshape(RINGS, SECTORS)
     known = 1 - (1 - 1 / MEMORY) ** max(clutter.scans, 1)
     ring = np.maximum(count.sum(1) / known, LEAST_IN_RING)
     here = np.maximum(count * SECTORS, ring[:, None]) / _RING_AREA[:, None]

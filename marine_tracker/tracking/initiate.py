@@ -28,13 +28,18 @@ def first_score(before: Plots, now: Plots, density, max_speed: float,
     return np.log(detection_probability / (density * area))
 
 
-def pair_up(before: Plots, now: Plots, first, second, max_speed: float):
+def pair_up(before: Plots, now: Plots, first, second, free, max_speed: float, room: int):
     """Of the pairs (first [P] in before, second [P] in now), those that may be new targets.
+
+    free  [M] mask of the plots in now that no track explains
+    room  most pairs wanted
 
     A pair fits when the way between its plots, less what noise explains, asks for no more than
     max_speed, m/s. Every plot is used at most once, the slowest pair first: a plot has one
     target, and clutter does not breed.
     """
+    candidates = free[second]
+    first, second = first[candidates], second[candidates]
     step = now.time[second] - before.time[first]
     way = now.position[second] - before.position[first]
     length = np.hypot(*way.T)
@@ -43,19 +48,20 @@ def pair_up(before: Plots, now: Plots, first, second, max_speed: float):
     sigma = np.sqrt((unit[:, None] @ spread @ unit[..., None])[:, 0, 0])    # along the way
     excess = np.maximum(length - max_speed * step, 0.0) / sigma
     fits = np.flatnonzero((excess ** 2 <= PAIRING_GATE) & (step > 0))
-    return _greedy(first[fits], second[fits], (length / sigma)[fits])
+    return _greedy(first[fits], second[fits], (length / sigma)[fits], room)
 
 
-def _greedy(first, second, cost):
-    """One-to-one pairs, cheapest first."""
+def _greedy(first, second, cost, room: int):
+    """One-to-one pairs, at most `room`, cheapest first."""
     order = np.argsort(cost, kind='stable')
     pairs = list(zip(first[order].tolist(), second[order].tolist(), strict=True))
-    taken_first, taken_second = set(), set()
+    taken_first: set[int] = set()
+    taken_second: set[int] = set()
     keep = []
     for a, b in pairs:
         if a not in taken_first and b not in taken_second:
             taken_first.add(a)
             taken_second.add(b)
             keep.append((a, b))
-    chosen = np.array(keep, np.int64).reshape(-1, 2)
+    chosen = np.array(keep[:room], np.int64).reshape(-1, 2)
     return chosen[:, 0], chosen[:, 1]

@@ -7,7 +7,7 @@ from ..types import HISTORY, Tracks
 
 TENTATIVE, CONFIRMED, COASTING, LOST = range(4)
 STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost')
-NOT_LOST, MISSED, OUT_OF_RANGE, MERGED = range(4)
+MISSED, OUT_OF_RANGE, MERGED = range(1, 4)
 REASONS = ('', 'missed', 'out of range', 'merged')
 TEN = 10            # scans in which the standards count a target's plots
 IN_THE_DARK = 30    # scans without a plot after which even a track in the blind zone is lost
@@ -41,13 +41,14 @@ def misses_in_a_row(tracks: Tracks):
 def record(tracks: Tracks, hit, visible, gained, parameters: TrackerParameters) -> Tracks:
     """Enter one scan: hit [N] had a plot; visible [N] lay where the radar can see.
 
-    gained [N]: what the plot of a hit adds to the score (see `evidence`). A scan in which the
-    track could not be seen and was not is left out of its account.
+    gained [K]: what the plots of the K tracks that were hit add to their score (see `evidence`).
+    A scan in which a track could not be seen and was not is left out of its account.
     """
     counted = hit | visible
     history = ((tracks.history << 1) | hit) & ((1 << HISTORY) - 1)
     missed = np.log(1 - parameters.detection_probability)
-    score = tracks.score + np.where(hit, gained, np.where(visible, missed, 0.0))
+    score = tracks.score + missed * (visible & ~hit)
+    score[hit] += gained
     return tracks._replace(history=np.where(counted, history, tracks.history),
                            score=np.minimum(score, parameters.max_score),
                            age=tracks.age + counted)
@@ -88,5 +89,5 @@ def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now
     lost = hopeless | gone | left | dark
     status = np.where(confirmed, np.where(hit, CONFIRMED, COASTING), TENTATIVE)
     status = np.where(lost, LOST, status).astype(np.int8)
-    reason = np.where(lost, np.where(left & ~(hopeless | gone), OUT_OF_RANGE, MISSED), NOT_LOST)
+    reason = lost * np.where(left & ~(hopeless | gone), OUT_OF_RANGE, MISSED)
     return status, reason.astype(np.int8)

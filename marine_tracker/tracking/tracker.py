@@ -9,24 +9,13 @@ from ..estimators import ESTIMATORS
 from ..geometry import locate, own_ship_at, to_range_bearing, wrap_bearing
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
-from . import clutter_map
+from . import clutter_map, lifecycle
 from .associate import associate
-from .clutter_map import ClutterMap
 from .gate import gate, gate_size
 from .initiate import first_score, pair_up, reach
-from .lifecycle import (
-    CONFIRMED,
-    LOST,
-    MERGED,
-    NOT_LOST,
-    TENTATIVE,
-    evidence,
-    judge,
-    record,
-)
+from .lifecycle import CONFIRMED, LOST, MERGED, TENTATIVE
 from .merge import duplicates
 from .sweep import sweep_of
-
 
 
 class Memory(NamedTuple):
@@ -41,7 +30,7 @@ class Memory(NamedTuple):
 
     tracks: Tracks
     leftover: Plots
-    clutter: ClutterMap
+    clutter: clutter_map.ClutterMap
     next_id: int
     next_number: int
 
@@ -83,10 +72,10 @@ class Tracker:
 
     def start(self) -> Memory:
         """No tracks yet."""
-        none = np.zeros(0)
-        plots = Plots(none, none, none, none, np.zeros((0, 2)), np.zeros((0, 2)),
-                      np.zeros((0, 2, 2)))
-        return Memory(self._initiate(plots, plots, 0), plots, clutter_map.empty(), 1, 1)
+        none, pairs = np.zeros(0), np.zeros((0, 2))
+        plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
+        clutter = clutter_map.empty()
+        return Memory(self._initiate(plots, plots, clutter, 1), plots, clutter, 1, 1)
 
     def extrapolate(self, tracks: Tracks, time) -> Extrapolation:
         """The tracks at the times [N] s (or one time for all)."""
@@ -95,8 +84,7 @@ class Tracker:
 
     def step(self, memory: Memory, scan: Scan) -> tuple[Memory, Report]:
         """One antenna revolution."""
-        p = self.parameters
-        tracks = memory.tracks
+        p, tracks, lone = self.parameters, memory.tracks, memory.leftover
         count = len(tracks.id)
         sweep = sweep_of(scan)
         plots = locate(scan.plots, scan.own_ship, p.range_sigma_m, self.bearing_sigma)
@@ -105,7 +93,6 @@ class Tracker:
         ahead = self.estimator.extrapolate(tracks.state, sweep.time_at(tracks.bearing))
 
         # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
-        lone = memory.leftover
         time, position, velocity, covariance = (np.concatenate(pair) for pair in (
             (ahead.time, lone.time), (ahead.position, lone.position),
             (ahead.velocity, np.zeros_like(lone.position)),
@@ -116,72 +103,58 @@ class Tracker:
         held = np.searchsorted(track, count)
         first, second = track[held:] - count, plot[held:]
         track, plot, nis, log_det = track[:held], plot[:held], nis[:held], log_det[:held]
-        origin = origin[:count]
 
         # associate
         gain = self.gate_size - nis + (log_det.max(initial=0.0) - log_det) + 1e-9
         plot_of = associate(track, plot, gain, count, len(plots.time))
         hit = plot_of >= 0
         rows, taken = np.flatnonzero(hit), plot_of[hit]
+        chosen = take(plots, taken)
 
         # update
-        updated = take(plots, taken)
-        state = self.estimator.update(tracks.state, updated, rows)
-        time = ahead.time.copy()
-        time[rows] = updated.time
+        state = self.estimator.update(tracks.state, chosen, rows)
+        time, last_time = ahead.time.copy(), tracks.last_time.copy()
+        time[rows] = last_time[rows] = chosen.time
         predicted = ahead.position + (time - ahead.time)[:, None] * ahead.velocity
+        distance, bearing = to_range_bearing(predicted - origin[:count])
+        density = clutter_map.density(memory.clutter, distance, bearing)
+        bearing[rows] = wrap_bearing(chosen.bearing)
+        tracks = tracks._replace(state=state, last_time=last_time, bearing=bearing)
 
         # lifecycle
-        distance, bearing = to_range_bearing(predicted - origin)
-        bearing[rows] = wrap_bearing(updated.bearing)
-        last_time = tracks.last_time.copy()
-        last_time[rows] = updated.time
-        own = np.flatnonzero(plot_of[track] == plot)
-        gained = np.zeros(count)
-        gained[track[own]] = evidence(
-            nis[own], log_det[own], clutter_map.density(memory.clutter, distance, bearing)[track[own]],
-            p.detection_probability)
-        tracks = record(tracks._replace(state=state, last_time=last_time, bearing=bearing), hit,
-                        (distance >= p.min_range_m) & (distance <= p.max_range_m), gained, p)
+        own = np.flatnonzero(plot_of[track] == plot)                # pairs, as rows ascends
+        gained = lifecycle.evidence(nis[own], log_det[own], density[rows], p.detection_probability)
+        visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
+        tracks = lifecycle.record(tracks, hit, visible, gained, p)
         drift = np.sqrt((ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])
                         / (p.range_sigma_m ** 2 + (distance * self.bearing_sigma) ** 2))
-        status, reason = judge(tracks, p, hit, distance > p.max_range_m, drift, scan.end)
+        status, reason = lifecycle.judge(tracks, p, hit, distance > p.max_range_m, drift, scan.end)
         double = duplicates(track, plot, plot_of, ahead, tracks, status)
         status[double], reason[double] = LOST, MERGED
-        newly = (tracks.number == 0) & (status == CONFIRMED)
+        newly = np.flatnonzero((tracks.number == 0) & (status == CONFIRMED))
         number = tracks.number.copy()
-        number[newly] = memory.next_number + np.arange(np.count_nonzero(newly))
+        number[newly] = memory.next_number + np.arange(len(newly))
         tracks = tracks._replace(status=status, number=number)
 
-        # initiate: from plots left over in this scan and the one before
+        # initiate: from plots of this scan and the last that nobody else explains
         free = np.ones(len(plots.time), bool)
         free[taken] = False
-        free[plot[tracks.status[track] != TENTATIVE]] = False       # echoes of held targets
-        candidates = free[second]
-        first, second = pair_up(lone, plots, first[candidates], second[candidates],
-                                p.max_target_speed_mps)
-        alive = status != LOST
-        room = max(p.max_tracks - np.count_nonzero(alive), 0)
-        first, second = first[:room], second[:room]
-        begun, plot_now = take(lone, first), take(plots, second)
-        new = self._initiate(begun, plot_now, memory.next_id)
-        new = new._replace(score=first_score(
-            begun, plot_now, clutter_map.density(memory.clutter, plot_now.range, new.bearing),
-            p.max_target_speed_mps, p.detection_probability))
+        free[plot[status[track] != TENTATIVE]] = False              # echoes of held targets
+        room = max(0, p.max_tracks - int(np.count_nonzero(status != LOST)))
+        first, second = pair_up(lone, plots, first, second, free, p.max_target_speed_mps, room)
+        new = self._initiate(take(lone, first), take(plots, second), memory.clutter, memory.next_id)
         free[second] = False
+        single = np.ones(len(lone.time), bool)
+        single[first] = False
+        clutter = clutter_map.learn(memory.clutter, lone.range[single], lone.bearing[single])
 
         everyone = append(tracks, new)
-        report = Report(np.concatenate([time, plots.time[second]]), everyone,
+        report = Report(np.concatenate([time, new.last_time]), everyone,
                         np.concatenate([predicted, np.full((len(second), 2), np.nan)]),
                         np.concatenate([plot_of, second]),
-                        np.concatenate([reason, np.full(len(second), NOT_LOST, np.int8)]))
-        survivors = np.concatenate([alive, np.ones(len(second), bool)])
-        false = np.ones(len(lone.time), bool)
-        false[first] = False
-        clutter = clutter_map.learn(memory.clutter, lone.range[false], lone.bearing[false])
-        return Memory(take(everyone, survivors), take(plots, free), clutter,
-                      memory.next_id + len(second),
-                      memory.next_number + np.count_nonzero(newly)), report
+                        np.concatenate([reason, np.zeros(len(second), np.int8)]))
+        return Memory(take(everyone, everyone.status != LOST), take(plots, free), clutter,
+                      memory.next_id + len(second), memory.next_number + len(newly)), report
 
     def adopt(self, memory: Memory, previous: 'Tracker') -> Memory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.
@@ -209,12 +182,15 @@ class Tracker:
         return self.estimator.update(self.estimator.init(plots[0]), plots[1],
                                      np.arange(len(now.time)))
 
-    def _initiate(self, first: Plots, second: Plots, next_id: int) -> Tracks:
+    def _initiate(self, first: Plots, second: Plots, clutter, next_id: int) -> Tracks:
         """Tentative tracks of two plots each."""
-        count = len(first.time)
-        state = self.estimator.update(self.estimator.init(first), second, np.arange(count))
+        p, count = self.parameters, len(first.time)
+        density = clutter_map.density(clutter, second.range, second.bearing)
         return Tracks(
             id=np.arange(next_id, next_id + count), number=np.zeros(count, np.int64),
-            status=np.full(count, TENTATIVE, np.int8),
-            history=np.full(count, 0b11), score=np.zeros(count), age=np.full(count, 2), first_time=first.time, last_time=second.time,
-            bearing=wrap_bearing(second.bearing), state=state)
+            status=np.full(count, TENTATIVE, np.int8), history=np.full(count, 0b11),
+            score=first_score(first, second, density, p.max_target_speed_mps,
+                              p.detection_probability),
+            age=np.full(count, 2), first_time=first.time, last_time=second.time,
+            bearing=second.bearing,
+            state=self.estimator.update(self.estimator.init(first), second, np.arange(count)))

@@ -66,7 +66,8 @@ def test_a_written_scenario_replays_and_scores_like_the_scenario_itself(tracks, 
     assert again.status.tolist() == first.status.tolist()
     np.testing.assert_allclose(again.position, first.position, atol=0.01)
     figures = metrics.score(csv_folder.read(tmp_path / 'folder'), again).figures
-    assert figures['truth_targets'] == len(chosen.target_names)
+    assert figures['truth_targets'] == len(
+        {int(target) for _, truth in radar.simulate(chosen, 1) for target in truth.target})
     assert figures['held'] > 0.95 and figures['never_confirmed'] == 0
 
 

@@ -30,8 +30,8 @@ def test_show_tells_where_targets_start_and_how_near_they_come(capsys):
     told = capsys.readouterr().out
     assert 'own ship: course 000.0, 14.0 kn' in told
     row = next(line for line in told.splitlines() if line.startswith(' 1'))
-    # 9 NM at 2 deg, closing at 27 kn: 9 sin 2 deg = .31 NM after 20.0 min
-    assert row.split()[2:] == ['9.00', '002.0', '180.0', '13.0', '0.31', '20.0']
+    # 9 NM at 358 deg, closing at 27 kn: 9 sin 2 deg = .31 NM after 20.0 min
+    assert row.split()[2:] == ['9.00', '358.0', '180.0', '13.0', '0.31', '20.0']
 
 
 def test_show_draws_a_picture(tmp_path, capsys):
@@ -49,6 +49,9 @@ def test_write_makes_a_recording_that_repeats_to_the_byte(tmp_path, capsys):
     assert a == b != c
     recording = csv_folder.read(tmp_path / 'a')
     assert len(recording.scans) == scenario.load('clean').scans
+    assert recording.notes['uncooperative'] is False
+    # two bearing sigmas, .3 deg, at 8 NM
+    assert recording.notes['seen_within_m'] == 155
     assert recording.tracker_parameters == pytest.approx(
         scenario.load('clean').tracker_parameters())
 

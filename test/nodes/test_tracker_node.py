@@ -246,7 +246,7 @@ def test_a_live_change_keeps_every_track(rig, clean):
     assert len(before) == 6
     for k, (name, value) in enumerate((
             ('estimator', 'cs_kalman'), ('vessel_class', 'small_craft'), ('estimator', 'imm'),
-            ('gate_probability', 0.99), ('confirm_hits', 5), ('delete_misses', 9))):
+            ('gate_probability', 0.99), ('confirm_hits', 5), ('max_target_speed_mps', 30.0))):
         assert here.tracker.set_parameters([Parameter(name, value=value)])[0].successful
         assert getattr(here.tracker._tracker.parameters, name) == value
         here.play(clean[0][12 + k:13 + k])

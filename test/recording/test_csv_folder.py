@@ -65,9 +65,27 @@ def test_own_ship_velocities_of_the_file_are_taken_where_they_stand(folder):
     np.testing.assert_allclose(velocity, [[8, 9], [0, 2], [6, 7]])
 
 
-def test_a_scan_with_plots_at_their_own_times_lasts_from_first_to_last(folder):
-    (folder / 'plots.csv').write_text(PLOTS + '4,10.2,100,90\n4,11.9,100,180\n4,10.9,100,120\n')
-    assert csv_folder.read(folder).scans[0][:2] == (10.2, 11.9)
+def test_with_plots_at_their_own_times_a_scan_lasts_to_the_next_row(folder):
+    (folder / 'plots.csv').write_text(PLOTS + '4,10.2,100,90\n4,11.9,100,180\n7,17.1,100,120\n')
+    assert [scan[:2] for scan in csv_folder.read(folder).scans] == [
+        (10.0, 12.5), (12.5, 15.0), (15.0, 17.5)]
+
+
+def test_plots_outside_their_rows_times_make_the_scan_last_from_first_to_last(folder):
+    (folder / 'plots.csv').write_text(PLOTS + '4,9.2,100,90\n4,11.9,100,180\n4,10.9,100,120\n')
+    assert csv_folder.read(folder).scans[0][:2] == (9.2, 11.9)
+
+
+def test_plots_stamped_alike_but_late_give_a_scan_without_length(folder):
+    (folder / 'plots.csv').write_text(PLOTS + '4,10.3,100,90\n4,10.3,100,180\n')
+    assert csv_folder.read(folder).scans[0][:2] == (10.3, 10.3)
+
+
+def test_known_ends_are_taken(folder):
+    (folder / 'own_ship.csv').write_text(
+        OWN_SHIP.strip() + ',end_s\n4,10,0,50,12\n5,12.5,5,50,14.5\n7,15,10,50,17\n')
+    assert [scan[:2] for scan in csv_folder.read(folder).scans] == [
+        (10.0, 12.0), (12.5, 14.5), (15.0, 17.0)]
 
 
 def test_a_folder_may_lack_truth_radar_and_notes(folder):

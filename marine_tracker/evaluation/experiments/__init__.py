@@ -1,0 +1,5 @@
+"""Experiments by name: each module has HELP, RUNS and run(runs, seed) -> figures."""
+
+from . import marine_table
+
+EXPERIMENTS = {'marine_table': marine_table}

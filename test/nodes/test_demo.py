@@ -1,0 +1,108 @@
+"""The command `marine_tracker demo`, as a process with processes of its own."""
+
+import signal
+
+import psutil
+import pytest
+
+pytest.importorskip('rclpy')
+from marine_tracker.nodes import domain as domains
+
+
+@pytest.fixture
+def demo(launch):
+    with domains.free_domain() as number:
+        def start(*arguments):
+            return launch('__main__', 'demo', '--domain', str(number), *arguments)
+        yield start
+
+
+def children(process):
+    try:
+        return psutil.Process(process.process.pid).children(recursive=True)
+    except psutil.NoSuchProcess:
+        return []
+
+
+def nodes(process):
+    """The node processes by name."""
+    found = {}
+    for child in children(process):
+        words = child.cmdline()
+        for name in ('tracker', 'radar_simulator', 'recording_player'):
+            if f'marine_tracker.nodes.{name}' in words:
+                found[name] = child
+    return found
+
+
+def gone(processes):
+    return not [one for one in processes if one.is_running()
+                and one.status() != psutil.STATUS_ZOMBIE]
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_targets_show_and_a_signal_ends_it_all(demo, node_helpers, number):
+    wait, _ = node_helpers
+    process = demo('--scenario', 'clean', '--rate', '10')
+    assert process.says('TT06'), process.said
+    started = nodes(process)
+    assert set(started) == {'tracker', 'radar_simulator'}
+    process.stop(number)
+    wait(lambda: gone(started.values()))
+    assert 'own ship course 020.0, 10.0 kn' in process.said
+    assert 'Traceback' not in process.said
+
+
+def test_a_recording_is_shown_with_the_parameters_of_its_radar(demo, node_helpers, recordings):
+    wait, _ = node_helpers
+    process = demo('--recording', str(recordings / 'autosea_joyride'), '--rate', '10',
+                   '--estimator', 'cs_kalman')
+    assert process.says('TT01'), process.said
+    words = ' '.join(nodes(process)['tracker'].cmdline())
+    for assignment in ('range_sigma_m:=12.0', 'bearing_sigma_deg:=0.8',
+                       'vessel_class:="small_craft"', 'estimator:="cs_kalman"',
+                       'use_sim_time:=true'):
+        assert assignment in words
+    assert 'cs_kalman' in process.said
+    process.stop()
+
+
+def test_it_ends_by_itself_after_its_duration(demo):
+    process = demo('--duration', '3')
+    assert process.ends() == 0, process.said
+
+
+def test_it_ends_with_the_scenario(demo, tmp_path):
+    file = tmp_path / 'short.yaml'
+    file.write_text('duration_s: 20\nown_ship: {course_deg: 0, speed_kn: 0}\ntargets:\n'
+                    '  - {start: {range_nm: 2, bearing_deg: 10}, course_deg: 0, speed_kn: 9}\n')
+    process = demo('--scenario', str(file), '--rate', '20')
+    assert process.ends() == 0, process.said
+
+
+@pytest.mark.parametrize('victim', ['tracker', 'radar_simulator'])
+def test_a_node_that_dies_ends_the_demo_which_says_so(demo, node_helpers, victim):
+    wait, _ = node_helpers
+    process = demo('--scenario', 'clean', '--rate', '10')
+    started = wait(lambda: len(nodes(process)) == 2 and nodes(process))
+    started[victim].kill()
+    assert process.ends() == 1
+    assert f'{victim} ended with code -9' in process.said
+    wait(lambda: gone(started.values()))
+
+
+def test_nodes_do_not_outlive_a_demo_that_is_killed(demo, node_helpers):
+    wait, _ = node_helpers
+    process = demo('--scenario', 'clean', '--rate', '10')
+    started = wait(lambda: len(nodes(process)) == 2 and nodes(process))
+    process.send(signal.SIGKILL)
+    wait(lambda: gone(started.values()))
+
+
+@pytest.mark.parametrize('arguments, said', [
+    (('--scenario', 'atlantis'), 'atlantis'), (('--rate', '0'), 'parameter rate is 0'),
+    (('--recording', '/nowhere'), '/nowhere'), (('--seed', '-3'), 'parameter seed is -3')])
+def test_wrong_arguments_are_told_before_anything_starts(demo, arguments, said):
+    process = demo(*arguments)
+    assert process.ends() == 2
+    assert said in process.said and len(process.said.splitlines()) == 1

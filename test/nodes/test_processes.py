@@ -1,0 +1,176 @@
+"""Nodes as processes of their own, found by each other over DDS."""
+
+import random
+import signal
+import time
+
+import pytest
+
+pytest.importorskip('rclpy')
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
+from sensor_msgs.msg import PointCloud2
+
+from marine_tracker.nodes import topics
+from marine_tracker.simulation import scenario
+
+SIMULATOR, TRACKER, PLAYER = 'nodes.radar_simulator', 'nodes.tracker', 'nodes.recording_player'
+READY = {SIMULATOR: 'scenario', TRACKER: 'waiting for', PLAYER: 'recording'}
+
+
+def p(**parameters):
+    """Command-line parameters."""
+    assignments = [('-p', f'{name}:={value}') for name, value in parameters.items()]
+    return ['--ros-args', *(word for pair in assignments for word in pair)]
+
+
+def for_clean():
+    return {name: float(value) for name, value in scenario.load('clean').tracker_parameters(
+        ).items() if not isinstance(value, str)}
+
+
+@pytest.fixture
+def targets(graph, node_helpers):
+    """Listens to `targets`; targets.now() gives the last message as {name: values}."""
+    _, listener = node_helpers
+    ears = listener(graph.bystander(), DiagnosticArray, topics.TARGETS, topics.latched(50))
+
+    def now():
+        return {entry.name: {'status': entry.message,
+                             **{pair.key: pair.value for pair in entry.values}}
+                for entry in (ears[-1].status if len(ears) else ())}
+    ears.now = now
+    return ears
+
+
+def test_all_targets_of_a_clean_scenario_are_confirmed_and_an_estimator_may_change(
+        launch, targets, graph, node_helpers):
+    wait, _ = node_helpers
+    tracker = launch(TRACKER, *p(use_sim_time='true', **for_clean()))
+    simulator = launch(SIMULATOR, *p(scenario='clean', rate=20.0))
+    wait(lambda: len(targets.now()) == 6)
+    assert set(targets.now()) == {f'TT{n:02d}' for n in range(1, 7)}
+    wait(lambda: {values['estimator'] for values in targets.now().values()} == {'imm'})
+
+    client = graph.nodes[0].create_client(SetParameters, '/tracker/set_parameters')
+    wait(client.service_is_ready)
+    future = client.call_async(SetParameters.Request(
+        parameters=[Parameter('estimator', value='cs_kalman').to_parameter_msg()]))
+    wait(future.done)
+    assert future.result().results[0].successful
+    wait(lambda: {values['estimator'] for values in targets.now().values()} == {'cs_kalman'})
+    heard = len(targets)
+    wait(lambda: len(targets) >= heard + 10)
+    assert set(targets.now()) == {f'TT{n:02d}' for n in range(1, 7)}
+    simulator.stop()
+    tracker.stop(signal.SIGTERM)
+
+
+def test_a_recorded_boat_is_followed(launch, targets, node_helpers, recordings):
+    wait, _ = node_helpers
+    tracker = launch(TRACKER, *p(use_sim_time='true', range_sigma_m=12.0, bearing_sigma_deg=0.8,
+                                 vessel_class='small_craft'))
+    player = launch(PLAYER, *p(folder=recordings / 'autosea_joyride', rate=20.0))
+    wait(lambda: any(float(values['speed_kn']) > 5 and int(values['hits_in_10']) >= 8
+                     for values in targets.now().values()))
+    player.stop()
+    tracker.stop()
+
+
+def test_parameters_come_from_a_file(launch, tmp_path, targets, node_helpers):
+    wait, _ = node_helpers
+    file = tmp_path / 'mine.yaml'
+    lines = ''.join(f'    {name}: {value}\n' for name, value in for_clean().items())
+    file.write_text(f'/**:\n  ros__parameters:\n    use_sim_time: true\n'
+                    f'    estimator: cs_kalman\n{lines}')
+    tracker = launch(TRACKER, '--ros-args', '--params-file', str(file))
+    launch(SIMULATOR, *p(scenario='clean', rate=30.0))
+    wait(lambda: targets.now())
+    assert {values['estimator'] for values in targets.now().values()} == {'cs_kalman'}
+    tracker.stop()
+
+
+@pytest.mark.parametrize('module, content, said', [
+    (TRACKER, 'estimatr: imm', 'tracker: unknown parameter estimatr; did you mean estimator?'),
+    (TRACKER, 'range_sigma_m: wide', "tracker: parameter range_sigma_m is 'wide', a string"),
+    (TRACKER, 'confirm_hits: []', 'tracker: parameter confirm_hits has no value'),
+    (TRACKER, 'gate_probability: 1.5', 'tracker: parameter gate_probability is 1.5; it must'),
+    (SIMULATOR, 'rate: 0.0', 'radar_simulator: parameter rate is 0; it must'),
+    (PLAYER, 'folder: 7', 'recording_player: parameter folder is 7, an integer'),
+])
+def test_a_wrong_parameter_in_a_file_stops_the_start_in_one_line(
+        launch, tmp_path, module, content, said):
+    file = tmp_path / 'wrong.yaml'
+    file.write_text(f'/**:\n  ros__parameters:\n    {content}\n')
+    process = launch(module, '--ros-args', '--params-file', str(file))
+    assert process.ends() == 1
+    assert process.said.startswith(said) and len(process.said.splitlines()) == 1
+
+
+def test_two_radars_side_by_side_do_not_hear_each_other(launch, graph, node_helpers):
+    wait, listener = node_helpers
+    node = graph.bystander()
+    tracks = {n: listener(node, Odometry, f'/radar_{n}/tracks') for n in (1, 2)}
+    plots = {n: listener(node, PointCloud2, f'/radar_{n}/radar/plots') for n in (1, 2)}
+    diagnostics = listener(node, DiagnosticArray, topics.DIAGNOSTICS)
+    processes = []
+    for n, name in ((1, 'clean'), (2, 'paper_track')):
+        where = ['-r', f'__ns:=/radar_{n}']
+        processes += [
+            launch(TRACKER, *p(max_plots=100 * n), *where),
+            launch(SIMULATOR, *p(scenario=name), *where)]
+    wait(lambda: len(tracks[1]) and len(tracks[2]))
+    assert {message.child_frame_id for message in tracks[2].messages} == {'track_01'}
+    wait(lambda: {message.child_frame_id for message in tracks[1].messages} >= {
+        f'track_{k:02d}' for k in range(1, 6)})
+    assert max(message.width for message in plots[2].messages) < 6
+    names = {entry.name for message in diagnostics.messages for entry in message.status}
+    assert {'radar_1/tracker: input', 'radar_2/tracker: input'} <= names
+    ids = {entry.hardware_id for message in diagnostics.messages for entry in message.status}
+    assert ids == {'radar_1/radar', 'radar_2/radar'}
+    for process in processes:
+        process.stop()
+
+
+def signalled(launch, number, count):
+    """Start and signal `count` trackers and as many simulators, at random moments of their run."""
+    rng = random.Random(number)
+    for _ in range(count):
+        pair = [launch(TRACKER, *p(use_sim_time='true')),
+                launch(SIMULATOR, *p(scenario='clean', rate=20.0))]
+        for process, module in zip(pair, (TRACKER, SIMULATOR)):
+            assert process.says(READY[module]), process.said
+        time.sleep(rng.uniform(0.0, 0.5))
+        for process in pair:
+            process.stop(number)
+            assert 'Traceback' not in process.said and 'Error' not in process.said
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_node_well(launch, number):
+    signalled(launch, number, 3)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_node_well_twenty_times(launch, number):
+    signalled(launch, number, 20)
+
+
+@pytest.mark.parametrize('seconds', [0.2, 0.6, 1.0])
+def test_a_signal_while_it_starts_ends_a_node_well(launch, seconds):
+    process = launch(TRACKER)
+    time.sleep(seconds)
+    process.send(signal.SIGINT)
+    assert process.ends() == 0, process.said
+
+
+def test_a_simulator_ends_with_its_scenario(launch, tmp_path):
+    file = tmp_path / 'short.yaml'
+    file.write_text('duration_s: 12\nown_ship: {course_deg: 0, speed_kn: 0}\ntargets:\n'
+                    '  - {start: {range_nm: 2, bearing_deg: 10}, course_deg: 0, speed_kn: 9}\n')
+    process = launch(SIMULATOR, *p(scenario=file, rate=50.0))
+    assert process.ends() == 0, process.said
