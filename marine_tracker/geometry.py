@@ -25,7 +25,10 @@ def wrap_angle(angle):
 
 def unit_vector(bearing):
     """[..., 2] east and north of a unit step along the bearing [...]."""
-    return np.stack([np.sin(bearing), np.cos(bearing)], -1)
+    unit = np.empty(np.shape(bearing) + (2,))
+    np.sin(bearing, out=unit[..., 0])
+    np.cos(bearing, out=unit[..., 1])
+    return unit
 
 
 def to_range_bearing(offset):

@@ -30,13 +30,14 @@ def parameter(default, text, *, unit='', low=None, high=None, choices=(), live=F
 def check(parameters) -> None:
     """Raise ValueError for the first field with a wrong type, or outside its limits or choices."""
     for field in dataclasses.fields(parameters):
+        kind: Any = field.type
         value, about = getattr(parameters, field.name), field.metadata
-        if field.type is float and type(value) is int:
+        if kind is float and type(value) is int:
             value = float(value)
             object.__setattr__(parameters, field.name, value)
-        if type(value) is not field.type:
+        if type(value) is not kind:
             raise ValueError(f'parameter {field.name} is {value!r}, a {type(value).__name__}; '
-                             f'it must be a {field.type.__name__}')
+                             f'it must be a {kind.__name__}')
         if isinstance(value, float) and not math.isfinite(value):
             raise ValueError(f'parameter {field.name} is {value}; it must be finite')
         low, high = about['low'], about['high']
@@ -104,27 +105,27 @@ class TrackerParameters:
         60.0 / 22.0, 'Time of one antenna revolution, where the plots do not tell (22 rpm).',
         unit='s', low=0.2, high=120.0)
     gate_probability: float = parameter(
-        0.999, 'Probability that the gate holds the plot of a track.', low=0.5, high=0.999999,
+        0.995, 'Probability that the gate holds the plot of a track.', low=0.5, high=0.999999,
         live=True)
     detection_probability: float = parameter(
-        0.8, 'Probability that a target gives a plot, as the track score assumes it.', low=0.1,
+        0.85, 'Probability that a target gives a plot, as the track score assumes it.', low=0.1,
         high=0.99, live=True)
     confirm_hits: int = parameter(
         3, 'M of M-of-N confirmation: plots needed ...', low=2, high=20, live=True)
     confirm_scans: int = parameter(
         5, 'N of M-of-N confirmation: ... within this many scans.', low=2, high=20, live=True)
     confirm_score: float = parameter(
-        5.0, 'Track score (log-odds against clutter) that confirmation needs as well.',
+        8.0, 'Track score (log-odds against clutter) that confirmation needs as well.',
         low=-10.0, high=50.0, live=True)
     max_score: float = parameter(
-        14.0, 'Cap of the track score: how long a good track outlives its plots. A miss costs '
+        11.0, 'Cap of the track score: how long a good track outlives its plots. A miss costs '
         '-ln(1 - detection_probability); a confirmed track is lost below 0.',
         low=1.0, high=100.0, live=True)
     hold_hits: int = parameter(
         1, 'A confirmed track is lost when its last 10 scans held fewer plots than this.',
         low=1, high=10, live=True)
     max_drift: float = parameter(
-        4.0, 'A coasting track is lost when its position has grown this many times less certain '
+        5.0, 'A coasting track is lost when its position has grown this many times less certain '
         'than a plot.', low=1.0, high=1000.0, live=True)
     max_tracks: int = parameter(
         2000, 'Most tracks held, tentative ones included; no new ones are initiated beyond it.',

@@ -138,6 +138,9 @@ class Tracks(NamedTuple):
 
 def take(rows_of: Any, rows: Any) -> Any:
     """The chosen rows (indices, mask or slice) of a NamedTuple of arrays, nested ones included."""
+    if isinstance(rows, np.ndarray):
+        rows = np.flatnonzero(rows) if rows.dtype == bool else rows
+        return _map(lambda a: a.take(rows, 0), rows_of)
     return _map(lambda a: a[rows], rows_of)
 
 

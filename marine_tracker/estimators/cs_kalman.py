@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import Array, Extrapolation, put
+from ..types import Array, Extrapolation, put, take
 from .contract import Estimator
 from .linear import first_velocity_variance, kalman_update, sandwich
 
@@ -187,11 +187,12 @@ def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state, plots, rows):
-        mean, covariance = predict(state.mean[rows], state.covariance[rows],
-                                   plots.time - state.time[rows], manoeuvre)
+        before = take(state, rows)
+        mean, covariance = predict(before.mean, before.covariance, plots.time - before.time,
+                                   manoeuvre)
         innovation = plots.position - mean[:, POSITION]
-        mean, covariance, _ = kalman_update(mean, covariance, innovation, plots.covariance,
-                                            POSITION)
+        mean, covariance, _, _ = kalman_update(mean, covariance, innovation, plots.covariance,
+                                               POSITION)
         return put(state, rows, CsState(plots.time, mean, covariance))
 
     return Estimator(init, extrapolate, update)

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import Array, Extrapolation, put
+from ..types import Array, Extrapolation, put, take
 from .contract import Estimator
-from .linear import first_velocity_variance, kalman_update, sandwich
+from .linear import first_velocity_variance, kalman_update, sandwich, squared_distance
 
 POSITION = (0, 1)
 
@@ -43,8 +43,8 @@ class ImmState(NamedTuple):
 PRESETS = {
     'ship': Modes(noise=(0.001, 0.6, 0.014, 0.014), turn_rate=(0, 0, 0.021, -0.021),
                   stay=(0.99, 0.8, 0.9, 0.9), period=60 / 22),
-    'small_craft': Modes(noise=(0.05, 4.0, 0.2, 0.2), turn_rate=(0, 0, 0.175, -0.175),
-                         stay=(0.95, 0.8, 0.8, 0.8), period=60 / 22),
+    'small_craft': Modes(noise=(0.01, 8.0, 0.5, 0.5), turn_rate=(0, 0, 0.262, -0.262),
+                         stay=(0.96, 0.85, 0.8, 0.8), period=60 / 22),
 }
 
 
@@ -143,12 +143,11 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance.reshape(count, 4, 4))
 
     def update(state, plots, rows):
-        chosen = ImmState(*(a[rows] for a in state))
-        ahead = predict(chosen, plots.time)
+        ahead = predict(take(state, rows), plots.time)
         innovation = plots.position[:, None] - ahead.mean[..., :2]
-        mean, covariance, (nis, determinant) = kalman_update(
+        mean, covariance, inverse, determinant = kalman_update(
             ahead.mean, ahead.covariance, innovation, plots.covariance[:, None], POSITION)
-        score = -0.5 * (nis + np.log(determinant))
+        score = -0.5 * (squared_distance(innovation, inverse) + np.log(determinant))
         likelihood = np.exp(score - score.max(1, keepdims=True))
         weight = ahead.weight * likelihood + 1e-12                  # no mode is ruled out for ever
         weight /= weight.sum(1, keepdims=True)

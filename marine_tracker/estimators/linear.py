@@ -36,15 +36,20 @@ def kalman_update(mean, covariance, innovation, noise, position):
     """Joint Kalman update of states [..., n] with one position measurement each.
 
     covariance [..., n, n]; innovation [..., 2] m; noise [..., 2, 2] m^2; position: the two
-    indices of the position in the state. Returns mean, covariance and (nis [...], determinant
-    of the innovation covariance [...]), from which a model likelihood follows.
+    indices of the position in the state. Returns mean, covariance and the inverse
+    [..., 2, 2] and determinant [...] of the innovation covariance.
     """
     cross = covariance.take(position, -2)                           # H P
     spread = cross.take(position, -1) + noise                       # S = H P H' + R
     inverse, determinant = invert_2x2(spread)
     gain = np.matmul(inverse, cross)                                # K'
-    row = innovation[..., None, :]
-    mean = mean + np.matmul(row, gain)[..., 0, :]
+    mean = mean + np.matmul(innovation[..., None, :], gain)[..., 0, :]
     covariance = covariance - np.matmul(gain.swapaxes(-1, -2), cross)
-    nis = np.matmul(np.matmul(row, inverse), innovation[..., None])[..., 0, 0]
-    return mean, covariance, (nis, determinant)
+    return mean, covariance, inverse, determinant
+
+
+def squared_distance(innovation, inverse):
+    """Squared Mahalanobis distance [...] of innovations [..., 2] by the inverse [..., 2, 2]."""
+    east, north = innovation[..., 0], innovation[..., 1]
+    return (inverse[..., 0, 0] * east * east + 2 * inverse[..., 0, 1] * east * north
+            + inverse[..., 1, 1] * north * north)

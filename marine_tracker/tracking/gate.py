@@ -29,7 +29,7 @@ def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
     nothing = np.zeros(0, np.int64)
     if not len(bearing) or not len(plot_range):
         return nothing, nothing
-    width = max(float((high - low).sum()) / len(low), 1.0)
+    width = max(2 * float((high - low).sum()) / len(low), 1.0)
     first = np.maximum(low / width, 0.0).astype(np.int64)
     last = (np.minimum(high, plot_range.max()) / width).astype(np.int64)
     # A line of 3 turns for each ring, every plot on it twice, a turn apart: no window wraps.

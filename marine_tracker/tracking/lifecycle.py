@@ -38,17 +38,18 @@ def misses_in_a_row(tracks: Tracks):
     return _SINCE[tracks.history]
 
 
-def record(tracks: Tracks, hit, visible, gained, parameters: TrackerParameters) -> Tracks:
-    """Enter one scan: hit [N] had a plot; visible [N] lay where the radar can see.
+def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters) -> Tracks:
+    """Enter one scan: the tracks `rows` [K] had a plot; visible [N] lay where the radar can see.
 
-    gained [K]: what the plots of the K tracks that were hit add to their score (see `evidence`).
-    A scan in which a track could not be seen and was not is left out of its account.
+    gained [K]: what those plots add to the scores (see `evidence`). A scan in which a track
+    could not be seen and was not is left out of its account.
     """
+    hit = np.zeros(len(visible), bool)
+    hit[rows] = True
     counted = hit | visible
     history = ((tracks.history << 1) | hit) & ((1 << HISTORY) - 1)
-    missed = np.log(1 - parameters.detection_probability)
-    score = tracks.score + missed * (visible & ~hit)
-    score[hit] += gained
+    score = tracks.score + np.log(1 - parameters.detection_probability) * (visible & ~hit)
+    score[rows] += gained
     return tracks._replace(history=np.where(counted, history, tracks.history),
                            score=np.minimum(score, parameters.max_score),
                            age=tracks.age + counted)
@@ -63,11 +64,11 @@ def evidence(nis, log_det, density, detection_probability: float):
     return (np.log(detection_probability / (2 * np.pi * density)) - 0.5 * (nis + log_det))
 
 
-def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now: float):
+def judge(tracks: Tracks, parameters: TrackerParameters, beyond, drift, now: float):
     """Status [N] and reason [N] of a loss, by the named rules.
 
-    hit [N] had a plot in this scan; beyond [N] lies outside the radar's range; drift [N] is the
-    deviation of the extrapolated position over that of a plot; now s.
+    beyond [N] lies outside the radar's range; drift [N] is the deviation of the extrapolated
+    position over that of a plot; now s.
 
     M of N: a tentative track is confirmed by `confirm_hits` plots in `confirm_scans` scans, if
     its score too reaches `confirm_score`, and lost once its plots cannot get there. A confirmed
@@ -77,6 +78,7 @@ def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now
     """
     needed, window = parameters.confirm_hits, parameters.confirm_scans
     tentative = tracks.status == TENTATIVE
+    hit = (tracks.history & 1) == 1
     recent = hits(tracks, window)
     confirmed = ~tentative | ((recent >= needed) & (tracks.score >= parameters.confirm_score))
     # Of the window's scans still to come none may be missing more than it can.

@@ -74,8 +74,7 @@ class Tracker:
         """No tracks yet."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
-        clutter = clutter_map.empty()
-        return Memory(self._initiate(plots, plots, clutter, 1), plots, clutter, 1, 1)
+        return Memory(self._begin(plots, 1), plots, clutter_map.empty(), 1, 1)
 
     def extrapolate(self, tracks: Tracks, time) -> Extrapolation:
         """The tracks at the times [N] s (or one time for all)."""
@@ -100,35 +99,57 @@ class Tracker:
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
                                          p.range_sigma_m, self.bearing_sigma, self.gate_size)
-        held = np.searchsorted(track, count)
-        first, second = track[held:] - count, plot[held:]
-        track, plot, nis, log_det = track[:held], plot[:held], nis[:held], log_det[:held]
+        seam = np.searchsorted(track, count)
+        first, second = track[seam:] - count, plot[seam:]
+        track, plot, nis, log_det = track[:seam], plot[:seam], nis[:seam], log_det[:seam]
 
         # associate
         gain = self.gate_size - nis + (log_det.max(initial=0.0) - log_det) + 1e-9
         plot_of = associate(track, plot, gain, count, len(plots.time))
-        hit = plot_of >= 0
-        rows, taken = np.flatnonzero(hit), plot_of[hit]
-        chosen = take(plots, taken)
+        held_rows = np.flatnonzero(plot_of >= 0)
+        taken = plot_of[held_rows]
+
+        # initiate: from plots of this scan and the last that nobody else explains
+        free = np.ones(len(plots.time), bool)
+        free[taken] = False
+        free[plot[tracks.status[track] != TENTATIVE]] = False       # echoes of held targets
+        first, second = pair_up(lone, plots, first, second, free, p.max_target_speed_mps,
+                                max(0, p.max_tracks - count))
+        free[second] = False
+        begun = take(lone, first)
+        tracks = append(tracks, self._begin(begun, memory.next_id))
+        plot_of = np.concatenate([plot_of, second])
+        rows = np.concatenate([held_rows, np.arange(count, len(plot_of))])
+        chosen = take(plots, plot_of[rows])
 
         # update
         state = self.estimator.update(tracks.state, chosen, rows)
-        time, last_time = ahead.time.copy(), tracks.last_time.copy()
+        time = np.concatenate([ahead.time, np.zeros(len(second))])
+        last_time = tracks.last_time.copy()
         time[rows] = last_time[rows] = chosen.time
-        predicted = ahead.position + (time - ahead.time)[:, None] * ahead.velocity
-        distance, bearing = to_range_bearing(predicted - origin[:count])
-        density = clutter_map.density(memory.clutter, distance, bearing)
-        bearing[rows] = wrap_bearing(chosen.bearing)
-        tracks = tracks._replace(state=state, last_time=last_time, bearing=bearing)
+        later = time[:count] - ahead.time
+        predicted = np.full((len(time), 2), np.nan)
+        predicted[:count] = ahead.position + later[:, None] * ahead.velocity
 
         # lifecycle
-        own = np.flatnonzero(plot_of[track] == plot)                # pairs, as rows ascends
-        gained = lifecycle.evidence(nis[own], log_det[own], density[rows], p.detection_probability)
+        seen_from = np.concatenate([origin[:count], begun.origin])
+        seen_from[rows] = chosen.origin
+        distance, bearing = to_range_bearing(predicted - seen_from)
+        distance[rows], bearing[rows] = chosen.range, wrap_bearing(chosen.bearing)
+        density = clutter_map.density(memory.clutter, chosen.range, bearing[rows])
+        own = np.flatnonzero(plot_of[track] == plot)                # pairs, as held_rows ascends
+        held = len(held_rows)
+        gained = np.concatenate([
+            lifecycle.evidence(nis[own], log_det[own], density[:held], p.detection_probability),
+            first_score(begun, take(chosen, slice(held, None)), density[held:],
+                        p.max_target_speed_mps, p.detection_probability)])
         visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
-        tracks = lifecycle.record(tracks, hit, visible, gained, p)
-        drift = np.sqrt((ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])
-                        / (p.range_sigma_m ** 2 + (distance * self.bearing_sigma) ** 2))
-        status, reason = lifecycle.judge(tracks, p, hit, distance > p.max_range_m, drift, scan.end)
+        tracks = lifecycle.record(tracks._replace(state=state, last_time=last_time,
+                                                  bearing=bearing), rows, gained, visible, p)
+        drift = np.zeros(len(time))
+        drift[:count] = np.sqrt((ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1]) / (
+            p.range_sigma_m ** 2 + (distance[:count] * self.bearing_sigma) ** 2))
+        status, reason = lifecycle.judge(tracks, p, distance > p.max_range_m, drift, scan.end)
         double = duplicates(track, plot, plot_of, ahead, tracks, status)
         status[double], reason[double] = LOST, MERGED
         newly = np.flatnonzero((tracks.number == 0) & (status == CONFIRMED))
@@ -136,25 +157,13 @@ class Tracker:
         number[newly] = memory.next_number + np.arange(len(newly))
         tracks = tracks._replace(status=status, number=number)
 
-        # initiate: from plots of this scan and the last that nobody else explains
-        free = np.ones(len(plots.time), bool)
-        free[taken] = False
-        free[plot[status[track] != TENTATIVE]] = False              # echoes of held targets
-        room = max(0, p.max_tracks - int(np.count_nonzero(status != LOST)))
-        first, second = pair_up(lone, plots, first, second, free, p.max_target_speed_mps, room)
-        new = self._initiate(take(lone, first), take(plots, second), memory.clutter, memory.next_id)
-        free[second] = False
         single = np.ones(len(lone.time), bool)
         single[first] = False
         clutter = clutter_map.learn(memory.clutter, lone.range[single], lone.bearing[single])
-
-        everyone = append(tracks, new)
-        report = Report(np.concatenate([time, new.last_time]), everyone,
-                        np.concatenate([predicted, np.full((len(second), 2), np.nan)]),
-                        np.concatenate([plot_of, second]),
-                        np.concatenate([reason, np.zeros(len(second), np.int8)]))
-        return Memory(take(everyone, everyone.status != LOST), take(plots, free), clutter,
-                      memory.next_id + len(second), memory.next_number + len(newly)), report
+        return Memory(
+            take(tracks, status != LOST), take(plots, free), clutter,
+            memory.next_id + len(second), memory.next_number + len(newly),
+        ), Report(time, tracks, predicted, plot_of, reason)
 
     def adopt(self, memory: Memory, previous: 'Tracker') -> Memory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.
@@ -182,15 +191,12 @@ class Tracker:
         return self.estimator.update(self.estimator.init(plots[0]), plots[1],
                                      np.arange(len(now.time)))
 
-    def _initiate(self, first: Plots, second: Plots, clutter, next_id: int) -> Tracks:
-        """Tentative tracks of two plots each."""
-        p, count = self.parameters, len(first.time)
-        density = clutter_map.density(clutter, second.range, second.bearing)
-        return Tracks(
-            id=np.arange(next_id, next_id + count), number=np.zeros(count, np.int64),
-            status=np.full(count, TENTATIVE, np.int8), history=np.full(count, 0b11),
-            score=first_score(first, second, density, p.max_target_speed_mps,
-                              p.detection_probability),
-            age=np.full(count, 2), first_time=first.time, last_time=second.time,
-            bearing=second.bearing,
-            state=self.estimator.update(self.estimator.init(first), second, np.arange(count)))
+    def _begin(self, plots: Plots, next_id: int) -> Tracks:
+        """Tentative tracks of one plot each."""
+        count = len(plots.time)
+        none = np.zeros(count, np.int64)
+        return Tracks(id=np.arange(next_id, next_id + count), number=none,
+                      status=np.full(count, TENTATIVE, np.int8), history=none + 1,
+                      score=np.zeros(count), age=none + 1, first_time=plots.time,
+                      last_time=plots.time, bearing=plots.bearing,
+                      state=self.estimator.init(plots))

@@ -94,9 +94,7 @@ def test_parameters_come_from_a_file(launch, tmp_path, targets, node_helpers):
 
 @pytest.mark.parametrize('module, content, said', [
     (TRACKER, 'estimatr: imm', 'tracker: unknown parameter estimatr; did you mean estimator?'),
-    (TRACKER, 'range_sigma_m: wide', "tracker: parameter range_sigma_m is 'wide', a string"),
     (TRACKER, 'confirm_hits: []', 'tracker: parameter confirm_hits has no value'),
-    (TRACKER, 'gate_probability: 1.5', 'tracker: parameter gate_probability is 1.5; it must'),
     (SIMULATOR, 'rate: 0.0', 'radar_simulator: parameter rate is 0; it must'),
     (PLAYER, 'folder: 7', 'recording_player: parameter folder is 7, an integer'),
 ])
@@ -120,7 +118,8 @@ def test_two_radars_side_by_side_do_not_hear_each_other(launch, graph, node_help
         where = ['-r', f'__ns:=/radar_{n}']
         processes += [
             launch(TRACKER, *p(max_plots=100 * n), *where),
-            launch(SIMULATOR, *p(scenario=name), *where)]
+            # Their clocks would clash; the trackers go by the stamps alone.
+            launch(SIMULATOR, *p(scenario=name, rate=10.0), *where, '-r', '/clock:=clock')]
     wait(lambda: len(tracks[1]) and len(tracks[2]))
     assert {message.child_frame_id for message in tracks[2].messages} == {'track_01'}
     wait(lambda: {message.child_frame_id for message in tracks[1].messages} >= {
@@ -134,23 +133,26 @@ def test_two_radars_side_by_side_do_not_hear_each_other(launch, graph, node_help
         process.stop()
 
 
-def signalled(launch, number, count):
-    """Start and signal `count` trackers and as many simulators, at random moments of their run."""
+def signalled(launch, number, rounds):
+    """In each round start two trackers and a simulator, and signal them at a random moment."""
     rng = random.Random(number)
-    for _ in range(count):
-        pair = [launch(TRACKER, *p(use_sim_time='true')),
-                launch(SIMULATOR, *p(scenario='clean', rate=20.0))]
-        for process, module in zip(pair, (TRACKER, SIMULATOR)):
+    for _ in range(rounds):
+        started = [(launch(TRACKER, *p(use_sim_time='true')), TRACKER),
+                   (launch(SIMULATOR, *p(scenario='clean', rate=20.0)), SIMULATOR),
+                   (launch(TRACKER, *p(use_sim_time='true')), TRACKER)]
+        for process, module in started:
             assert process.says(READY[module]), process.said
         time.sleep(rng.uniform(0.0, 0.5))
-        for process in pair:
-            process.stop(number)
+        for process, _ in started:
+            process.send(number)
+        for process, _ in started:
+            assert process.ends() == 0, process.said
             assert 'Traceback' not in process.said and 'Error' not in process.said
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_a_node_well(launch, number):
-    signalled(launch, number, 3)
+    signalled(launch, number, 1)
 
 
 @pytest.mark.slow
@@ -160,7 +162,7 @@ def test_a_signal_ends_a_node_well_twenty_times(launch, number):
     signalled(launch, number, 20)
 
 
-@pytest.mark.parametrize('seconds', [0.2, 0.6, 1.0])
+@pytest.mark.parametrize('seconds', [0.2, 0.8])
 def test_a_signal_while_it_starts_ends_a_node_well(launch, seconds):
     process = launch(TRACKER)
     time.sleep(seconds)
