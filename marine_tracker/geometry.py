@@ -20,7 +20,7 @@ def wrap_bearing(angle):
 
 def wrap_angle(angle):
     """The same angle in [-pi, pi): for differences of bearings."""
-    return np.mod(angle + np.pi, 2 * np.pi) - np.pi
+    return wrap_bearing(angle + np.pi) - np.pi
 
 
 def unit_vector(bearing):
@@ -49,16 +49,16 @@ def polar_to_position(range_, bearing, range_sigma, bearing_sigma):
     Returns position [M, 2] m and covariance [M, 2, 2] m^2.
 
     Bearing noise pulls the mean of r (sin b, cos b) in by exp(-sigma_b^2 / 2); dividing by it
-    leaves no bias, and the covariance keeps the second-order terms that matter at long range
-    (Longbin, Xiaoquan, Yiyu, Kang, Bar-Shalom, "Unbiased converted measurements for tracking",
-    IEEE T-AES 34(3), 1998).
+    leaves no bias. The covariance is that of the truth given the measurement, second-order terms
+    included, which matter at long range (Longbin, Xiaoquan, Yiyu, Kang, Bar-Shalom, "Unbiased
+    converted measurements for tracking", IEEE T-AES 34(3), 1998, eq 11).
     """
     shrink = np.exp(-0.5 * bearing_sigma ** 2)
     unit = unit_vector(bearing)
     position = (range_ / shrink)[..., None] * unit
     # Along and across the line of sight. E[cos^2 db] = (1 + shrink^4) / 2.
-    second = (range_ ** 2 + range_sigma ** 2) / (2 * shrink ** 2)
-    along = second * (1 + shrink ** 4) - range_ ** 2
+    second = 0.5 * (range_ ** 2 + range_sigma ** 2)
+    along = (shrink ** -2 - 2) * range_ ** 2 + second * (1 + shrink ** 4)
     across = second * (1 - shrink ** 4)
     covariance = (along - across)[..., None, None] * (unit[..., :, None] * unit[..., None, :])
     covariance[..., 0, 0] += across

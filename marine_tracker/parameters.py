@@ -118,14 +118,14 @@ class TrackerParameters:
         8.0, 'Track score (log-odds against clutter) that confirmation needs as well.',
         low=-10.0, high=50.0, live=True)
     max_score: float = parameter(
-        11.0, 'Cap of the track score: how long a good track outlives its plots. A miss costs '
+        15.3, 'Cap of the track score: how long a good track outlives its plots. A miss costs '
         '-ln(1 - detection_probability); a confirmed track is lost below 0.',
         low=1.0, high=100.0, live=True)
     hold_hits: int = parameter(
         1, 'A confirmed track is lost when its last 10 scans held fewer plots than this.',
         low=1, high=10, live=True)
     max_drift: float = parameter(
-        5.0, 'A coasting track is lost when its position has grown this many times less certain '
+        4.9, 'A coasting track is lost when its position has grown this many times less certain '
         'than a plot.', low=1.0, high=1000.0, live=True)
     max_tracks: int = parameter(
         2000, 'Most tracks held, tentative ones included; no new ones are initiated beyond it.',

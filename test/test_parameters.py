@@ -126,7 +126,9 @@ def test_a_mapping_gives_the_parameters_it_names():
     assert found == TrackerParameters(range_sigma_m=7.5, confirm_hits=4)
 
 
-@pytest.mark.parametrize(('text', 'expected'), [('', {}), ('# nothing\n', {}), ('a: 1\n', {'a': 1})])
+@pytest.mark.parametrize(('text', 'expected'), [
+    ('', {}), ('# nothing\n', {}), ('a: 1\n', {'a': 1}),
+])
 def test_a_yaml_file_gives_its_mapping(tmp_path, text, expected):
     file = tmp_path / 'some.yaml'
     file.write_text(text)

@@ -41,10 +41,10 @@ class ImmState(NamedTuple):
 
 
 PRESETS = {
-    'ship': Modes(noise=(0.001, 0.6, 0.014, 0.014), turn_rate=(0, 0, 0.021, -0.021),
-                  stay=(0.99, 0.8, 0.9, 0.9), period=60 / 22),
+    'ship': Modes(noise=(0.0005, 0.4, 0.015, 0.015), turn_rate=(0, 0, 0.021, -0.021),
+                  stay=(0.995, 0.85, 0.93, 0.93), period=60 / 22),
     'small_craft': Modes(noise=(0.01, 8.0, 0.5, 0.5), turn_rate=(0, 0, 0.262, -0.262),
-                         stay=(0.96, 0.85, 0.8, 0.8), period=60 / 22),
+                         stay=(0.96, 0.8, 0.8, 0.8), period=60 / 22),
 }
 
 

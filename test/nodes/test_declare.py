@@ -65,7 +65,7 @@ def test_the_shipped_parameter_file_is_the_defaults(start, node, kind):
     ('range_sigma_m:=.inf', 'range_sigma_m is inf; it must be finite'),
     ('confirm_hits:=21', 'confirm_hits is 21; it must be between 2 and 20'),
     ('estimator:=kalmann', "estimator is 'kalmann'; it must be one of"),
-    ('confirm_hits:=7', 'confirm_hits is 7; it must not exceed confirm_scans, 6'),
+    ('confirm_hits:=20', 'confirm_hits is 20; it must not exceed confirm_scans'),
 ])
 def test_a_wrong_parameter_stops_the_start_and_is_named(start, text, said):
     with pytest.raises(ValueError, match=said):
@@ -102,7 +102,7 @@ def test_a_live_change_is_applied_after_it_was_accepted(start):
 
 @pytest.mark.parametrize('name, value, said', [
     ('range_sigma_m', -1.0, 'range'), ('estimator', 'kalmann', 'one of'),
-    ('confirm_hits', 7, 'must not exceed'), ('scan_period_s', 3.0, 'read-only'),
+    ('confirm_hits', 20, 'must not exceed'), ('scan_period_s', 3.0, 'read-only'),
     ('range_sigma_m', float('nan'), ''), ('range_sigma_m', 5, 'type')])
 def test_a_live_change_that_is_wrong_is_refused_and_nothing_is_applied(start, name, value, said):
     node, applied = start(), []
@@ -119,9 +119,9 @@ def test_several_changes_at_once_are_judged_together(start):
     declare(node, TrackerParameters)
     follow(node, TrackerParameters, applied.append)
     result = node.set_parameters_atomically([
-        Parameter('confirm_hits', value=8), Parameter('confirm_scans', value=10)])
+        Parameter('confirm_hits', value=15), Parameter('confirm_scans', value=16)])
     assert result.successful
-    assert applied == [TrackerParameters(confirm_hits=8, confirm_scans=10)]
+    assert applied == [TrackerParameters(confirm_hits=15, confirm_scans=16)]
 
 
 def test_a_change_another_callback_refuses_is_not_applied(start):

@@ -67,11 +67,11 @@ def test_a_scenario_is_published_as_it_is_simulated(graph, node_helpers, ears, s
     wait(lambda: len(truth) == sum(len(truth.time) for _, truth in pairs))
     told = iter(truth.messages)
     for _, exact in pairs:
-        for target, time, position in zip(exact.target, exact.time, exact.position):
+        for target, at, position in zip(exact.target, exact.time, exact.position):
             message = next(told)
             assert message.child_frame_id == f'target_{target}'
             assert convert.nanoseconds(message.header.stamp) == pytest.approx(
-                1e9 * (1 + time), abs=2)
+                1e9 * (1 + at), abs=2)
             assert convert.odometry_to_own_ship(message)[0] == pytest.approx(position)
     assert not graph.errors
 
@@ -79,13 +79,13 @@ def test_a_scenario_is_published_as_it_is_simulated(graph, node_helpers, ears, s
 def test_own_ship_its_fix_and_the_clock_cover_each_scan_in_order(
         graph, node_helpers, ears, short):
     wait, _ = node_helpers
-    node = graph.make(RadarSimulatorNode, scenario=short, rate=10.0)
+    node = graph.make(RadarSimulatorNode, scenario=short, rate=30.0)
     wait(lambda: node.done)
     own, fixes, clock = ears[topics.ODOMETRY], ears[topics.FIX], ears['/clock']
     wait(lambda: len(ears[topics.PLOTS]) >= 11 and len(own) == len(fixes))
     at = stamps(own.messages)
     assert (np.diff(at) > 0).all()
-    assert np.diff(at).max() * 1e-9 <= 1.3 * own_ship_period(10.0)
+    assert np.diff(at).max() * 1e-9 <= 1.3 * own_ship_period(30.0)
     ends = 1e9 + np.arange(1, 12) * PERIOD_NS       # each known before its plots are out
     assert np.abs(ends[:, None] - at).min(1).max() < 100
     for message, fix in zip(own.messages, fixes.messages):
@@ -94,7 +94,7 @@ def test_own_ship_its_fix_and_the_clock_cover_each_scan_in_order(
         assert (fix.latitude, fix.longitude) == pytest.approx(
             geodetic_from_local(position, 54.0, 8.0))
     ticks = np.array([convert.nanoseconds(message.clock) for message in clock.messages])
-    assert (np.diff(ticks) >= 0).all() and ticks[0] >= 1e9 and len(ticks) > 30
+    assert (np.diff(ticks) >= 0).all() and ticks[0] >= 1e9 and len(ticks) > 20
 
 
 def test_the_period_is_kept_within_one_percent_by_the_wall(launch, graph, node_helpers):
@@ -118,13 +118,13 @@ def test_the_period_is_kept_within_one_percent_by_the_wall(launch, graph, node_h
     assert len(own_ship) >= 3 * 27          # 10 Hz
 
 
-def test_a_rate_of_twenty_is_twenty_times_as_fast(graph, node_helpers, ears):
+def test_a_rate_of_forty_is_forty_times_as_fast(graph, node_helpers, ears):
     wait, _ = node_helpers
-    graph.make(RadarSimulatorNode, scenario='clean', rate=20.0)
+    graph.make(RadarSimulatorNode, scenario='clean', rate=40.0)
     wait(lambda: len(ears[topics.PLOTS]) >= 2)
     began, count = time.monotonic(), len(ears[topics.PLOTS])
     wait(lambda: len(ears[topics.PLOTS]) >= count + 22)
-    assert time.monotonic() - began == pytest.approx(3.0, rel=0.15)
+    assert time.monotonic() - began == pytest.approx(1.5, rel=0.2)
 
 
 def test_a_machine_too_slow_for_the_rate_loses_nothing(graph, node_helpers, ears, short):
@@ -161,7 +161,7 @@ def test_a_recording_is_published_as_it_was_recorded(
 def test_the_real_recording_is_published_whole(graph, node_helpers, ears, recordings):
     wait, _ = node_helpers
     folder = recordings / 'autosea_joyride'
-    node = graph.make(RecordingPlayerNode, folder=str(folder), rate=200.0)
+    node = graph.make(RecordingPlayerNode, folder=str(folder), rate=600.0)
     wait(lambda: node.done)
     recording = csv_folder.read(folder)
     wait(lambda: len(ears[topics.PLOTS]) == len(recording.scans) == 238)

@@ -168,11 +168,3 @@ def test_a_signal_while_it_starts_ends_a_node_well(launch, seconds):
     time.sleep(seconds)
     process.send(signal.SIGINT)
     assert process.ends() == 0, process.said
-
-
-def test_a_simulator_ends_with_its_scenario(launch, tmp_path):
-    file = tmp_path / 'short.yaml'
-    file.write_text('duration_s: 12\nown_ship: {course_deg: 0, speed_kn: 0}\ntargets:\n'
-                    '  - {start: {range_nm: 2, bearing_deg: 10}, course_deg: 0, speed_kn: 9}\n')
-    process = launch(SIMULATOR, *p(scenario=file, rate=50.0))
-    assert process.ends() == 0, process.said
