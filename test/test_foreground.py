@@ -5,6 +5,7 @@ import pty
 import select
 import shutil
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -28,11 +29,19 @@ time.sleep(30)
 """
 
 
+# Makes standard input the terminal that Ctrl-C belongs to, then becomes make.
+MAKE = """\
+import fcntl, os, termios
+fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+os.execvp('make', ['make'])
+"""
+
+
 @pytest.fixture
 def make_in_terminal(tmp_path):
     """Starts make as a terminal's foreground job, its recipe the helper and a command.
 
-    Returns the process id, the terminal, and what was printed until the command was ready.
+    Returns the process and the terminal, once the command is ready.
     """
     if shutil.which('make') is None:
         pytest.skip('make is not installed')
@@ -42,20 +51,18 @@ def make_in_terminal(tmp_path):
         (tmp_path / 'command.py').write_text(COMMAND)
         (tmp_path / 'Makefile').write_text(
             f'all:\n\t@exec {sys.executable} {HELPER} {sys.executable} -u command.py {exit_code}\n')
-        process, terminal = pty.fork()
-        if process == 0:
-            os.chdir(tmp_path)
-            os.execvp('make', ['make'])
+        terminal, inside = pty.openpty()
+        process = subprocess.Popen([sys.executable, '-c', MAKE], cwd=tmp_path, stdin=inside,
+                                   stdout=inside, stderr=inside, start_new_session=True)
+        os.close(inside)
         started.append((process, terminal))
         read_until(terminal, 'ready')
         return process, terminal
     yield start
     for process, terminal in started:
         os.close(terminal)
-        try:
-            os.kill(process, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
+        process.kill()
+        process.wait()
 
 
 def read_until(terminal, text, timeout=20.0):
@@ -68,32 +75,22 @@ def read_until(terminal, text, timeout=20.0):
     return shown
 
 
-def exit_code(process, timeout=20.0):
-    deadline = time.monotonic() + timeout
-    while time.monotonic() < deadline:
-        ended, status = os.waitpid(process, os.WNOHANG)
-        if ended:
-            return os.waitstatus_to_exitcode(status)
-        time.sleep(0.02)
-    raise AssertionError('make did not end')
-
-
 def test_ctrl_c_lets_the_command_end_and_make_returns_zero(make_in_terminal):
     process, terminal = make_in_terminal(exit_code=0)
     os.write(terminal, b'\x03')
     read_until(terminal, 'ended by SIGINT')
-    assert exit_code(process) == 0
+    assert process.wait(20) == 0
 
 
 def test_terminating_make_ends_the_command(make_in_terminal):
     process, terminal = make_in_terminal(exit_code=0)
-    os.kill(process, signal.SIGTERM)
+    process.terminate()
     read_until(terminal, 'ended by SIGTERM')
-    assert exit_code(process) == -signal.SIGTERM
+    assert process.wait(20) == -signal.SIGTERM
 
 
 def test_failure_of_the_command_is_failure_of_make(make_in_terminal):
     process, terminal = make_in_terminal(exit_code=3)
     os.write(terminal, b'\x03')
     read_until(terminal, 'Error 3')
-    assert exit_code(process) == 2
+    assert process.wait(20) == 2

@@ -17,7 +17,6 @@ import numpy as np
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
-from rclpy.node import Node
 from rosgraph_msgs.msg import Clock as ClockMessage
 from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
 
@@ -25,6 +24,7 @@ from ..geometry import geodetic_from_local
 from ..types import OwnShip, Scan, Truth
 from . import convert, topics
 from .convert import OdometryPool
+from .runnable import RunnableNode
 
 FIRST_S = 1.0                   # s, where simulated time begins
 TICK_S = 0.05                   # longest wait between two looks at the time
@@ -60,7 +60,7 @@ class Playback:
     `done` becomes true when the last revolution is out (never in a loop).
     """
 
-    def __init__(self, node: Node, make: Callable[[], Iterator[Revolution]], rate: float,
+    def __init__(self, node: RunnableNode, make: Callable[[], Iterator[Revolution]], rate: float,
                  loop: bool, origin: tuple[float, float] | None = None):
         self.node, self.rate, self.origin = node, rate, origin
         self.done = False
@@ -72,12 +72,12 @@ class Playback:
         self._first = min(float(first.own_ship.time[0]), first.scan.start)
         self._sample = 0                        # of the next revolution's own-ship samples
         reliable = topics.reliable
-        self._plots = node.create_publisher(PointCloud2, topics.PLOTS, reliable())
-        self._readable = node.create_publisher(PointCloud, topics.PLOTS_READABLE, reliable())
-        self._odometry = node.create_publisher(Odometry, topics.ODOMETRY, reliable())
-        self._truth = node.create_publisher(Odometry, topics.TRUTH, reliable(topics.BURST))
-        self._fix = node.create_publisher(NavSatFix, topics.FIX, reliable()) if origin else None
-        self._clock = (node.create_publisher(ClockMessage, '/clock', reliable(1))
+        self._plots = node.publisher(PointCloud2, topics.PLOTS, reliable())
+        self._readable = node.publisher(PointCloud, topics.PLOTS_READABLE, reliable())
+        self._odometry = node.publisher(Odometry, topics.ODOMETRY, reliable())
+        self._truth = node.publisher(Odometry, topics.TRUTH, reliable(topics.BURST))
+        self._fix = node.publisher(NavSatFix, topics.FIX, reliable()) if origin else None
+        self._clock = (node.publisher(ClockMessage, '/clock', reliable(1))
                        if rate != 1 else None)
         self._pool = OdometryPool()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)

@@ -82,13 +82,13 @@ class TrackerNode(RunnableNode):
         self._label = f'{where}/{self.get_name()}' if where else self.get_name()
         self._hardware_id = f'{where}/radar' if where else 'radar'
         burst = topics.reliable(topics.BURST)
-        self._to_tracks = self.create_publisher(Odometry, topics.TRACKS, burst)
-        self._to_extrapolations = self.create_publisher(Odometry, topics.EXTRAPOLATIONS, burst)
-        self._to_cloud = self.create_publisher(
+        self._to_tracks = self.publisher(Odometry, topics.TRACKS, burst)
+        self._to_extrapolations = self.publisher(Odometry, topics.EXTRAPOLATIONS, burst)
+        self._to_cloud = self.publisher(
             PointCloud2, topics.TRACKS_CLOUD, topics.reliable())
-        self._to_targets = self.create_publisher(DiagnosticArray, topics.TARGETS, topics.latched())
-        self._to_markers = self.create_publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
-        self._to_diagnostics = self.create_publisher(
+        self._to_targets = self.publisher(DiagnosticArray, topics.TARGETS, topics.latched())
+        self._to_markers = self.publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
+        self._to_diagnostics = self.publisher(
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
         self._pool = OdometryPool()
         self._targets = TargetsWriter(self._hardware_id)
