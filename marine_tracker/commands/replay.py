@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..heap import keep_freed_memory
 from ..recording import csv_folder, track_file
 from ..simulation import radar, scenario
 from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
@@ -53,6 +54,7 @@ def run(args) -> int:
     """Write the track file and say in one line what was tracked."""
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
+    keep_freed_memory()
     source = open_source(args.source, args.seed)
     tracker = Tracker(tracker_options.parameters(args, source.tracker_parameters))
     scans = _with_progress(source.scans, source.total)

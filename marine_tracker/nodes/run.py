@@ -11,6 +11,8 @@ import signal
 import sys
 import threading
 
+from ..heap import keep_freed_memory
+
 
 def run(name: str, class_name: str) -> int:
     """Run the class of module `NAME_node` until it is done or SIGINT or SIGTERM comes.
@@ -29,6 +31,7 @@ def run(name: str, class_name: str) -> int:
     from rclpy.impl.implementation_singleton import rclpy_implementation as implementation
     from rclpy.signals import SignalHandlerOptions
 
+    keep_freed_memory()
     make_node = getattr(importlib.import_module(f'.{name}_node', __package__), class_name)
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)

@@ -203,6 +203,8 @@ class TrackerNode(RunnableNode):
         listeners = [publisher.get_subscription_count() for publisher in (
             self._to_tracks, self._to_extrapolations, self._to_cloud, self._to_markers)]
         estimate = tracker.extrapolate(tracks, report.time)
+        if listeners[2]:            # one message, so first
+            self._to_cloud.publish(self._cloud(scan, report, estimate))
         targets = np.flatnonzero(tracks.number > 0)
         targets = targets[np.argsort(tracks.number[targets])]
         alive = targets[tracks.status[targets] != LOST]
@@ -212,8 +214,6 @@ class TrackerNode(RunnableNode):
         if listeners[1]:
             self._publish_each(self._to_extrapolations, frames, tracker.extrapolate(
                 take(tracks, alive), report.time[alive] + self.period))
-        if listeners[2]:
-            self._to_cloud.publish(self._cloud(scan, report, estimate))
         own_position, _ = own_ship_at(scan.own_ship, scan.end)
         shown = take(tracks, targets)
         seen = view(shown, report.reason[targets], tracker.extrapolate(shown, scan.end),
