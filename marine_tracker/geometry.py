@@ -90,7 +90,7 @@ def locate(polar: PolarPlots, own_ship: OwnShip, range_sigma: float, bearing_sig
     """
     origin, _ = own_ship_at(own_ship, polar.time)
     offset, covariance = polar_to_position(polar.range, polar.bearing, range_sigma, bearing_sigma)
-    return Plots(polar.time, polar.range, polar.bearing, polar.amplitude,
+    return Plots(polar.time, polar.range, wrap_bearing(polar.bearing), polar.amplitude,
                  origin, origin + offset, covariance)
 
 

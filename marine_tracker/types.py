@@ -78,7 +78,7 @@ class Plots(NamedTuple):
 
     time        [M]        s, when the beam passed
     range       [M]        m
-    bearing     [M]        rad, clockwise from true north
+    bearing     [M]        rad in [0, 2 pi), clockwise from true north
     amplitude   [M]        dB
     origin      [M, 2]     m, the antenna's position at `time`
     position    [M, 2]     m, east and north, unbiased
@@ -138,15 +138,16 @@ class Tracks(NamedTuple):
 
 def take(rows_of: Any, rows: Any) -> Any:
     """The chosen rows (indices, mask or slice) of a NamedTuple of arrays, nested ones included."""
-    if isinstance(rows, np.ndarray):
-        rows = np.flatnonzero(rows) if rows.dtype == bool else rows
-        return _map(lambda a: a.take(rows, 0), rows_of)
-    return _map(lambda a: a[rows], rows_of)
+    if isinstance(rows, slice):
+        return _map(lambda a: a[rows], rows_of)
+    if rows.dtype == bool:
+        rows = rows.nonzero()[0]
+    return _map(lambda a: a.take(rows, 0), rows_of)
 
 
 def append(first: Any, second: Any) -> Any:
     """The rows of `first`, then those of `second`."""
-    return _map(lambda a, b: np.concatenate([a, b]), first, second)
+    return _map(lambda *pair: np.concatenate(pair), first, second)
 
 
 def where(choose_first: Any, first: Any, second: Any) -> Any:
@@ -167,7 +168,6 @@ def put(into: Any, rows: Any, new: Any) -> Any:
 
 def _map(f, *structures):
     first = structures[0]
-    if isinstance(first, tuple):
-        parts = [_map(f, *columns) for columns in zip(*structures)]
-        return type(first)(*parts) if hasattr(first, '_fields') else tuple(parts)
-    return f(*structures)
+    parts = [_map(f, *column) if isinstance(column[0], tuple) else f(*column)
+             for column in zip(*structures)]
+    return first._make(parts) if hasattr(first, '_make') else tuple(parts)

@@ -77,16 +77,9 @@ def model(frequency: float, step):
     Either sign of step for phi; q is that of |step|. Relative error below 1e-12.
     """
     y = frequency * step
-    powers = np.empty((SERIES_TERMS, len(y)))
-    powers[0] = 1.0
-    powers[1:] = y
-    np.multiply.accumulate(powers, out=powers)
-    out = _SERIES.T @ powers
-    if len(y) and y.min() < 0:
-        np.abs(y, out=powers[1])
-        powers[2:] = powers[1]
-        np.multiply.accumulate(powers, out=powers)
-        out[3:] = _SERIES.T[3:] @ powers
+    out = _SERIES.T @ _powers(y)
+    if step.size and step.min() < 0:
+        out[3:] = _SERIES.T[3:] @ _powers(np.abs(y))
     units = np.empty_like(out)
     units[0], units[1], units[2] = 1.0, step, step * step
     size = np.abs(step)
@@ -97,6 +90,19 @@ def model(frequency: float, step):
     if far.any():
         out[:3, far], out[3:, far] = _closed_form(frequency, step[far])
     return out[:3], out[3:]
+
+
+def _powers(y):
+    """y^0 ... y^(SERIES_TERMS - 1), [SERIES_TERMS, N], each doubling in one product."""
+    powers = np.empty((SERIES_TERMS, len(y)))
+    powers[0] = 1.0
+    powers[1] = y
+    known = 2
+    while known < SERIES_TERMS:
+        more = min(known - 1, SERIES_TERMS - known)
+        np.multiply(powers[1:1 + more], powers[known - 1], out=powers[known:known + more])
+        known += more
+    return powers
 
 
 def _closed_form(alpha, step):
@@ -159,9 +165,25 @@ def predict(mean, covariance, step, manoeuvre: Manoeuvre, rows=slice(None)):
     table[1:7], table[7:] = q * variance[:, 0], q * variance[:, 1]
     noise = table.T.take(_Q[rows][:, rows], 1)
 
-    mean = (np.matmul(transition, mean[..., None])
-            + np.matmul(drive, np.clip(acceleration, -limit, limit)[..., None]))[..., 0]
-    return mean, sandwich(transition, covariance) + noise
+    abar = np.minimum(np.maximum(acceleration, -limit), limit)
+    mean = (np.matmul(transition, mean[..., None]) + np.matmul(drive, abar[..., None]))[..., 0]
+    moved = sandwich(transition, covariance)
+    moved += noise
+    return mean, moved
+
+
+def predict_mean(mean, step, manoeuvre: Manoeuvre):
+    """States [N, 6] moved by the steps [N] s, as `predict` does, without covariances."""
+    (phi0, phi1, phi2), _ = model(manoeuvre.frequency, step)
+    limit = manoeuvre.max_acceleration
+    out = np.empty_like(mean)
+    for x, v, a in ((0, 1, 2), (3, 4, 5)):
+        held = np.clip(mean[:, a], -limit, limit)
+        out[:, x] = mean[:, x] + step * mean[:, v] + phi2 * mean[:, a] + (
+            0.5 * step * step - phi2) * held
+        out[:, v] = mean[:, v] + phi1 * mean[:, a] + (step - phi1) * held
+        out[:, a] = phi0 * mean[:, a] + (1 - phi0) * held
+    return out
 
 
 def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:

@@ -10,10 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..types import Array, Extrapolation, put, take
+from . import linear_modes
 from .contract import Estimator
-from .linear import first_velocity_variance, kalman_update, sandwich, squared_distance
-
-POSITION = (0, 1)
+from .linear import first_velocity_variance
 
 
 class Modes(NamedTuple):
@@ -48,45 +47,11 @@ PRESETS = {
 }
 
 
-def transition_power(stay, period):
-    """Eigen-form of the mode chain: function of steps [N] s to transition matrices [N, J, J].
-
-    A mode left is left for each other mode alike.
-    """
-    stay = np.asarray(stay, float)
-    count = len(stay)
-    matrix = np.tile(((1 - stay) / max(count - 1, 1))[:, None], (1, count))
-    np.fill_diagonal(matrix, stay)
-    values, vectors = np.linalg.eig(matrix)
-    values, vectors = values.real, vectors.real
-    if values.min() <= 0:
-        raise ValueError(f'stay probabilities {tuple(stay)} are too small for a chain in '
-                         'continuous time; they must be well above 1 / number of modes')
-    inverse = np.linalg.inv(vectors)
-    decay = np.log(values) / period
-
-    def over(step):
-        powers = np.exp(np.abs(step)[:, None] * decay)
-        flat = powers @ (vectors.T[:, :, None] * inverse[:, None, :]).reshape(count, -1)
-        return np.clip(flat.reshape(-1, count, count), 0.0, 1.0)
-    return over
-
-
-def turn_matrices(turn_rate, step):
-    """Transition matrices [N, J, 4, 4] of coordinated turns (clockwise) over the steps [N] s."""
-    angle = step[:, None] * turn_rate
-    sin, cos = np.sin(angle), np.cos(angle)
-    straight = turn_rate == 0
-    divisor = np.where(straight, 1.0, turn_rate)
-    along = np.where(straight, step[:, None], sin / divisor)
-    across = np.where(straight, 0.0, (1 - cos) / divisor)
-    matrix = np.zeros(angle.shape + (4, 4))
-    matrix[..., 0, 0] = matrix[..., 1, 1] = 1.0
-    matrix[..., 0, 2] = matrix[..., 1, 3] = along
-    matrix[..., 0, 3], matrix[..., 1, 2] = across, -across
-    matrix[..., 2, 2] = matrix[..., 3, 3] = cos
-    matrix[..., 2, 3], matrix[..., 3, 2] = sin, -sin
-    return matrix
+def bank_of(modes: Modes) -> linear_modes.Bank:
+    """The modes as one chain; a mode left is left for each other mode alike."""
+    chain = linear_modes.Chain(slice(0, len(modes.noise)),
+                               linear_modes.transition_power(modes.stay, modes.period))
+    return linear_modes.bank(modes.noise, modes.turn_rate, [chain])
 
 
 def imm(modes: Modes, max_speed: float) -> Estimator:
@@ -94,38 +59,18 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
 
     max_speed, m/s, of the targets sets the velocity variance before the second plot.
     """
-    noise = np.asarray(modes.noise, float)
-    turn_rate = np.asarray(modes.turn_rate, float)
-    transition = transition_power(modes.stay, modes.period)
-    start = transition(np.array([1e6]))[0, 0]                       # the chain's stationary law
+    bank = bank_of(modes)
+    start = linear_modes.stationary(bank.chains[0])
 
     def predict(state, time):
+        """Columns [14, J, N] of the modes and their weights [J, N] at the times [N] s."""
         step = time - state.time
-        chain = transition(step)
-        joint = chain * state.weight[:, :, None]                    # from i to j
-        weight = joint.sum(1)
-        share = joint / weight[:, None, :]
-        mean = np.matmul(share.transpose(0, 2, 1), state.mean)
-        apart = state.mean[:, :, None] - mean[:, None]              # [N, i, j, 4]
-        spread = state.covariance[:, :, None] + apart[..., None] * apart[..., None, :]
-        count, j = weight.shape
-        covariance = np.matmul(
-            share.transpose(0, 2, 1)[:, :, None, :],
-            spread.transpose(0, 2, 1, 3, 4).reshape(count, j, j, 16)).reshape(count, j, 4, 4)
-
-        move = turn_matrices(turn_rate, step)
-        mean = np.matmul(move, mean[..., None])[..., 0]
-        covariance = sandwich(move, covariance)
-        size = np.abs(step)[:, None]
-        for axis in (0, 1):
-            covariance[:, :, axis, axis] += noise * size ** 3 / 3
-            covariance[:, :, axis, axis + 2] += noise * size ** 2 / 2
-            covariance[:, :, axis + 2, axis] += noise * size ** 2 / 2
-            covariance[:, :, axis + 2, axis + 2] += noise * size
-        return ImmState(time, weight, mean, covariance)
+        rows, weight = linear_modes.mix(
+            bank, linear_modes.pack(state.mean, state.covariance), state.weight, step)
+        return linear_modes.move(bank, linear_modes.columns_of(rows), step), weight.T
 
     def init(plots):
-        count, j = len(plots.time), len(noise)
+        count, j = len(plots.time), len(start)
         mean = np.zeros((count, j, 4))
         mean[..., :2] = plots.position[:, None]
         covariance = np.zeros((count, j, 4, 4))
@@ -134,23 +79,15 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
         return ImmState(plots.time.copy(), np.tile(start, (count, 1)), mean, covariance)
 
     def extrapolate(state, time):
-        ahead = predict(state, time)
-        mean = np.matmul(ahead.weight[:, None, :], ahead.mean)[:, 0]
-        apart = ahead.mean - mean[:, None]
-        count, j = ahead.weight.shape
-        spread = ahead.covariance + apart[..., None] * apart[..., None, :]
-        covariance = np.matmul(ahead.weight[:, None, :], spread.reshape(count, j, 16))
-        return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance.reshape(count, 4, 4))
+        mean, covariance = linear_modes.unpack(linear_modes.combine(*predict(state, time)).T)
+        return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state, plots, rows):
-        ahead = predict(take(state, rows), plots.time)
-        innovation = plots.position[:, None] - ahead.mean[..., :2]
-        mean, covariance, inverse, determinant = kalman_update(
-            ahead.mean, ahead.covariance, innovation, plots.covariance[:, None], POSITION)
-        score = -0.5 * (squared_distance(innovation, inverse) + np.log(determinant))
-        likelihood = np.exp(score - score.max(1, keepdims=True))
-        weight = ahead.weight * likelihood + 1e-12                  # no mode is ruled out for ever
-        weight /= weight.sum(1, keepdims=True)
-        return put(state, rows, ImmState(plots.time, weight, mean, covariance))
+        columns, weight = predict(take(state, rows), plots.time)
+        columns, score = linear_modes.correct(columns, plots.position.T,
+                                              linear_modes.packed_noise(plots.covariance))
+        weight = linear_modes.reweigh(weight, score)
+        mean, covariance = linear_modes.unpack(linear_modes.rows_of(columns))
+        return put(state, rows, ImmState(plots.time, weight.T, mean, covariance))
 
     return Estimator(init, extrapolate, update)

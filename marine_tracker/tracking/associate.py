@@ -27,9 +27,9 @@ def associate(track, plot, gain, tracks: int, plots: int):
     track_free = np.bincount(track, shared, tracks)[track] == 0     # nobody else wants its plots
     plot_free = np.bincount(plot, torn, plots)[plot] == 0           # its tracks want nothing else
     for free, group in ((track_free, track), (plot_free & ~track_free, plot)):
-        best = _best_of_each(group, gain, np.flatnonzero(free))
+        best = _best_of_each(group, gain, free.nonzero()[0])
         plot_of[track[best]] = plot[best]
-    hard = np.flatnonzero(~(track_free | plot_free))
+    hard = (~(track_free | plot_free)).nonzero()[0]
     if len(hard):
         best = hard[_solve(track[hard], plot[hard], gain[hard])]
         plot_of[track[best]] = plot[best]

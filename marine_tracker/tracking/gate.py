@@ -13,6 +13,8 @@ from ..types import Plots
 from .sweep import Sweep
 
 TURN = 2 * np.pi
+HAIR = 1e-8             # rad
+PLOTS_A_RING = 256
 
 
 def gate_size(probability: float) -> float:
@@ -24,34 +26,38 @@ def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
     """All pairs (track [P], plot [P]) with the plot inside the track's window.
 
     low, high [N] m: ranges of the window; bearing, half_width [N] rad: its bearings, periodic.
-    plot_range [M] m, plot_bearing [M] rad. Tracks come in ascending order.
+    plot_range [M] m, plot_bearing [M] rad in [0, 2 pi). Tracks come in ascending order.
     """
-    nothing = np.zeros(0, np.int64)
     if not len(bearing) or not len(plot_range):
-        return nothing, nothing
-    width = max(2 * float((high - low).sum()) / len(low), 1.0)
-    first = np.maximum(low / width, 0.0).astype(np.int64)
-    last = (np.minimum(high, plot_range.max()) / width).astype(np.int64)
-    # A line of 3 turns for each ring, every plot on it twice, a turn apart: no window wraps.
-    key = (plot_range / width).astype(np.int64) * (3 * TURN) + wrap_bearing(plot_bearing)
-    key = np.concatenate([key, key + TURN])
-    order = np.argsort(key)
-    key, order = key[order], order % len(plot_range)
-
-    whole = half_width >= np.pi
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    # Every plot stands there twice, a turn apart, so that no window wraps round; one of a whole
+    # turn ends where no plot is, or it would meet the first one again.
+    whole = half_width > np.pi - HAIR
     start = np.where(whole, 0.0, wrap_bearing(bearing - half_width))
-    stop = np.where(whole, np.nextafter(TURN, 0.0), start + 2 * half_width)
-    rings = np.maximum(last - first + 1, 0)
-    track = np.repeat(np.arange(len(bearing)), rings)
-    line = (np.arange(len(track)) - np.repeat(np.cumsum(rings) - rings - first, rings)) * (3 * TURN)
-    begin = np.searchsorted(key, line + start[track], 'left')
-    count = np.searchsorted(key, line + stop[track], 'right') - begin
-    total = int(count.sum())
-    if not total:
-        return nothing, nothing
-    place = np.arange(total) - np.repeat(np.cumsum(count) - count - begin, count)
-    track, plot = np.repeat(track, count), order[place]
-    inside = (plot_range[plot] >= low[track]) & (plot_range[plot] <= high[track])
+    stop = np.where(whole, TURN - HAIR, start + 2 * half_width)
+    track, key = np.arange(len(bearing)), np.minimum(plot_bearing, TURN - 2 * HAIR)
+    if len(plot_range) > PLOTS_A_RING:
+        # Rings as wide as two windows, and not so many that they hold hardly a plot. Each has a
+        # line of its own to lay its bearings on, 3 turns long.
+        most = plot_range.max()
+        width = max(2 * (high - low).sum() / len(low),
+                    most * (PLOTS_A_RING / len(plot_range)))
+        first = np.maximum(low / width, 0.0).astype(np.int64)
+        rings = np.maximum((np.minimum(high, most) / width).astype(np.int64) - first + 1, 0)
+        track = track.repeat(rings)
+        line = (np.arange(len(track)) - (rings.cumsum() - rings - first).repeat(rings)) * (3 * TURN)
+        key = (plot_range / width).astype(np.int64) * (3 * TURN) + key
+        start, stop = line + start[track], line + stop[track]
+    key = np.concatenate([key, key + TURN])
+    order = key.argsort()
+    key = key[order]
+    begin = key.searchsorted(start, 'left')
+    count = key.searchsorted(stop, 'right') - begin
+    track = track.repeat(count)
+    place = np.arange(len(track)) - (count.cumsum() - count - begin).repeat(count)
+    plot = order[place] % len(plot_range)
+    distance = plot_range[plot]
+    inside = (distance >= low[track]) & (distance <= high[track])
     return track[inside], plot[inside]
 
 
@@ -72,25 +78,29 @@ def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origi
     a, b, d = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     sin, cos = offset.T / np.maximum(distance, 1e-9)
     reach = np.sqrt(size)
-    along = reach * np.sqrt(sin * sin * a + 2 * sin * cos * b + cos * cos * d + range_sigma ** 2)
-    # A plot's noise grows with its own range, at most `along` farther out than the track.
+    spread = sin * sin * a + 2 * sin * cos * b + cos * cos * d
+    # What grows with a plot's range is taken at the farthest: its noise across, and the second
+    # order of a coarse bearing along, shift and spread (geometry.polar_to_position).
+    most = distance + reach * np.sqrt(spread + range_sigma ** 2)
+    second = most * bearing_sigma ** 2
+    along = reach * np.sqrt(spread + range_sigma ** 2 + 1.5 * second * second) + 0.5 * second
     noise = (distance + along) * bearing_sigma
-    across = reach * np.sqrt(cos * cos * a - 2 * sin * cos * b + sin * sin * d + noise * noise)
+    across = reach * np.sqrt(a + d - spread + noise * noise)
+    half_width = _half_width(distance, along, across)
     if sweep.period:
         # The plot's time may differ from the track's: by little, but where the revolution
         # begins by a whole one.
-        speed = np.hypot(*velocity.T)
         turned = np.mod(bearing - sweep.bearing0, TURN)
-        angle = across / np.maximum(distance, across)
-        seam = (turned < angle) | (turned > TURN - angle)
-        slack = speed * sweep.period * np.where(seam, 1.0, angle / TURN)
+        seam = (turned < half_width) | (turned > TURN - half_width)
+        share = np.where(seam | (half_width > np.pi / 4), 1.0, half_width / TURN)
+        slack = np.hypot(*velocity.T) * sweep.period * share
         along, across = along + slack, across + slack
-    nearest = distance - along
-    half_width = np.where(nearest > 0, np.arctan2(across, np.maximum(nearest, 1e-9)), np.pi)
+        half_width = _half_width(distance, along, across)
     # Sideways offsets lie farther out than the arc, the more the nearer the track is.
     farthest = np.hypot(distance + along, across)
 
-    track, plot = window_pairs(nearest, farthest, bearing, half_width, plots.range, plots.bearing)
+    track, plot = window_pairs(distance - along, farthest, bearing, half_width,
+                               plots.range, plots.bearing)
     later = (plots.time[plot] - time[track])[:, None]
     apart = plots.position[plot] - position[track] - later * velocity[track]
     de, dn = apart.T
@@ -100,3 +110,9 @@ def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origi
     nis = (d * de * de - 2 * b * de * dn + a * dn * dn) / determinant
     inside = nis < size
     return track[inside], plot[inside], nis[inside], np.log(determinant[inside])
+
+
+def _half_width(distance, along, across):
+    """Bearings [N] rad either side within which offsets along and across [N] m lie."""
+    nearest = distance - along
+    return np.where(nearest > 0, np.arctan2(across, np.maximum(nearest, 1e-9)), np.pi)

@@ -43,11 +43,12 @@ def pair_up(before: Plots, now: Plots, first, second, free, max_speed: float, ro
     step = now.time[second] - before.time[first]
     way = now.position[second] - before.position[first]
     length = np.hypot(*way.T)
-    unit = way / np.maximum(length, 1e-9)[:, None]
+    way[length == 0] = 1.0, 0.0         # at rest: any direction will do
+    unit = way / np.hypot(*way.T)[:, None]
     spread = before.covariance[first] + now.covariance[second]
     sigma = np.sqrt((unit[:, None] @ spread @ unit[..., None])[:, 0, 0])    # along the way
     excess = np.maximum(length - max_speed * step, 0.0) / sigma
-    fits = np.flatnonzero((excess ** 2 <= PAIRING_GATE) & (step > 0))
+    fits = ((excess ** 2 <= PAIRING_GATE) & (step > 0)).nonzero()[0]
     return _greedy(first[fits], second[fits], (length / sigma)[fits], room)
 
 

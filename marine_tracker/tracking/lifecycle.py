@@ -13,29 +13,23 @@ TEN = 10            # scans in which the standards count a target's plots
 IN_THE_DARK = 30    # scans without a plot after which even a track in the blind zone is lost
 
 
-def _tables():
-    """Set bits of every history, and scans since the last set one."""
-    histories = np.arange(1 << HISTORY, dtype=np.int32)
-    count = np.zeros(len(histories), np.int8)
-    for k in range(HISTORY):
-        count += ((histories >> k) & 1).astype(np.int8)
-    since = np.full(len(histories), HISTORY, np.int8)
-    for k in reversed(range(HISTORY)):
-        since[(histories >> k) & 1 == 1] = k
-    return count, since
-
-
-_COUNT, _SINCE = _tables()
+_HALF = HISTORY // 2
+_BITS = (np.arange(1 << _HALF)[:, None] >> np.arange(_HALF)) & 1        # of every half history
+_COUNT = _BITS.sum(1)
+_SINCE = np.where(_BITS.any(1), _BITS.argmax(1), _HALF)
 
 
 def hits(tracks: Tracks, scans: int):
     """Plots [N] of each track in its last `scans` scans (at most types.HISTORY)."""
-    return _COUNT[tracks.history & ((1 << scans) - 1)]
+    recent = tracks.history & ((1 << scans) - 1)
+    count = _COUNT[recent & (len(_COUNT) - 1)]
+    return count if scans <= _HALF else count + _COUNT[recent >> _HALF]
 
 
 def misses_in_a_row(tracks: Tracks):
     """Scans [N] since the last plot, at most types.HISTORY."""
-    return _SINCE[tracks.history]
+    since = _SINCE[tracks.history & (len(_SINCE) - 1)]
+    return np.where(since < _HALF, since, _HALF + _SINCE[tracks.history >> _HALF])
 
 
 def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters) -> Tracks:
@@ -64,11 +58,11 @@ def evidence(nis, log_det, density, detection_probability: float):
     return (np.log(detection_probability / (2 * np.pi * density)) - 0.5 * (nis + log_det))
 
 
-def judge(tracks: Tracks, parameters: TrackerParameters, beyond, drift, now: float):
+def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now: float):
     """Status [N] and reason [N] of a loss, by the named rules.
 
-    beyond [N] lies outside the radar's range; drift [N] is the deviation of the extrapolated
-    position over that of a plot; now s.
+    hit [N] had a plot in this scan; beyond [N] lies outside the radar's range; drift [N] is the
+    deviation of the extrapolated position over that of a plot; now s.
 
     M of N: a tentative track is confirmed by `confirm_hits` plots in `confirm_scans` scans, if
     its score too reaches `confirm_score`, and lost once its plots cannot get there. A confirmed
@@ -78,7 +72,6 @@ def judge(tracks: Tracks, parameters: TrackerParameters, beyond, drift, now: flo
     """
     needed, window = parameters.confirm_hits, parameters.confirm_scans
     tentative = tracks.status == TENTATIVE
-    hit = (tracks.history & 1) == 1
     recent = hits(tracks, window)
     confirmed = ~tentative | ((recent >= needed) & (tracks.score >= parameters.confirm_score))
     # Of the window's scans still to come none may be missing more than it can.

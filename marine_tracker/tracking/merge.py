@@ -25,11 +25,11 @@ def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, statu
     if not starved.any():
         return double
     owner = np.full(plot.max(initial=-1) + 1, -1)
-    has = np.flatnonzero((plot_of >= 0) & (plot_of < len(owner)))
+    has = ((plot_of >= 0) & (plot_of < len(owner))).nonzero()[0]
     owner[plot_of[has]] = has
-    look = np.flatnonzero(starved[track] & (owner[plot] >= 0))
+    look = (starved[track] & (owner[plot] >= 0)).nonzero()[0]
     one, other = track[look], owner[plot[look]]
-    keep = status[other] >= status[one]
+    keep = (status[one] == TENTATIVE) | (status[other] != TENTATIVE)
     one, other = one[keep], other[keep]
     if not len(one):
         return double

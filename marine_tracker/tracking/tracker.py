@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..estimators import ESTIMATORS
-from ..geometry import locate, own_ship_at, to_range_bearing, wrap_bearing
+from ..geometry import locate, own_ship_at, to_range_bearing
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
 from . import clutter_map, lifecycle
@@ -99,14 +99,14 @@ class Tracker:
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
                                          p.range_sigma_m, self.bearing_sigma, self.gate_size)
-        seam = np.searchsorted(track, count)
+        seam = track.searchsorted(count)
         first, second = track[seam:] - count, plot[seam:]
         track, plot, nis, log_det = track[:seam], plot[:seam], nis[:seam], log_det[:seam]
 
         # associate
         gain = self.gate_size - nis + (log_det.max(initial=0.0) - log_det) + 1e-9
         plot_of = associate(track, plot, gain, count, len(plots.time))
-        held_rows = np.flatnonzero(plot_of >= 0)
+        held_rows = (plot_of >= 0).nonzero()[0]
         taken = plot_of[held_rows]
 
         # initiate: from plots of this scan and the last that nobody else explains
@@ -135,9 +135,9 @@ class Tracker:
         seen_from = np.concatenate([origin[:count], begun.origin])
         seen_from[rows] = chosen.origin
         distance, bearing = to_range_bearing(predicted - seen_from)
-        distance[rows], bearing[rows] = chosen.range, wrap_bearing(chosen.bearing)
-        density = clutter_map.density(memory.clutter, chosen.range, bearing[rows])
-        own = np.flatnonzero(plot_of[track] == plot)                # pairs, as held_rows ascends
+        distance[rows], bearing[rows] = chosen.range, chosen.bearing
+        density = clutter_map.density(memory.clutter, chosen.range, chosen.bearing)
+        own = (plot_of[track] == plot).nonzero()[0]                # pairs, as held_rows ascends
         held = len(held_rows)
         gained = np.concatenate([
             lifecycle.evidence(nis[own], log_det[own], density[:held], p.detection_probability),
@@ -149,10 +149,11 @@ class Tracker:
         drift = np.zeros(len(time))
         drift[:count] = np.sqrt((ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1]) / (
             p.range_sigma_m ** 2 + (distance[:count] * self.bearing_sigma) ** 2))
-        status, reason = lifecycle.judge(tracks, p, distance > p.max_range_m, drift, scan.end)
+        status, reason = lifecycle.judge(tracks, p, plot_of >= 0, distance > p.max_range_m,
+                                         drift, scan.end)
         double = duplicates(track, plot, plot_of, ahead, tracks, status)
         status[double], reason[double] = LOST, MERGED
-        newly = np.flatnonzero((tracks.number == 0) & (status == CONFIRMED))
+        newly = ((tracks.number == 0) & (status == CONFIRMED)).nonzero()[0]
         number = tracks.number.copy()
         number[newly] = memory.next_number + np.arange(len(newly))
         tracks = tracks._replace(status=status, number=number)

@@ -1,0 +1,246 @@
+"""Extrapolation by a generalised wavelet network over a bank of filters (after paper 000).
+
+Thirteen filters follow every track (`bank`). After each plot a trained wavelet network looks at
+how they disagree and how the plots fit them, and says how much each is worth and what all of them
+get wrong:
+
+    x(t) = base(t) + sum_j w_j (expert_j(t) - base(t)) + c(t),   w = softmax(l + network)
+
+with l the log mode probabilities of the base IMM. The network never feeds back into the filters,
+so leaving it out is taking another output. That happens, track by track, where its expectations
+fit the plots worse than CS-Kalman's by more than `FALL` for the last dozen plots or so, or where
+it says anything that is not a number; it stays away until it has been better `RETURN` times in a
+row.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..networks import gwnn_weights
+from ..networks.wavelet_network import forward
+from ..types import Array, Extrapolation, put, take, where
+from . import bank as filters
+from . import cs_kalman, gwnn_inputs, linear_modes
+from .contract import Estimator
+from .linear import sandwich
+
+GATE, REFUSALS = 16.0, 2        # squared distance from the base; plots refused in a row, at most
+WARM = 10                       # plots before the network is heard
+FADE = 3.0                      # scans ahead up to which the network speaks
+OTHERS = -5.0                   # log weight of experts that are no modes of the base, silent network
+FALL, BACK, RETURN = 1.6, 1.0, 5
+KEEP = 0.9                      # of J, a plot
+WORST = 25.0                    # squared residual that counts at most
+EXPECTED = 2.2                  # squared residual of a good filter, sigma^2: where J starts
+WARMUP, GWNN, FALLBACK = 0.0, 1.0, 2.0
+STATUS = ('WARMUP', 'GWNN', 'FALLBACK')
+REASONS = ('', 'expectations worse than those of CS-Kalman', 'network output is not a number')
+
+# The network's outputs: what it adds to the experts' log weights; corrections of the position
+# when it speaks and per scan ahead, and of the velocity; in the units of `gwnn_inputs`.
+LOGITS = slice(0, filters.EXPERTS)
+AT_ONCE, PER_SCAN, OF_VELOCITY = slice(13, 15), slice(15, 17), slice(17, 19)
+OUTPUTS = 19
+SPREADS = 8                     # log ratio of the variances to the base's: now, a scan ahead
+
+
+class Monitor(NamedTuple):
+    """How the network fares, [N] each.
+
+    status      WARMUP, GWNN or FALLBACK
+    network     J of the network, heard or not: mean squared residual of its expectations, sigma^2
+    cs          J of CS-Kalman
+    better      plots in a row at which a network not heard was the better one
+    reason      of FALLBACK: index into REASONS
+    """
+
+    status: Array
+    network: Array
+    cs: Array
+    better: Array
+    reason: Array
+
+
+class GwnnState(NamedTuple):
+    """bank, memory, monitor; output [N, 27]: what the network said after the last plot."""
+
+    bank: filters.BankState
+    memory: gwnn_inputs.Memory
+    monitor: Monitor
+    output: Array
+
+
+class Account(NamedTuple):
+    """For display, one row a track.
+
+    status  [N]  index into STATUS
+    rho     [N]  J of the network over J of CS-Kalman
+    network [N]  J of the network, sigma^2
+    cs      [N]  J of CS-Kalman, sigma^2
+    reason  [N]  index into REASONS
+    """
+
+    status: NDArray[np.int8]
+    rho: Array
+    network: Array
+    cs: Array
+    reason: NDArray[np.int8]
+
+
+def account(state: GwnnState) -> Account:
+    """Why each track is extrapolated as it is."""
+    monitor = state.monitor
+    return Account(monitor.status.astype(np.int8), monitor.network / monitor.cs, monitor.network,
+                   monitor.cs, monitor.reason.astype(np.int8))
+
+
+class Look(NamedTuple):
+    """What the network's words are about: the filters at some time.
+
+    apart       [4, 13, N]  experts from the base, in the units of `gwnn_inputs`
+    log_weight  [13, N]     what the experts are worth to a silent network
+    scans       [N]         ahead of the last plot
+    """
+
+    apart: Array
+    log_weight: Array
+    scans: Array
+
+
+def look(state: filters.BankState, frame, ahead: filters.Ahead, time) -> Look:
+    """The filters at the times [N] s, as the network speaks of them."""
+    log_weight = np.full((filters.EXPERTS, len(frame)), OTHERS)
+    log_weight[:4] = np.log(ahead.weight[filters.BASE] + 1e-4)
+    scans = (time - state.time) / gwnn_inputs.SCAN
+    return Look(gwnn_inputs.apart(frame, ahead), log_weight, np.clip(scans, 0.0, FADE))
+
+
+def fuse(output, at: Look):
+    """The network's correction [4, N] of the base, from its outputs [N, 19 or more]."""
+    output = output.T
+    weight = at.log_weight + output[LOGITS]
+    weight = np.exp(weight - weight.max(0))
+    weight /= weight.sum(0)
+    out = (at.apart * weight).sum(1)
+    out[:2] += output[AT_ONCE] + at.scans * output[PER_SCAN]
+    out[2:] += output[OF_VELOCITY]
+    return out
+
+
+def advance(bank: filters.BankState, memory: gwnn_inputs.Memory, plots):
+    """Filters and memories of N rows after one plot each; and what the filters had expected.
+
+    A plot far off is refused by all filters alike, up to REFUSALS times in a row.
+    """
+    expected = filters.expect(bank, plots)
+    used = ~((expected.nis > GATE) & (memory.refused < REFUSALS))
+    after = filters.correct(expected, plots)
+    if not used.all():
+        after = where(used, after, bank)
+    memory = gwnn_inputs.remember(memory, expected, plots, plots.time - bank.time, used)
+    return after, memory, expected
+
+
+def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Estimator:
+    """The estimator.
+
+    max_speed  m/s, of the targets: the velocity variance before the second plot
+    period     s, of the radar
+    """
+    def speak(state, memory):
+        """What the network says [N, 27] of rows, 0 while they are warming up."""
+        out = np.zeros((len(state.time), OUTPUTS + SPREADS))
+        warm = np.flatnonzero(memory.plots >= WARM)
+        if len(warm):
+            seen = gwnn_inputs.inputs(take(state, warm), take(memory, warm), period)
+            out[warm, :OUTPUTS] = forward(weights.fusion, seen)
+            out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
+        return out
+
+    def init(plots):
+        count = len(plots.time)
+        zero = np.zeros(count)
+        monitor = Monitor(zero, zero + EXPECTED, zero + EXPECTED, zero.copy(), zero.copy())
+        return GwnnState(filters.begin(plots, max_speed), gwnn_inputs.begin(plots), monitor,
+                         np.zeros((count, OUTPUTS + SPREADS)))
+
+    def extrapolate(state, time):
+        begun, frame = state.bank.time, state.memory.frame
+        near = np.clip(time, begun, begun + FADE * period)
+        columns = filters.base(state.bank, time)
+        mean, covariance = linear_modes.unpack(columns.T)
+        mean = mean.copy()
+        heard = np.flatnonzero(state.monitor.status == GWNN)
+        if len(heard):
+            rows = take(state, heard)
+            at = look(rows.bank, frame[heard], filters.look(rows.bank, near[heard]), near[heard])
+            shift = gwnn_inputs.from_sigma(frame[heard], fuse(rows.output, at)).T
+            # Beyond what it was trained for, the network's correction is carried on straight.
+            shift[:, :2] += (time - near)[heard, None] * shift[:, 2:]
+            mean[heard] += shift
+            covariance[heard] = respread(covariance[heard], rows.output[:, OUTPUTS:],
+                                         frame[heard], at.scans)
+        fallen = np.flatnonzero(state.monitor.status == FALLBACK)
+        if len(fallen):
+            rows = take(state.bank, fallen)
+            mean[fallen], covariance[fallen] = cs_kalman.predict(
+                rows.cs_mean, rows.cs_covariance, (time - begun)[fallen], filters.MANOEUVRE,
+                cs_kalman.POSITION_VELOCITY)
+        return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
+
+    def update(state, plots, rows):
+        before = take(state, rows)
+        frame = before.memory.frame
+        bank, memory, expected = advance(before.bank, before.memory, plots)
+        at = look(before.bank, frame, expected.ahead, plots.time)
+        shift = gwnn_inputs.from_sigma(frame, fuse(before.output, at))
+        output = speak(bank, memory)
+        sound = np.isfinite(output).all(1)
+        monitor = judge(before.monitor, plots, expected.ahead, shift, memory, sound)
+        return put(state, rows, GwnnState(bank, memory, monitor,
+                                          np.where(sound[:, None], output, 0.0)))
+
+    return Estimator(init, extrapolate, update)
+
+
+def respread(covariance, ratio, frame, scans):
+    """Covariances [N, 4, 4] with variances along and across scaled, correlations kept.
+
+    ratio [N, 8]: logs of the variances' ratios, at once and a scan ahead.
+    """
+    part = np.minimum(scans, 1.0)[:, None]
+    scale = np.exp(0.5 * (ratio[:, :4] + part * (ratio[:, 4:] - ratio[:, :4])))
+    line = np.stack([frame[:, :2], np.stack([frame[:, 1], -frame[:, 0]], 1)], 1)    # [N, 2, 2]
+    stretch = np.zeros_like(covariance)
+    for at in (slice(0, 2), slice(2, 4)):
+        stretch[:, at, at] = np.matmul(line.swapaxes(1, 2), scale[:, at, None] * line)
+    return sandwich(stretch, covariance)
+
+
+def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, sound) -> Monitor:
+    """The monitor after one plot each.
+
+    shift [4, N]: the network's correction of the base, m; sound [N]: whether its new output is
+    all numbers; memory: after the plots.
+    """
+    sigma = memory.frame[:, 2:].T
+
+    def residual(position):
+        off = gwnn_inputs.turn(memory.frame, plots.position.T - position) / sigma
+        size = (off * off).sum(0)
+        return np.where(size < WORST, size, WORST)                  # nan counts as worst
+    speaking = memory.plots > WARM              # before, its output was still empty
+    network, cs = (
+        np.where(speaking, KEEP * j + (1 - KEEP) * residual(position), j)
+        for j, position in ((monitor.network, ahead.mean[:2] + shift[:2]),
+                            (monitor.cs, ahead.experts[:2, filters.CS])))
+    rho = network / cs
+    fallen = monitor.status == FALLBACK
+    better = np.where(fallen & sound & (rho < BACK), monitor.better + 1, 0.0)
+    away = np.where(fallen, better < RETURN, rho > FALL) | ~sound
+    status = np.where(memory.plots < WARM, WARMUP, np.where(away, FALLBACK, GWNN))
+    reason = np.where(status != FALLBACK, 0.0, np.where(
+        ~sound, 2.0, np.where(fallen, np.maximum(monitor.reason, 1.0), 1.0)))
+    return Monitor(status, network, cs, better, reason)

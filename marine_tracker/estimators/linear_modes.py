@@ -1,0 +1,246 @@
+"""Linear-Gaussian modes of motion, many at once: what `imm` and the bank of `gwnn` are made of.
+
+A mode is constant velocity or a coordinated turn, with the state [e n ve vn]. All J modes of all
+N tracks are worked on together, as *columns* [14, J, N]: the four means, then the ten different
+entries of the covariance, row by row (`PACKED`). Whole-array sums and products of such columns
+cost a tenth of what stacks of 4 x 4 matrix products do.
+
+Modes may belong to several chains (IMM filters): `Chain` says which and how they change.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ..types import Array
+
+# Entry [i, j] of a covariance by its place among the ten packed ones, and the other way round.
+ROW, COLUMN = np.triu_indices(4)
+PACKED = ROW * 4 + COLUMN
+UNPACKED = np.zeros((4, 4), int)
+UNPACKED[ROW, COLUMN] = UNPACKED[COLUMN, ROW] = np.arange(10)
+LEAST_WEIGHT = 1e-12            # no mode is ruled out for ever
+
+
+class Chain(NamedTuple):
+    """Modes that one target passes between.
+
+    modes  a slice of the bank's modes
+    over   function of steps [N] s to the transition matrices [N, J, J]
+    """
+
+    modes: slice
+    over: Callable[[Array], Array]
+
+
+class Bank(NamedTuple):
+    """The modes of a bank; those in no chain are filters of their own.
+
+    noise      [J, 1]  m^2/s^3, density of the white acceleration of each axis
+    turn_rate  [J, 1]  rad/s, clockwise positive; 0 for constant velocity
+    chains     the IMM filters among them
+    """
+
+    noise: Array
+    turn_rate: Array
+    chains: tuple[Chain, ...]
+
+
+def bank(noise, turn_rate, chains) -> Bank:
+    """A bank from plain sequences."""
+    return Bank(np.array(noise, float)[:, None], np.array(turn_rate, float)[:, None],
+                tuple(chains))
+
+
+def transition_power(stay, period, entered=None):
+    """A mode chain in continuous time: function of steps [N] s to transition matrices [N, J, J].
+
+    stay     [J]  probability to be in the same mode `period` s later
+    entered  [J]  how readily each mode is entered when another is left; all alike by default
+    """
+    stay = np.asarray(stay, float)
+    count = len(stay)
+    share = np.ones(count) if entered is None else np.asarray(entered, float)
+    matrix = np.tile(share, (count, 1))
+    np.fill_diagonal(matrix, 0.0)
+    matrix *= ((1 - stay) / np.maximum(matrix.sum(1), 1e-300))[:, None]
+    np.fill_diagonal(matrix, stay)
+    values, vectors = np.linalg.eig(matrix)     # real: a chain of this form is reversible
+    values, vectors = values.real, vectors.real
+    if values.min() <= 0:
+        raise ValueError(f'stay probabilities {tuple(stay)} are too small for a chain in '
+                         'continuous time; they must be well above 1 / number of modes')
+    inverse = np.linalg.inv(vectors)
+    decay = np.log(values) / period
+    outer = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(count, -1)
+
+    def over(step):
+        powers = np.exp(np.abs(step)[:, None] * decay)
+        return np.clip((powers @ outer).reshape(-1, count, count), 0.0, 1.0)
+    return over
+
+
+def stationary(chain: Chain):
+    """The law [J] of a chain left alone for ever."""
+    return chain.over(np.array([1e6]))[0, 0]
+
+
+def pack(mean, covariance):
+    """Rows [N, J, 14] of means [N, J, 4] and covariances [N, J, 4, 4]."""
+    entries = covariance.reshape(covariance.shape[:2] + (16,)).take(PACKED, 2)
+    return np.concatenate([mean, entries], 2)
+
+
+def unpack(rows):
+    """Means [..., 4] and covariances [..., 4, 4] of rows [..., 14]."""
+    return rows[..., :4], rows[..., 4:].take(UNPACKED, -1)
+
+
+def columns_of(rows):
+    """Columns [14, J, N] of rows [N, J, 14]."""
+    return np.ascontiguousarray(rows.transpose(2, 1, 0))
+
+
+def rows_of(columns):
+    """Rows [N, J, 14] of columns [14, J, N]."""
+    return np.ascontiguousarray(columns.transpose(2, 1, 0))
+
+
+def _shares(chain: Chain, weight, step):
+    """Mode probabilities after the step, and the shares [N, to, from] each mode is mixed of."""
+    joint = chain.over(step) * weight[:, :, None]                   # from i to j
+    ahead = joint.sum(1)
+    return ahead, np.ascontiguousarray((joint / ahead[:, None, :]).swapaxes(1, 2))
+
+
+def mix(bank: Bank, rows, weight, step):
+    """Rows [N, J, 14] and weights [N, J] after the mode changes of the steps [N] s.
+
+    Blom and Bar-Shalom, IEEE T-AC 33(8), 1988, eq 7-9, in second moments: those of a mixture are
+    the mixture of those of its parts.
+    """
+    centre = rows[:, :1, :4]                    # keeps the squares small
+    mixed = rows.copy()
+    mixed[..., :4] -= centre
+    _add_squares(mixed, 1.0)
+    weight = weight.copy()
+    for chain in bank.chains:
+        weight[:, chain.modes], share = _shares(chain, weight[:, chain.modes], step)
+        mixed[:, chain.modes] = np.matmul(share, mixed[:, chain.modes])
+    _add_squares(mixed, -1.0)
+    mixed[..., :4] += centre
+    return mixed, weight
+
+
+def _add_squares(rows, sign):
+    """Add sign times the square of the means to the covariances, in place."""
+    mean = rows[..., :4]
+    rows[..., 4:] += sign * mean.take(ROW, -1) * mean.take(COLUMN, -1)
+
+
+def mix_means(bank: Bank, mean, weight, step):
+    """As `mix`, of the means [N, J, 4] alone."""
+    mean, weight = mean.copy(), weight.copy()
+    for chain in bank.chains:
+        weight[:, chain.modes], share = _shares(chain, weight[:, chain.modes], step)
+        mean[:, chain.modes] = np.matmul(share, mean[:, chain.modes])
+    return mean, weight
+
+
+def _turn(bank: Bank, step):
+    """sin and cos [J, N] of the angles turned; metres along and across per m/s of velocity."""
+    angle = bank.turn_rate * step
+    sin, cos = np.sin(angle), np.cos(angle)
+    straight = bank.turn_rate == 0
+    divisor = np.where(straight, 1.0, bank.turn_rate)
+    return sin, cos, np.where(straight, step, sin / divisor), (1 - cos) / divisor
+
+
+def move_means(bank: Bank, mean, step):
+    """Means [4, J, N] moved by the steps [N] s."""
+    sin, cos, along, across = _turn(bank, step)
+    e, n, ve, vn = mean
+    return np.stack([e + along * ve + across * vn, n - across * ve + along * vn,
+                     cos * ve + sin * vn, cos * vn - sin * ve])
+
+
+def move(bank: Bank, columns, step):
+    """Columns [14, J, N] moved by the steps [N] s, of either sign; noise grows with |step|.
+
+    With A = [[1, G], [0, R]] and P = [[X, C], [C', V]]: D = C + G V, then X + G C' + D G',
+    D R' and R V R'.
+    """
+    s, c, a, b = _turn(bank, step)
+    e, n, ve, vn, xee, xen, cee, cen, xnn, cne, cnn, vee, ven, vnn = columns
+    out = np.empty_like(columns)
+    out[0], out[1] = e + a * ve + b * vn, n - b * ve + a * vn
+    out[2], out[3] = c * ve + s * vn, c * vn - s * ve
+    dee, den = cee + a * vee + b * ven, cen + a * ven + b * vnn
+    dne, dnn = cne - b * vee + a * ven, cnn - b * ven + a * vnn
+    size = np.abs(step)
+    noise = bank.noise * size
+    out[4] = xee + a * (cee + dee) + b * (cen + den) + noise * (size * size / 3)
+    out[5] = xen + a * (cne + den) + b * (cnn - dee)
+    out[8] = xnn + a * (cnn + dnn) - b * (cne + dne) + noise * (size * size / 3)
+    half = noise * (size / 2)
+    out[6], out[7] = c * dee + s * den + half, c * den - s * dee
+    out[9], out[10] = c * dne + s * dnn, c * dnn - s * dne + half
+    cc, ss, cs = c * c, s * s, c * s
+    out[11] = cc * vee + 2 * cs * ven + ss * vnn + noise
+    out[12] = (cc - ss) * ven + cs * (vnn - vee)
+    out[13] = ss * vee - 2 * cs * ven + cc * vnn + noise
+    return out
+
+
+def innovate(columns, plot, noise):
+    """Innovations [2, J, N], their squared distances [J, N] and their inverse covariances' parts.
+
+    plot [2, N] m; noise [3, N] m^2: its covariance's ee, en, nn. The parts are ee, en, nn and
+    the determinant of S, each [J, N].
+    """
+    de, dn = plot[0] - columns[0], plot[1] - columns[1]
+    see, sen, snn = columns[4] + noise[0], columns[5] + noise[1], columns[8] + noise[2]
+    determinant = see * snn - sen * sen
+    distance = (snn * de * de - 2 * sen * de * dn + see * dn * dn) / determinant
+    return (de, dn), distance, (see, sen, snn, determinant)
+
+
+def correct(columns, plot, noise):
+    """Kalman update of columns [14, J, N] with one plot a track; also the log-likelihoods [J, N].
+
+    plot [2, N] m; noise [3, N] m^2: its covariance's ee, en, nn. Log-likelihoods are up to a
+    constant.
+    """
+    (de, dn), distance, (see, sen, snn, determinant) = innovate(columns, plot, noise)
+    iee, ien, inn = snn / determinant, -sen / determinant, see / determinant
+    ye, yn = iee * de + ien * dn, ien * de + inn * dn               # inv(S) innovation
+    first, second = columns[[4, 5, 6, 7]], columns[[5, 8, 9, 10]]   # rows of H P
+    out = np.empty_like(columns)
+    out[:4] = columns[:4] + first * ye + second * yn
+    gain_first, gain_second = iee * first + ien * second, ien * first + inn * second
+    for k, (i, j) in enumerate(zip(ROW, COLUMN)):
+        out[4 + k] = columns[4 + k] - first[i] * gain_first[j] - second[i] * gain_second[j]
+    return out, -0.5 * (distance + np.log(determinant))
+
+
+def reweigh(weight, score):
+    """Mode probabilities [J, N] of one chain after plots of the log-likelihoods [J, N]."""
+    weight = weight * np.exp(score - score.max(0)) + LEAST_WEIGHT
+    return weight / weight.sum(0)
+
+
+def combine(columns, weight):
+    """Mean and covariance [14, N] of mixtures of columns [14, J, N] with the weights [J, N]."""
+    mean = (columns[:4] * weight).sum(1)
+    apart = columns[:4] - mean[:, None]
+    out = np.empty((14, columns.shape[2]))
+    out[:4] = mean
+    for k, (i, j) in enumerate(zip(ROW, COLUMN)):
+        out[4 + k] = ((columns[4 + k] + apart[i] * apart[j]) * weight).sum(0)
+    return out
+
+
+def packed_noise(covariance):
+    """[3, N] ee, en, nn of plots' covariances [N, 2, 2]."""
+    return np.stack([covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]])

@@ -1,0 +1,179 @@
+"""True tracks of ships by kind of motion, and the plots a radar has of them: to train and judge.
+
+The radar is at rest at [0, 0]; B tracks of K scans are made at once. Each scan's rotation takes
+SUB_STEPS steps of straight motion, fine beside any turn here.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import polar_to_position, to_range_bearing, unit_vector
+from ..types import Array, Plots
+
+SUB_STEPS = 4
+LONGEST_PHASE = 8               # scans: a manoeuvre's phase ends so many scans after it
+
+
+class Ships(NamedTuple):
+    """B tracks of K scans.
+
+    time        [B, K]     s
+    position    [B, K, 2]  m, east and north
+    velocity    [B, K, 2]  m/s
+    manoeuvre   [B, K]     whether the ship turns or changes speed
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    manoeuvre: NDArray[np.bool_]
+
+
+class Kind(NamedTuple):
+    """How ships of a kind move.
+
+    begin    chance a scan that a manoeuvre begins
+    turns    part of the manoeuvres that are turns; the others change speed
+    radius   m, least and most, of a turn
+    lateral  m/s^2, most in a turn
+    angle    rad, most, of a turn
+    weave    whether the course swings all the time
+    drift    part of the ships whose speed and course wander slowly
+    """
+
+    begin: float
+    turns: float = 0.75
+    radius: tuple[float, float] = (150.0, 2000.0)
+    lateral: float = 1.2
+    angle: float = float(np.radians(150))
+    weave: bool = False
+    drift: float = 0.5
+
+
+KINDS = {
+    'steady': Kind(0.0, drift=0.0),
+    'mix': Kind(1 / 80),
+    'frequent': Kind(1 / 35),
+    'sharp': Kind(1 / 45, turns=0.95, radius=(150.0, 450.0)),
+    'weave': Kind(0.0, weave=True),
+    'agile': Kind(1 / 10, radius=(15.0, 150.0), lateral=4.0, angle=float(np.radians(240))),
+    'drift': Kind(0.0, drift=1.0),
+}
+
+
+def sail(kinds, ranges, steps, rng) -> Ships:
+    """Ships of the kinds [B] (names) that begin at the ranges [B] m.
+
+    steps [B, K] s: time from the scan before.
+    """
+    count, scans = steps.shape
+    every = [KINDS[name] for name in kinds]
+    begin, turns, lateral, angle, drift = (
+        np.array([getattr(kind, name) for kind in every])
+        for name in ('begin', 'turns', 'lateral', 'angle', 'drift'))
+    weave = np.array([kind.weave for kind in every])
+    tight, wide = np.log(np.array([kind.radius for kind in every])).T
+    agile = tight < np.log(100.0)
+
+    position = ranges[:, None] * unit_vector(rng.uniform(0, 2 * np.pi, count))
+    course, speed = rng.uniform(0, 2 * np.pi, count), rng.uniform(1.0, 18.0, count)
+    wander = rng.random(count) < drift
+    speed_swing = wander * rng.uniform(0.2, 1.5, count)
+    speed_rate = 2 * np.pi / rng.uniform(300, 1500, count)
+    course_rate = 2 * np.pi / rng.uniform(200, 900, count)
+    course_swing = wander * np.minimum(np.radians(rng.uniform(1, 8, count)),
+                                       0.03 / (speed * course_rate))
+    weave_rate = 2 * np.pi / rng.uniform(60, 240, count)
+    weave_swing = weave * np.minimum(np.radians(rng.uniform(10, 45, count)),
+                                     1.2 / (speed * weave_rate))
+    phases = rng.uniform(0, 2 * np.pi, (3, count))
+    speed = np.maximum(speed, 2.0)
+
+    rate, left = np.zeros(count), np.zeros(count)                   # of turns: rad/s, rad to go
+    push, goal = np.zeros(count), speed.copy()                      # m/s^2 and m/s
+    positions, velocities = np.empty((2, scans, count, 2))
+    manoeuvre = np.empty((scans, count), bool)
+    clock = np.zeros(count)
+    for k in range(scans):
+        start = (rng.random(count) < begin) & (left <= 0) & (push == 0)
+        turning = start & (rng.random(count) < turns)
+        changing = start & ~turning
+        radius = np.maximum(np.exp(rng.uniform(tight, wide)), speed ** 2 / lateral)
+        side = np.where(rng.random(count) < 0.5, -1.0, 1.0)
+        rate = np.where(turning, side * speed / radius, rate)
+        left = np.where(turning, rng.uniform(np.radians(15), angle), left)
+        goal = np.where(changing, rng.uniform(1, 18, count), goal)
+        hard = rng.uniform(0.03, 0.3, count) * np.where(agile, 4.0, 1.0)
+        push = np.where(changing, np.sign(goal - speed) * hard, push)
+
+        positions[k], velocities[k] = position, speed[:, None] * unit_vector(course)
+        manoeuvre[k] = (left > 0) | (push != 0) | weave
+        dt = steps[:, min(k + 1, scans - 1)] / SUB_STEPS
+        for _ in range(SUB_STEPS):
+            in_turn = left > 0
+            course = course + dt * (
+                np.where(in_turn, rate, 0.0)
+                + weave_swing * weave_rate * np.cos(weave_rate * clock + phases[0])
+                + course_swing * course_rate * np.cos(course_rate * clock + phases[1]))
+            left = np.where(in_turn, left - np.abs(rate) * dt, 0.0)
+            drifted = speed + dt * speed_swing * speed_rate * np.cos(
+                speed_rate * clock + phases[2])
+            pushed = np.maximum(drifted, 0.3) + push * dt
+            done = (push != 0) & ((pushed - goal) * np.sign(push) >= 0)
+            speed, push = np.where(done, goal, pushed), np.where(done, 0.0, push)
+            position = position + (dt * speed)[:, None] * unit_vector(course)
+            clock = clock + dt
+    time = np.cumsum(steps, 1) - steps[:, :1]
+    return Ships(time, positions.swapaxes(0, 1), velocities.swapaxes(0, 1), manoeuvre.T)
+
+
+def phase(manoeuvre):
+    """Whether each scan [B, K] lies in a manoeuvre or so shortly after that it is still felt."""
+    out = manoeuvre.copy()
+    for after in range(1, LONGEST_PHASE + 1):
+        out[:, after:] |= manoeuvre[:, :-after]
+    return out
+
+
+class Radar(NamedTuple):
+    """What a radar is like, [B] each: every track may have one of its own.
+
+    range_sigma m, bearing_sigma rad: as stated to the tracker
+    detection   chance of a plot a scan
+    outliers    part of the plots with noise of five times the deviation on top
+    truly       true deviation over the stated one
+    period      s, as stated to the tracker
+    """
+
+    range_sigma: Array
+    bearing_sigma: Array
+    detection: Array
+    outliers: Array
+    truly: Array
+    period: Array
+
+
+def observe(ships: Ships, radar: Radar, rng) -> tuple[list[Plots], NDArray[np.bool_]]:
+    """Plots of every ship, a list over the scans, and which were detected [B, K].
+
+    The first two scans always are.
+    """
+    shape = ships.time.shape
+    distance, bearing = to_range_bearing(ships.position)
+    rare = rng.random(shape) < radar.outliers[:, None]
+
+    def noise(sigma):
+        wild = rng.standard_normal(shape) + rare * 5 * rng.standard_normal(shape)
+        return (sigma * radar.truly)[:, None] * wild
+    distance = np.maximum(distance + noise(radar.range_sigma), 1.0)
+    bearing = bearing + noise(radar.bearing_sigma)
+    position, covariance = polar_to_position(distance, bearing, radar.range_sigma[:, None],
+                                             radar.bearing_sigma[:, None])
+    zero, origin = np.zeros(shape[0]), np.zeros((shape[0], 2))
+    plots = [Plots(ships.time[:, k], distance[:, k], bearing[:, k], zero, origin, position[:, k],
+                   covariance[:, k]) for k in range(shape[1])]
+    seen = rng.random(shape) < radar.detection[:, None]
+    seen[:, :2] = True
+    return plots, seen

@@ -1,0 +1,165 @@
+"""The generalised wavelet network of paper 000: sigmoid inputs, wavelets hidden, local outputs.
+
+S(t) = tanh(t / 2q), phi(t) = S(t + 1) - S(t - 1), psi(t) = phi(t + 1) - phi(t - 1) (eq 12-13 with
+d = p = 1). Each linear output has a group of hidden units of its own (local connection): the
+scaling functions phi_{M,k} and the wavelets psi_{m,k}, m = 0..M, each over n translations k, so
+n (M + 2) units a group. The number of hidden units follows from M, n and the number of outputs.
+
+By the addition theorem of tanh every unit is a fraction of one tanh, T = S(t):
+
+    phi = 2 h (1 - T^2) / (1 - h^2 T^2),           h = tanh(1 / 2q)
+    psi = -2 k^2 T (1 - T^2) / (1 - k^2 T^2),      k = tanh(2 / 2q)
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..types import Array
+
+DILATION = 2.0                  # a
+TRANSLATION = 1.0               # b, at most 3.5 for a frame
+
+
+class Layout(NamedTuple):
+    """levels M; translations n, centred; q of the sigmoid; outputs O."""
+
+    levels: int
+    translations: int
+    q: float
+    outputs: int
+
+
+class Network(NamedTuple):
+    """A network of I inputs, O outputs and H = O G hidden units, G to a group.
+
+    centre, scale  [I]         what standardises the inputs
+    inner          [I + 1, H]  weights of the hidden units; the last row is their bias
+    outer          [O, G]      weights of each output's own units
+    bias           [O]         of the outputs
+    layout
+    """
+
+    centre: Array
+    scale: Array
+    inner: Array
+    outer: Array
+    bias: Array
+    layout: Layout
+
+
+class Units(NamedTuple):
+    """The hidden units' form, [H] each: unit(e) = (1 - T^2) (even + odd T) / (1 - pole T^2).
+
+    T = tanh(dilation e - shift).
+    """
+
+    dilation: Array
+    shift: Array
+    even: Array
+    odd: Array
+    pole: Array
+
+
+def group_size(layout: Layout) -> int:
+    """G: hidden units to an output."""
+    return layout.translations * (layout.levels + 2)
+
+
+def units(layout: Layout, dtype=np.float64) -> Units:
+    """The form of all H hidden units."""
+    n, levels, q = layout.translations, layout.levels, layout.q
+    level = np.concatenate([np.full(n, levels), np.repeat(np.arange(levels + 1), n)])
+    shift = np.tile(np.arange(n) - (n - 1) / 2, levels + 2) * TRANSLATION
+    scaling = np.arange(len(level)) < n
+    h, k = np.tanh(0.5 / q), np.tanh(1.0 / q)
+    norm = DILATION ** (-0.5 * level)
+    group = (DILATION ** -level.astype(float) / (2 * q), shift / (2 * q),
+             np.where(scaling, 2 * h, 0.0) * norm, np.where(scaling, 0.0, -2 * k * k) * norm,
+             np.where(scaling, h * h, k * k))
+    return Units(*(np.tile(column, layout.outputs).astype(dtype) for column in group))
+
+
+def squash(network: Network, inputs):
+    """The input layer [N, I + 1]: S of the standardised inputs [N, I], and 1 for the bias."""
+    out = np.empty((len(inputs), inputs.shape[1] + 1), network.inner.dtype)
+    np.tanh((inputs - network.centre) * (0.5 / network.scale), out=out[:, :-1])
+    out[:, -1] = 1.0
+    return out
+
+
+def hidden(form: Units, net):
+    """Values [N, H] of the hidden units at the net inputs [N, H], and T [N, H]."""
+    tanh = net * form.dilation
+    tanh -= form.shift
+    np.tanh(tanh, out=tanh)
+    square = tanh * tanh
+    value = form.odd * tanh
+    value += form.even
+    value *= 1 - square
+    square *= form.pole
+    value /= 1 - square
+    return value, tanh
+
+
+def slope(form: Units, value, tanh):
+    """Derivatives [N, H] of the hidden units by their net inputs, from what `hidden` gave."""
+    square = tanh * tanh
+    rest = 1 - square
+    inside = form.pole * value - (form.even + form.odd * tanh)
+    inside *= 2 * tanh
+    inside += rest * form.odd
+    inside /= 1 - form.pole * square
+    inside *= rest
+    inside *= form.dilation
+    return inside
+
+
+def forward(network: Network, inputs):
+    """Outputs [N, O] for inputs [N, I]."""
+    value, _ = hidden(units(network.layout, network.inner.dtype),
+                      squash(network, inputs) @ network.inner)
+    return value @ connect(network.outer) + network.bias
+
+
+def connect(outer):
+    """The local connection [O, G] as one matrix [H, O], zero elsewhere."""
+    count, group = outer.shape
+    matrix = np.zeros((count, group, count), outer.dtype)
+    every = np.arange(count)
+    matrix[every, :, every] = outer
+    return matrix.reshape(-1, count)
+
+
+def backward(network: Network, form: Units, layer, value, tanh, gradient):
+    """Gradients of a loss by inner, outer and bias, from its gradient [N, O] by the outputs.
+
+    layer, value, tanh: what `squash` and `hidden` gave on the way forward.
+    """
+    count, group = network.outer.shape
+    spread = np.repeat(gradient, group, 1)
+    outer = (spread * value).sum(0).reshape(count, group)
+    spread *= network.outer.reshape(-1)
+    spread *= slope(form, value, tanh)
+    return layer.T @ spread, outer, gradient.sum(0)
+
+
+def jacobian(network: Network, inputs):
+    """d outputs / d inputs [N, O, I] at the inputs [N, I]."""
+    form = units(network.layout, network.inner.dtype)
+    layer = squash(network, inputs)
+    value, tanh = hidden(form, layer @ network.inner)
+    count, group = network.outer.shape
+    slopes = (slope(form, value, tanh) * network.outer.reshape(-1)).reshape(-1, count, group)
+    inner = network.inner[:-1].reshape(-1, count, group).transpose(1, 2, 0)
+    by_layer = np.matmul(slopes.transpose(1, 0, 2), inner).transpose(1, 0, 2)
+    return by_layer * ((1 - layer[:, None, :-1] ** 2) * (0.5 / network.scale))
+
+
+def start(layout: Layout, centre, scale, rng, dtype=np.float32) -> Network:
+    """Random weights: net inputs that spread over the translations, and small outputs."""
+    inputs, group = len(centre), group_size(layout)
+    inner = rng.normal(0, 1.5 * layout.q / np.sqrt(inputs), (inputs + 1, layout.outputs * group))
+    outer = rng.normal(0, 0.1 / np.sqrt(group), (layout.outputs, group))
+    return Network(*(np.asarray(array, dtype) for array in (
+        centre, scale, inner, outer, np.zeros(layout.outputs))), layout)
