@@ -83,7 +83,10 @@ class TrackerParameters:
 
     estimator: str = parameter(
         'imm', 'Filter that extrapolates and updates the tracks.',
-        choices=('cs_kalman', 'imm'), live=True)
+        choices=('cs_kalman', 'imm', 'gwnn'), live=True)
+    gwnn_weights: str = parameter(
+        '', 'Weights of the estimator gwnn, a file of `marine_tracker train gwnn`; empty: those '
+        'shipped.', live=True)
     vessel_class: str = parameter(
         'ship', 'Preset of the motion models: how hard targets are expected to manoeuvre.',
         choices=VESSEL_CLASSES, live=True)

@@ -150,23 +150,21 @@ def _end_with_parent() -> None:
 
 def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:
     """Show the targets until it is over; the exit code."""
-    began = time.monotonic()
+    began, ended = time.monotonic(), None
     with _display() as show:
-        while not stop.is_set():
+        while not stop.is_set() and ended is None:
+            if duration is not None and time.monotonic() - began >= duration:
+                break
             listener.spin(0.1)
-            seconds = time.monotonic() - began
             show(listener.picture, f'{title}, ROS domain {domain}')
-            if duration is not None and seconds >= duration:
-                break
             ended = next((child for child in children if child.process.poll() is not None), None)
-            if ended is None:
-                continue
-            if ended.process.returncode == 0 and ended.name != 'tracker':
-                _drain(listener, show, f'{title}, ended')
-                break
-            stop.set()
-            return _told_why(ended)
-    return 0
+        if ended is None:
+            return 0
+        if ended.process.returncode == 0 and ended.name != 'tracker':
+            _drain(listener, show, f'{title}, ended')
+            return 0
+    _tell_why(ended)
+    return 1
 
 
 def _drain(listener, show, title: str) -> None:
@@ -177,12 +175,11 @@ def _drain(listener, show, title: str) -> None:
     show(listener.picture, title)
 
 
-def _told_why(child: Child) -> int:
+def _tell_why(child: Child) -> None:
     child.log.seek(0)
     said = child.log.read().decode(errors='replace').strip().splitlines()[-10:]
     print(f'marine_tracker demo: {child.name} ended with code {child.process.returncode}'
           + (', saying' if said else ''), *said, sep='\n  ', file=sys.stderr)
-    return 1
 
 
 @contextlib.contextmanager
@@ -244,5 +241,6 @@ def _clock(picture) -> str:
 def _facts(picture) -> str:
     if not picture.scans:
         return 'waiting for the first revolution'
-    return (f'{len(picture.targets)} targets, {picture.plots} plots a scan, '
+    count = len(picture.targets)
+    return (f'{count} target{"" if count == 1 else "s"}, {picture.plots} plots a scan, '
             f'own ship {picture.own_ship}')

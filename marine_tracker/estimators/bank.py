@@ -18,7 +18,8 @@ import numpy as np
 from ..types import Array, Plots
 from . import cs_kalman, linear_modes
 from .imm import Modes
-from .linear import first_velocity_variance, kalman_update
+from .contract import Velocity
+from .linear import first_velocity, kalman_update
 
 PERIOD = 60 / 22                # s, to which the settings refer
 EXPERTS = 13
@@ -97,14 +98,15 @@ for _chain in BANK.chains:
 _SIDES = np.stack([BANK.turn_rate[RICH, 0] > 0, BANK.turn_rate[RICH, 0] < 0]).astype(float)
 
 
-def begin(plots: Plots, max_speed: float) -> BankState:
-    """States of one plot each; max_speed m/s of the targets."""
+def begin(plots: Plots, max_speed: float, velocity: Velocity | None = None) -> BankState:
+    """States of one plot each; max_speed m/s of the targets; what else is known of velocities."""
     count, j = len(plots.time), len(_START)
+    velocity = first_velocity(velocity, count, max_speed)
     rows = np.zeros((count, j, 14))
-    rows[..., :2] = plots.position[:, None]
+    rows[..., :2], rows[..., 2:4] = plots.position[:, None], velocity.mean[:, None]
     rows[..., [4, 5, 8]] = linear_modes.packed_noise(plots.covariance).T[:, None]
-    rows[..., [11, 13]] = first_velocity_variance(max_speed)
-    cs = cs_kalman.cs_kalman(MANOEUVRE, max_speed).init(plots)
+    rows[..., 11:] = linear_modes.packed_noise(velocity.covariance).T[:, None]
+    cs = cs_kalman.cs_kalman(MANOEUVRE, max_speed).init(plots, velocity)
     return BankState(plots.time.copy(), np.tile(_START, (count, 1)), rows, cs.mean, cs.covariance)
 
 

@@ -6,11 +6,19 @@ from typing import Any, NamedTuple
 from ..types import Array, Extrapolation, Plots
 
 
+class Velocity(NamedTuple):
+    """Velocities known beforehand: mean [K, 2] m/s and covariance [K, 2, 2] m^2/s^2."""
+
+    mean: Array
+    covariance: Array
+
+
 class Estimator(NamedTuple):
     """A filter bank that runs any number of tracks at once.
 
-    init(plots) -> state
-        One new row for each plot.
+    init(plots, velocity=None) -> state
+        One new row for each plot. What is known of the targets' velocities, where something is:
+        `Velocity`; by default they are anywhere within the targets' greatest speed.
     extrapolate(state, time) -> Extrapolation
         Every row to its own time [N] s, which may lie before or after the row's last plot;
         state is untouched.
@@ -22,6 +30,6 @@ class Estimator(NamedTuple):
     `types.take`, `append` and `where` only. The functions never write to their arguments.
     """
 
-    init: Callable[[Plots], Any]
+    init: Callable[..., Any]
     extrapolate: Callable[[Any, Array], Extrapolation]
     update: Callable[[Any, Plots, Any], Any]

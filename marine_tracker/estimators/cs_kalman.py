@@ -16,7 +16,7 @@ import numpy as np
 
 from ..types import Array, Extrapolation, put, take
 from .contract import Estimator
-from .linear import first_velocity_variance, kalman_update, sandwich
+from .linear import first_velocity, kalman_update, sandwich
 
 RAYLEIGH = (4 - np.pi) / np.pi      # variance of the Rayleigh density over its squared mean
 # Without a floor the process noise vanishes when the estimate sits at a_max, and the filter
@@ -25,6 +25,7 @@ VARIANCE_FLOOR = 0.05
 SERIES_BELOW = 0.5                  # alpha T; the closed forms lose all digits near 0
 SERIES_TERMS = 16                   # the rest at y = 0.5 is below 1e-15
 POSITION = (0, 3)
+VELOCITY = (1, 4)
 POSITION_VELOCITY = np.array([0, 3, 1, 4])
 
 
@@ -192,13 +193,14 @@ def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
     max_speed, m/s, of the targets sets the velocity variance before the second plot.
     """
 
-    def init(plots):
+    def init(plots, velocity=None):
         count = len(plots.time)
+        velocity = first_velocity(velocity, count, max_speed)
         mean = np.zeros((count, 6))
-        mean[:, POSITION] = plots.position
+        mean[:, POSITION], mean[:, VELOCITY] = plots.position, velocity.mean
         covariance = np.zeros((count, 6, 6))
         covariance[:, [[0], [3]], POSITION] = plots.covariance
-        covariance[:, 1, 1] = covariance[:, 4, 4] = first_velocity_variance(max_speed)
+        covariance[:, [[1], [4]], VELOCITY] = velocity.covariance
         covariance[:, 2, 2] = covariance[:, 5, 5] = acceleration_variance(
             0.0, manoeuvre.max_acceleration)
         return CsState(plots.time.copy(), mean, covariance)

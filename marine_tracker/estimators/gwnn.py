@@ -132,15 +132,22 @@ def fuse(output, at: Look):
 def advance(bank: filters.BankState, memory: gwnn_inputs.Memory, plots):
     """Filters and memories of N rows after one plot each; and what the filters had expected.
 
-    A plot far off is refused by all filters alike, up to REFUSALS times in a row.
+    A plot far off a track that is warm is refused by all filters alike, up to REFUSALS times in a
+    row.
     """
     expected = filters.expect(bank, plots)
-    used = ~((expected.nis > GATE) & (memory.refused < REFUSALS))
+    used = ~((expected.nis > GATE) & (memory.refused < REFUSALS) & (memory.plots >= WARM))
     after = filters.correct(expected, plots)
     if not used.all():
         after = where(used, after, bank)
     memory = gwnn_inputs.remember(memory, expected, plots, plots.time - bank.time, used)
     return after, memory, expected
+
+
+def weights(path: str = '') -> gwnn_weights.Weights:
+    """Trained weights from a file, or those shipped; ValueError where the file is not fit."""
+    return gwnn_weights.load(path or gwnn_weights.SHIPPED, gwnn_inputs.COUNT,
+                             {'fusion': OUTPUTS, 'spread': SPREADS})
 
 
 def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Estimator:
@@ -159,11 +166,11 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Esti
             out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
         return out
 
-    def init(plots):
+    def init(plots, velocity=None):
         count = len(plots.time)
         zero = np.zeros(count)
         monitor = Monitor(zero, zero + EXPECTED, zero + EXPECTED, zero.copy(), zero.copy())
-        return GwnnState(filters.begin(plots, max_speed), gwnn_inputs.begin(plots), monitor,
+        return GwnnState(filters.begin(plots, max_speed, velocity), gwnn_inputs.begin(plots), monitor,
                          np.zeros((count, OUTPUTS + SPREADS)))
 
     def extrapolate(state, time):

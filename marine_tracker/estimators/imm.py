@@ -12,7 +12,7 @@ import numpy as np
 from ..types import Array, Extrapolation, put, take
 from . import linear_modes
 from .contract import Estimator
-from .linear import first_velocity_variance
+from .linear import first_velocity
 
 
 class Modes(NamedTuple):
@@ -69,13 +69,14 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
             bank, linear_modes.pack(state.mean, state.covariance), state.weight, step)
         return linear_modes.move(bank, linear_modes.columns_of(rows), step), weight.T
 
-    def init(plots):
+    def init(plots, velocity=None):
         count, j = len(plots.time), len(start)
-        mean = np.zeros((count, j, 4))
-        mean[..., :2] = plots.position[:, None]
+        velocity = first_velocity(velocity, count, max_speed)
+        mean = np.empty((count, j, 4))
+        mean[..., :2], mean[..., 2:] = plots.position[:, None], velocity.mean[:, None]
         covariance = np.zeros((count, j, 4, 4))
         covariance[..., :2, :2] = plots.covariance[:, None]
-        covariance[..., 2, 2] = covariance[..., 3, 3] = first_velocity_variance(max_speed)
+        covariance[..., 2:, 2:] = velocity.covariance[:, None]
         return ImmState(plots.time.copy(), np.tile(start, (count, 1)), mean, covariance)
 
     def extrapolate(state, time):

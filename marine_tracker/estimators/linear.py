@@ -5,10 +5,15 @@ Shapes lead with any axes [...]; H picks the two position entries of a state.
 
 import numpy as np
 
+from .contract import Velocity
 
-def first_velocity_variance(max_speed: float) -> float:
-    """Variance, m^2/s^2 an axis, of a velocity known only to be of at most max_speed, m/s."""
-    return (max_speed / 2) ** 2         # that of a uniform density on the disc
+
+def first_velocity(velocity: Velocity | None, count: int, max_speed: float) -> Velocity:
+    """The velocities of `count` new rows: those given, or at rest give or take max_speed, m/s."""
+    if velocity is not None:
+        return velocity
+    variance = (max_speed / 2) ** 2     # that of a uniform density on the disc
+    return Velocity(np.zeros((count, 2)), np.tile(variance * np.eye(2), (count, 1, 1)))
 
 
 def invert_2x2(matrix):

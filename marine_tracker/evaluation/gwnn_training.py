@@ -22,10 +22,11 @@ SPEED = 25.0                    # m/s, the fastest target the tracker is told of
 CHUNK = 588                     # tracks made at once, as many of each kind
 EXPECTED, KNOWN = 0.22, 0.10    # part of the rows sampled a scan: before the plot, after it
 NEAREST = 1000.0                # m; nearer tracks are left out ...
-CLOSE_SHARE, CLOSE_NEAREST = 0.15, 150.0            # ... but for those of a close-range radar
+CLOSE_SHARE, CLOSE_NEAREST = 0.10, 150.0            # ... but for those of a close-range radar
 HARD_SHARE = 0.25
 CLIP = 30.0                     # sigma: of the truth from the base
-HUBER, VELOCITY_WEIGHT = 10.0, 0.35
+HUBER, VELOCITY_WEIGHT = 10.0, 0.5
+MOST = 6.0                      # times the mean: weight of a sample for its noise
 BATCH, PEAK, WARM_UP = 1024, 4e-3, 200
 REWEIGH_EVERY, REWEIGH_BY = 250, 0.3                # steps between looks at the worst cells
 LAYOUT = net.Layout(levels=2, translations=5, q=1.2, outputs=gwnn.OUTPUTS)
@@ -45,6 +46,7 @@ class Samples(NamedTuple):
     scans     [n]         from the last plot to that time
     truth     [n, 4]      from the base
     spread    [n, 4]      log variances of the base
+    area      [n]         m^2, mean variance of the plots' coordinates as stated
     cell      [n]         kind, phase, after or before a plot, far or close: `cell_count` numbers
     truly     [n]         true deviation of the plots over the stated one
     """
@@ -55,6 +57,7 @@ class Samples(NamedTuple):
     scans: Array
     truth: Array
     spread: Array
+    area: Array
     cell: Array
     truly: Array
 
@@ -131,7 +134,8 @@ def _sample(bank, memory, ships, k, radar, cell) -> Samples:
     spread = gwnn_inputs.variances(frame, covariance)
     return Samples(*(np.ascontiguousarray(array, np.float32) for array in (
         gwnn_inputs.inputs(bank, memory, radar.period), at.apart.transpose(2, 1, 0),
-        at.log_weight[:4].T, at.scans, np.clip(off, -CLIP, CLIP).T, np.log(spread).T)),
+        at.log_weight[:4].T, at.scans, np.clip(off, -CLIP, CLIP).T, np.log(spread).T,
+        np.square(frame[:, 2:]).mean(1))),
         cell.astype(np.int16), radar.truly.astype(np.float32))
 
 
@@ -235,15 +239,26 @@ def fuse_backward(gradient, out, weight, batch: Samples):
 
 
 def cell_weights(samples: Samples):
-    """[n, 2] for position and velocity: each cell counts by its error relative to the base's."""
+    """[n, 2] for position and velocity: each cell counts by its error relative to the base's.
+
+    Velocity errors are to be small in m/s, not in sigma: within its cell a sample of noisy plots
+    counts more.
+    """
     size = np.square(samples.truth.astype(float)).reshape(-1, 2, 2).sum(2)
     size = np.minimum(size / samples.truly[:, None] ** 2, 40.0)
-    count = np.bincount(samples.cell, minlength=cell_count())
+    share = np.ones_like(size)
+    share[:, 1] = np.minimum(samples.area / _mean_by_cell(samples.area, samples.cell), MOST)
     out = np.empty((len(samples.cell), 2), np.float32)
     for j in (0, 1):
-        mean = np.bincount(samples.cell, size[:, j], cell_count()) / np.maximum(count, 1)
-        out[:, j] = 1 / (mean[samples.cell] * samples.truly ** 2)
+        mean = _mean_by_cell(share[:, j] * size[:, j], samples.cell)
+        out[:, j] = share[:, j] / (mean * samples.truly ** 2)
     return out
+
+
+def _mean_by_cell(values, cell):
+    """The mean [n] of the values [n] over each one's cell."""
+    count = np.maximum(np.bincount(cell, minlength=cell_count()), 1)
+    return (np.bincount(cell, values, cell_count()) / count)[cell]
 
 
 class Training(NamedTuple):

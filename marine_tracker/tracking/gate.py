@@ -14,6 +14,7 @@ from .sweep import Sweep
 
 TURN = 2 * np.pi
 HAIR = 1e-8             # rad
+OBLIQUE = 0.07          # sin^2 of the widest angle, asin(1/4), between a plot and its track afar
 PLOTS_A_RING = 256
 
 
@@ -84,8 +85,12 @@ def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origi
     most = distance + reach * np.sqrt(spread + range_sigma ** 2)
     second = most * bearing_sigma ** 2
     along = reach * np.sqrt(spread + range_sigma ** 2 + 1.5 * second * second) + 0.5 * second
-    noise = (distance + along) * bearing_sigma
-    across = reach * np.sqrt(a + d - spread + noise * noise)
+    noise = ((distance + along) * bearing_sigma) ** 2
+    across = reach * np.sqrt(a + d - spread + noise + OBLIQUE * range_sigma ** 2)
+    # Near own ship plots may lie in any direction, each with its noise along its own.
+    radius = along + reach * np.sqrt(a + d + noise)
+    near = distance < 4 * radius
+    along, across = np.where(near, radius, along), np.where(near, radius, across)
     half_width = _half_width(distance, along, across)
     if sweep.period:
         # The plot's time may differ from the track's: by little, but where the revolution

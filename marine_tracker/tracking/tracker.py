@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..estimators import ESTIMATORS
+from ..estimators import ESTIMATORS, Velocity
 from ..geometry import locate, own_ship_at, to_range_bearing
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
@@ -24,6 +24,7 @@ class Memory(NamedTuple):
     tracks       N tracks, lost ones left out
     leftover     plots of the last scan that belong to no track: one may be a new target's first
     clutter      the density of false plots
+    origin       [2] m, own ship at the end of the last scan
     next_id      the next track's id
     next_number  the next confirmed track's target number
     """
@@ -31,6 +32,7 @@ class Memory(NamedTuple):
     tracks: Tracks
     leftover: Plots
     clutter: clutter_map.ClutterMap
+    origin: Array
     next_id: int
     next_number: int
 
@@ -74,7 +76,7 @@ class Tracker:
         """No tracks yet."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
-        return Memory(self._begin(plots, 1), plots, clutter_map.empty(), 1, 1)
+        return Memory(self._begin(plots, 1), plots, clutter_map.empty(), np.zeros(2), 1, 1)
 
     def extrapolate(self, tracks: Tracks, time) -> Extrapolation:
         """The tracks at the times [N] s (or one time for all)."""
@@ -163,14 +165,15 @@ class Tracker:
         clutter = clutter_map.learn(memory.clutter, lone.range[single], lone.bearing[single])
         return Memory(
             take(tracks, status != LOST), take(plots, free), clutter,
+            own_ship_at(scan.own_ship, scan.end)[0],
             memory.next_id + len(second), memory.next_number + len(newly),
         ), Report(time, tracks, predicted, plot_of, reason)
 
     def adopt(self, memory: Memory, previous: 'Tracker') -> Memory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.
 
-        Where the estimator differs, each track starts anew from its last estimate: one plot
-        with the old estimator's position and another a scan before carry its velocity over.
+        Where the estimator differs, each track starts anew from its last estimate's position and
+        velocity.
         """
         p, old = self.parameters, previous.parameters
         same = (p.estimator, p.vessel_class) == (old.estimator, old.vessel_class)
@@ -178,19 +181,12 @@ class Tracker:
             state = memory.tracks.state if len(memory.tracks.id) else self.start().tracks.state
             return memory._replace(tracks=memory.tracks._replace(state=state))
         now = previous.extrapolate(memory.tracks, memory.tracks.last_time)
-        return memory._replace(tracks=memory.tracks._replace(state=self._restart(now)))
-
-    def _restart(self, now: Extrapolation):
-        """Estimator state whose position and velocity are those of `now`."""
-        step = self.parameters.scan_period_s
-        cov = now.covariance
-        before = now.position - step * now.velocity
-        spread = cov[:, :2, :2] + step ** 2 * cov[:, 2:, 2:]
-        plots = [Plots(time, time, time, time, position, position, covariance)
-                 for time, position, covariance in (
-                     (now.time - step, before, spread), (now.time, now.position, cov[:, :2, :2]))]
-        return self.estimator.update(self.estimator.init(plots[0]), plots[1],
-                                     np.arange(len(now.time)))
+        range_, bearing = to_range_bearing(now.position - memory.origin)
+        plots = Plots(now.time, range_, bearing, np.zeros_like(range_),
+                      np.tile(memory.origin, (len(range_), 1)), now.position,
+                      now.covariance[:, :2, :2])
+        state = self.estimator.init(plots, Velocity(now.velocity, now.covariance[:, 2:, 2:]))
+        return memory._replace(tracks=memory.tracks._replace(state=state))
 
     def _begin(self, plots: Plots, next_id: int) -> Tracks:
         """Tentative tracks of one plot each."""

@@ -1,0 +1,164 @@
+"""The paper's own form: a wavelet network for each track, trained on line by its plots.
+
+Paper 000, sections 2, 3 and 5. From z(k) = [R, theta, v, gamma], range, bearing, speed and course
+of the target at plot k, the network gives the first difference to one scan later:
+
+    z(k+1) = z(k) + D net(z(k))
+
+Every plot trains it by the rules of variable step and momentum. The paper feeds plots; on a real
+radar's noise that carries the noise of two plots into every difference, so z(k) is here the
+posterior of a CS-Kalman filter, which also gives the covariance. Between plots and one scan ahead
+the track runs straight. The filter alone answers while the network is new, before the last plot,
+and where the network gives no number or leaves what the filter holds possible.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry import to_range_bearing, unit_vector, wrap_angle
+from ..networks.backpropagation import Rule, Weights, draw, forward, gwnn, learn
+from ..types import Array, Extrapolation, put, take, where
+from .contract import Estimator
+from .cs_kalman import POSITION_VELOCITY, CsState, Manoeuvre, cs_kalman
+from .linear import invert_2x2
+
+LEVELS, TRANSLATIONS, WIDTH = 1, 5, 1.2
+RULE = Rule(step=0.02, rounds=3)
+SEED = 1                            # every track begins with the same weights
+
+# D: what an output of 1 stands for, m in range and across, m/s, rad.
+POSITION_UNIT, SPEED_UNIT, COURSE_UNIT = 60.0, 0.2, np.radians(5)
+# What an input of 1 stands for, and how far from their slow mean the inputs are told apart.
+INPUT_UNIT = np.array([1000.0, 1000.0, 2.0, np.radians(20)])
+INPUT_LIMIT, INPUT_GAIN = 3.0, 2.0
+CENTRE_RATE = 0.05
+WANTED_LIMIT = 3.0                  # in D: the course of a ship at rest may be any next scan
+
+# E1 and E2 follow "from the accuracy" (paper, below eq 10): its own for its noise of 0.3 m, or a
+# share of the posterior's deviation.
+FINEST, FAR_TO_NEAR = 1.852, 5.0    # m
+NEAR_SHARE = 0.5
+SHORTEST, LONGEST = 0.3, 3.0        # scans from plot to plot that can teach a difference
+WARM_UP = 5                         # plots
+BELIEVED = 9.0                      # squared distance from the filter, in its own covariance
+
+
+class PaperState(NamedTuple):
+    """base: the CS-Kalman filter's state; weights of the tracks' networks, [N, ...] each.
+
+    time    [N]     s, of the last plot that told anything
+    mean    [N, 4]  position m and velocity m/s then: z(k) in east and north
+    centre  [N, 4]  slow mean of z: m, rad, m/s, rad
+    origin  [N, 2]  m, the antenna at the last plot, where R and theta count from
+    taught  [N]     plots that have taught the network
+    """
+
+    base: CsState
+    time: Array
+    mean: Array
+    weights: Weights
+    centre: Array
+    origin: Array
+    taught: Array
+
+
+def polar(mean, origin):
+    """z [N, 4]: range m, bearing rad, speed m/s and course rad (0 at rest)."""
+    distance, bearing = to_range_bearing(mean[:, :2] - origin)
+    speed, course = to_range_bearing(mean[:, 2:])
+    return np.stack([np.maximum(distance, 1.0), bearing, speed, course], 1)
+
+
+def difference(after, before):
+    """after - before of two z [N, 4], angles by the shorter way."""
+    out = after - before
+    out[:, 1::2] = wrap_angle(out[:, 1::2])
+    return out
+
+
+def output_unit(z):
+    """D [N, 4] at z [N, 4]; across as along, in metres."""
+    unit = np.empty_like(z)
+    unit[:, 0], unit[:, 2], unit[:, 3] = POSITION_UNIT, SPEED_UNIT, COURSE_UNIT
+    unit[:, 1] = POSITION_UNIT / z[:, 0]
+    return unit
+
+
+def network_inputs(z, centre):
+    """The network's inputs [N, 4] for z [N, 4]."""
+    off = difference(z, centre)
+    off[:, 1] *= z[:, 0]
+    return INPUT_GAIN * np.clip(off / INPUT_UNIT, -INPUT_LIMIT, INPUT_LIMIT)
+
+
+def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimator:
+    """The paper's estimator over a CS-Kalman filter.
+
+    manoeuvre, max_speed m/s: the filter's; period s: of one scan, the network's step ahead.
+    """
+    filter_ = cs_kalman(manoeuvre, max_speed)
+    design = gwnn(4, 4, LEVELS, TRANSLATIONS, WIDTH)
+    fresh = draw(design, 1, np.random.default_rng(SEED))
+
+    def init(plots, velocity=None):
+        count = len(plots.time)
+        base = filter_.init(plots, velocity)
+        weights = take(fresh, np.zeros(count, int))
+        return PaperState(base, plots.time.copy(), base.mean[:, POSITION_VELOCITY], weights,
+                          np.zeros((count, 4)), plots.origin.copy(), np.zeros(count))
+
+    def extrapolate(state, time):
+        base = filter_.extrapolate(state.base, time)
+        scans = (time - state.time) / period
+        rows = np.flatnonzero((state.taught >= WARM_UP) & (time > state.base.time))
+        if not len(rows):
+            return base
+        mine, scans = take(state, rows), scans[rows][:, None]
+        here, now = mine.mean[:, :2], mine.mean[:, 2:]
+        z = polar(mine.mean, mine.origin)
+        # A network gone bad may overflow; what comes of it is not believed below.
+        with np.errstate(all='ignore'):
+            output = forward(design, mine.weights, network_inputs(z, mine.centre)).output
+            z = z + output_unit(z) * output
+            ahead = mine.origin + z[:, :1] * unit_vector(z[:, 1])
+            position = here + scans * (ahead - here)
+            velocity = now + np.minimum(scans, 1) * (z[:, 2:3] * unit_vector(z[:, 3]) - now)
+            apart = np.concatenate([position - base.position[rows],
+                                    velocity - base.velocity[rows]], 1)
+            off = np.linalg.solve(base.covariance[rows], apart[..., None])[..., 0]
+            believed = np.sum(apart * off, 1) <= BELIEVED
+        rows = rows[believed]
+        told = take(base, rows)._replace(position=position[believed], velocity=velocity[believed])
+        return put(base, rows, told)
+
+    def update(state, plots, rows):
+        old = take(state, rows)
+        base = filter_.update(old.base, plots, np.arange(len(rows)))
+        mean = base.mean[:, POSITION_VELOCITY]
+        before, after = polar(old.mean, plots.origin), polar(mean, plots.origin)
+        step = (plots.time - old.time) / period
+        # The first course is that of the second plot; a centre of plots since is a mean.
+        centre = np.where((old.taught == 0)[:, None], after, old.centre)
+        teaching = np.flatnonzero((step >= SHORTEST) & (step <= LONGEST) & told)
+        if len(teaching):
+            mine = take(old, teaching)
+            z, wanted = before[teaching], difference(after, before)[teaching]
+            wanted = np.clip(wanted / (step[teaching, None] * output_unit(z)),
+                             -WANTED_LIMIT, WANTED_LIMIT)
+            spread = base.covariance[teaching]
+            near = np.maximum(FINEST, NEAR_SHARE * np.sqrt((spread[:, 0, 0] + spread[:, 3, 3]) / 2))
+            with np.errstate(all='ignore'):
+                learnt = learn(design, mine.weights, network_inputs(z, centre[teaching]), wanted,
+                               after[teaching, 2], RULE, POSITION_UNIT, near, FAR_TO_NEAR * near)
+            sound = np.isfinite(learnt.outer).all((1, 2)) & np.isfinite(learnt.inner).all((1, 2))
+            learnt = where(sound, learnt, take(fresh, np.zeros(len(teaching), int)))
+            taught = np.where(sound, mine.taught + 1, 0.0)
+            old = put(old, teaching, mine._replace(weights=learnt, taught=taught))
+        moved = centre + CENTRE_RATE * difference(after, centre)
+        moved[:, 1::2] = wrap_angle(moved[:, 1::2])
+        new = PaperState(base, plots.time, mean, old.weights, moved, plots.origin, old.taught)
+        told = worth(old.base, base, plots) >= LEAST_WORTH
+        return put(state, rows, where(told, new, old._replace(base=base)))
+
+    return Estimator(init, extrapolate, update)
