@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from ..parameters import TrackerParameters
-from . import cs_kalman, gwnn, imm
+from . import cs_kalman, gwnn, gwnn_paper, imm
 from .contract import Estimator, Velocity
 
 ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
@@ -12,6 +12,8 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
     'imm': lambda p: imm.imm(imm.PRESETS[p.vessel_class], p.max_target_speed_mps),
     'gwnn': lambda p: gwnn.gwnn(gwnn.weights(p.gwnn_weights), p.max_target_speed_mps,
                                 p.scan_period_s),
+    'gwnn_paper': lambda p: gwnn_paper.gwnn_paper(
+        cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
 }
 
 __all__ = ['ESTIMATORS', 'Estimator', 'Velocity']

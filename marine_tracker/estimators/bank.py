@@ -110,9 +110,8 @@ def begin(plots: Plots, max_speed: float, velocity: Velocity | None = None) -> B
     return BankState(plots.time.copy(), np.tile(_START, (count, 1)), rows, cs.mean, cs.covariance)
 
 
-def look(state: BankState, time) -> Ahead:
-    """What the filters expect at the times [N] s; means only, which is cheap."""
-    step = time - state.time
+def look(state: BankState, step) -> Ahead:
+    """What the filters expect after steps [N] s, or [1] for all; means only, which is cheap."""
     mean, weight = linear_modes.mix_means(BANK, state.rows[..., :4], state.weight, step)
     columns = linear_modes.move_means(BANK, linear_modes.columns_of(mean), step)
     cs = cs_kalman.predict_mean(state.cs_mean, step, MANOEUVRE)
@@ -122,8 +121,9 @@ def look(state: BankState, time) -> Ahead:
 def base(state: BankState, time):
     """Columns [14, N] of the base IMM at the times [N] s: mean and packed covariance."""
     step = time - state.time
-    rows, weight = linear_modes.mix(_BASE_ONLY, state.rows[:, BASE], state.weight[:, BASE], step)
-    columns = linear_modes.move(_BASE_ONLY, linear_modes.columns_of(rows), step)
+    columns, weight = linear_modes.mix(_BASE_ONLY, state.rows[:, BASE], state.weight[:, BASE],
+                                       step)
+    columns = linear_modes.move(_BASE_ONLY, columns, step)
     return linear_modes.combine(columns, weight.T)
 
 
@@ -159,8 +159,8 @@ class Expected(NamedTuple):
 def expect(state: BankState, plots: Plots) -> Expected:
     """The filters of N rows moved to the times of one plot each."""
     step = plots.time - state.time
-    rows, weight = linear_modes.mix(BANK, state.rows, state.weight, step)
-    columns = linear_modes.move(BANK, linear_modes.columns_of(rows), step)
+    columns, weight = linear_modes.mix(BANK, state.rows, state.weight, step)
+    columns = linear_modes.move(BANK, columns, step)
     weight = np.ascontiguousarray(weight.T)
     cs = cs_kalman.predict(state.cs_mean, state.cs_covariance, step, MANOEUVRE)
     mixture = linear_modes.combine(columns[:, BASE], weight[BASE])

@@ -161,7 +161,7 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Esti
         out = np.zeros((len(state.time), OUTPUTS + SPREADS))
         warm = np.flatnonzero(memory.plots >= WARM)
         if len(warm):
-            seen = gwnn_inputs.inputs(take(state, warm), take(memory, warm), period)
+            seen = gwnn_inputs.inputs(_chosen(state, warm), _chosen(memory, warm), period)
             out[warm, :OUTPUTS] = forward(weights.fusion, seen)
             out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
         return out
@@ -181,8 +181,9 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Esti
         mean = mean.copy()
         heard = np.flatnonzero(state.monitor.status == GWNN)
         if len(heard):
-            rows = take(state, heard)
-            at = look(rows.bank, frame[heard], filters.look(rows.bank, near[heard]), near[heard])
+            rows = _chosen(state, heard)
+            at = look(rows.bank, frame[heard],
+                      filters.look(rows.bank, (near - begun)[heard]), near[heard])
             shift = gwnn_inputs.from_sigma(frame[heard], fuse(rows.output, at)).T
             # Beyond what it was trained for, the network's correction is carried on straight.
             shift[:, :2] += (time - near)[heard, None] * shift[:, 2:]
@@ -210,6 +211,12 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Esti
                                           np.where(sound[:, None], output, 0.0)))
 
     return Estimator(init, extrapolate, update)
+
+
+def _chosen(state, rows):
+    """The rows (ascending) of a state; itself where they are all."""
+    whole = len(rows) == len(state[0] if isinstance(state[0], np.ndarray) else state[0].time)
+    return state if whole else take(state, rows)
 
 
 def respread(covariance, ratio, frame, scans):

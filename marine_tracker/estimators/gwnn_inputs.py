@@ -139,7 +139,7 @@ def remember(memory: Memory, expected: filters.Expected, plots: Plots, step, use
 def inputs(state: filters.BankState, memory: Memory, period):
     """The network's inputs [N, COUNT] after a plot; period s of the radar (or [N])."""
     frame, sigma = memory.frame, memory.frame[:, 2:].T
-    ahead = filters.look(state, state.time + period)
+    ahead = filters.look(state, np.atleast_1d(np.asarray(period, float)))
     off, weight = apart(frame, ahead), ahead.weight
     blocks = [np.arcsinh(off[:, LONE]).transpose(1, 0, 2).reshape(4 * len(LONE), -1)]
     for right, left in filters.TURNS:

@@ -18,10 +18,10 @@ import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector, wrap_angle
 from ..networks.backpropagation import Rule, Weights, draw, forward, gwnn, learn
-from ..types import Array, Extrapolation, put, take, where
+from ..types import Array, put, take, where
 from .contract import Estimator
 from .cs_kalman import POSITION_VELOCITY, CsState, Manoeuvre, cs_kalman
-from .linear import invert_2x2
+from .linear import invert_2x2, squared_distance
 
 LEVELS, TRANSLATIONS, WIDTH = 1, 5, 1.2
 RULE = Rule(step=0.02, rounds=3)
@@ -39,6 +39,7 @@ WANTED_LIMIT = 3.0                  # in D: the course of a ship at rest may be 
 # share of the posterior's deviation.
 FINEST, FAR_TO_NEAR = 1.852, 5.0    # m
 NEAR_SHARE = 0.5
+LEAST_GAIN = 0.01                   # a plot that tells less is no plot: z(k) stays
 SHORTEST, LONGEST = 0.3, 3.0        # scans from plot to plot that can teach a difference
 WARM_UP = 5                         # plots
 BELIEVED = 9.0                      # squared distance from the filter, in its own covariance
@@ -61,6 +62,15 @@ class PaperState(NamedTuple):
     centre: Array
     origin: Array
     taught: Array
+
+
+class Lesson(NamedTuple):
+    """What plots teach: inputs [N, 4]; wanted [N, 4] outputs; speed [N] m/s; deviation [N] m."""
+
+    inputs: Array
+    wanted: Array
+    speed: Array
+    deviation: Array
 
 
 def polar(mean, origin):
@@ -90,6 +100,24 @@ def network_inputs(z, centre):
     off = difference(z, centre)
     off[:, 1] *= z[:, 0]
     return INPUT_GAIN * np.clip(off / INPUT_UNIT, -INPUT_LIMIT, INPUT_LIMIT)
+
+
+def deviation(base: CsState):
+    """Standard deviation [N] m of the filter's position, the mean of both axes."""
+    return np.sqrt((base.covariance[:, 0, 0] + base.covariance[:, 3, 3]) / 2)
+
+
+def gain(base: CsState, plots):
+    """How far [N] the plots have moved the filter, 0 to 1: half the trace of P R^-1."""
+    inverse, _ = invert_2x2(plots.covariance)
+    spread = base.covariance
+    return 0.5 * (spread[:, 0, 0] * inverse[:, 0, 0] + spread[:, 3, 3] * inverse[:, 1, 1]
+                  + 2 * spread[:, 0, 3] * inverse[:, 0, 1])
+
+
+def distance(apart, covariance):
+    """Squared distance [N] of offsets [N, 2] by their covariance [N, 2, 2]."""
+    return squared_distance(apart, invert_2x2(covariance)[0])
 
 
 def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimator:
@@ -124,10 +152,10 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
             ahead = mine.origin + z[:, :1] * unit_vector(z[:, 1])
             position = here + scans * (ahead - here)
             velocity = now + np.minimum(scans, 1) * (z[:, 2:3] * unit_vector(z[:, 3]) - now)
-            apart = np.concatenate([position - base.position[rows],
-                                    velocity - base.velocity[rows]], 1)
-            off = np.linalg.solve(base.covariance[rows], apart[..., None])[..., 0]
-            believed = np.sum(apart * off, 1) <= BELIEVED
+            believed = (
+                distance(position - base.position[rows], base.covariance[rows, :2, :2])
+                + distance(velocity - base.velocity[rows], base.covariance[rows, 2:, 2:])
+            ) <= BELIEVED
         rows = rows[believed]
         told = take(base, rows)._replace(position=position[believed], velocity=velocity[believed])
         return put(base, rows, told)
@@ -137,28 +165,29 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
         base = filter_.update(old.base, plots, np.arange(len(rows)))
         mean = base.mean[:, POSITION_VELOCITY]
         before, after = polar(old.mean, plots.origin), polar(mean, plots.origin)
-        step = (plots.time - old.time) / period
-        # The first course is that of the second plot; a centre of plots since is a mean.
+        # The first course is that of the second plot.
         centre = np.where((old.taught == 0)[:, None], after, old.centre)
-        teaching = np.flatnonzero((step >= SHORTEST) & (step <= LONGEST) & told)
-        if len(teaching):
-            mine = take(old, teaching)
-            z, wanted = before[teaching], difference(after, before)[teaching]
-            wanted = np.clip(wanted / (step[teaching, None] * output_unit(z)),
-                             -WANTED_LIMIT, WANTED_LIMIT)
-            spread = base.covariance[teaching]
-            near = np.maximum(FINEST, NEAR_SHARE * np.sqrt((spread[:, 0, 0] + spread[:, 3, 3]) / 2))
-            with np.errstate(all='ignore'):
-                learnt = learn(design, mine.weights, network_inputs(z, centre[teaching]), wanted,
-                               after[teaching, 2], RULE, POSITION_UNIT, near, FAR_TO_NEAR * near)
-            sound = np.isfinite(learnt.outer).all((1, 2)) & np.isfinite(learnt.inner).all((1, 2))
-            learnt = where(sound, learnt, take(fresh, np.zeros(len(teaching), int)))
-            taught = np.where(sound, mine.taught + 1, 0.0)
-            old = put(old, teaching, mine._replace(weights=learnt, taught=taught))
-        moved = centre + CENTRE_RATE * difference(after, centre)
-        moved[:, 1::2] = wrap_angle(moved[:, 1::2])
-        new = PaperState(base, plots.time, mean, old.weights, moved, plots.origin, old.taught)
-        told = worth(old.base, base, plots) >= LEAST_WORTH
+        scans = (plots.time - old.time) / period
+        a_scan = difference(after, before) / np.maximum(scans, SHORTEST)[:, None]
+        lesson = Lesson(network_inputs(before, centre), a_scan / output_unit(before), after[:, 2],
+                        deviation(base))
+        told = gain(base, plots) >= LEAST_GAIN
+        teaching = np.flatnonzero(told & (scans >= SHORTEST) & (scans <= LONGEST))
+        old = put(old, teaching, teach(take(old, teaching), take(lesson, teaching)))
+        centre = centre + CENTRE_RATE * difference(after, centre)
+        centre[:, 1::2] = wrap_angle(centre[:, 1::2])
+        new = PaperState(base, plots.time, mean, old.weights, centre, plots.origin, old.taught)
         return put(state, rows, where(told, new, old._replace(base=base)))
+
+    def teach(state, lesson):
+        """The rows with their networks taught; a network that overflows begins anew."""
+        wanted = np.clip(lesson.wanted, -WANTED_LIMIT, WANTED_LIMIT)
+        near = np.maximum(FINEST, NEAR_SHARE * lesson.deviation)
+        with np.errstate(all='ignore'):
+            weights = learn(design, state.weights, lesson.inputs, wanted, lesson.speed, RULE,
+                            POSITION_UNIT, near, FAR_TO_NEAR * near)
+        sound = np.isfinite(weights.outer).all((1, 2)) & np.isfinite(weights.inner).all((1, 2))
+        weights = where(sound, weights, take(fresh, np.zeros(len(sound), int)))
+        return state._replace(weights=weights, taught=np.where(sound, state.taught + 1, 0.0))
 
     return Estimator(init, extrapolate, update)

@@ -65,9 +65,9 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
     def predict(state, time):
         """Columns [14, J, N] of the modes and their weights [J, N] at the times [N] s."""
         step = time - state.time
-        rows, weight = linear_modes.mix(
+        columns, weight = linear_modes.mix(
             bank, linear_modes.pack(state.mean, state.covariance), state.weight, step)
-        return linear_modes.move(bank, linear_modes.columns_of(rows), step), weight.T
+        return linear_modes.move(bank, columns, step), weight.T
 
     def init(plots, velocity=None):
         count, j = len(plots.time), len(start)

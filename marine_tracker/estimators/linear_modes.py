@@ -77,7 +77,8 @@ def transition_power(stay, period, entered=None):
 
     def over(step):
         powers = np.exp(np.abs(step)[:, None] * decay)
-        return np.clip((powers @ outer).reshape(-1, count, count), 0.0, 1.0)
+        found = (powers @ outer).reshape(-1, count, count)
+        return np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
     return over
 
 
@@ -108,39 +109,45 @@ def rows_of(columns):
 
 
 def _shares(chain: Chain, weight, step):
-    """Mode probabilities after the step, and the shares [N, to, from] each mode is mixed of."""
-    joint = chain.over(step) * weight[:, :, None]                   # from i to j
-    ahead = joint.sum(1)
-    return ahead, np.ascontiguousarray((joint / ahead[:, None, :]).swapaxes(1, 2))
+    """Mode probabilities after the step, and the shares [N, to, from] each mode is mixed of.
+
+    step [N] s, or [1] for all.
+    """
+    joint = chain.over(step).swapaxes(1, 2) * weight[:, None, :]    # to j from i
+    ahead = joint.sum(2)
+    joint /= ahead[:, :, None]
+    return ahead, joint
 
 
 def mix(bank: Bank, rows, weight, step):
-    """Rows [N, J, 14] and weights [N, J] after the mode changes of the steps [N] s.
+    """Columns [14, J, N] and weights [N, J] after the mode changes of the steps [N] s.
 
-    Blom and Bar-Shalom, IEEE T-AC 33(8), 1988, eq 7-9, in second moments: those of a mixture are
-    the mixture of those of its parts.
+    Takes rows [N, J, 14]. Blom and Bar-Shalom, IEEE T-AC 33(8), 1988, eq 7-9, in second moments:
+    those of a mixture are the mixture of those of its parts.
     """
-    centre = rows[:, :1, :4]                    # keeps the squares small
-    mixed = rows.copy()
-    mixed[..., :4] -= centre
-    _add_squares(mixed, 1.0)
+    columns = columns_of(rows)
+    centre = columns[:4, :1].copy()             # keeps the squares small
+    columns[:4] -= centre
+    _add_squares(columns, np.add)
+    mixed = rows_of(columns)
     weight = weight.copy()
     for chain in bank.chains:
         weight[:, chain.modes], share = _shares(chain, weight[:, chain.modes], step)
         mixed[:, chain.modes] = np.matmul(share, mixed[:, chain.modes])
-    _add_squares(mixed, -1.0)
-    mixed[..., :4] += centre
-    return mixed, weight
+    columns = columns_of(mixed)
+    _add_squares(columns, np.subtract)
+    columns[:4] += centre
+    return columns, weight
 
 
-def _add_squares(rows, sign):
-    """Add sign times the square of the means to the covariances, in place."""
-    mean = rows[..., :4]
-    rows[..., 4:] += sign * mean.take(ROW, -1) * mean.take(COLUMN, -1)
+def _add_squares(columns, add):
+    """Add the square of the means to the covariances (or subtract it), in place."""
+    for k, (i, j) in enumerate(zip(ROW, COLUMN), 4):
+        add(columns[k], columns[i] * columns[j], out=columns[k])
 
 
 def mix_means(bank: Bank, mean, weight, step):
-    """As `mix`, of the means [N, J, 4] alone."""
+    """As `mix`, of the means alone: [N, J, 4] before and after. step [N] s, or [1] for all."""
     mean, weight = mean.copy(), weight.copy()
     for chain in bank.chains:
         weight[:, chain.modes], share = _shares(chain, weight[:, chain.modes], step)
@@ -158,7 +165,7 @@ def _turn(bank: Bank, step):
 
 
 def move_means(bank: Bank, mean, step):
-    """Means [4, J, N] moved by the steps [N] s."""
+    """Means [4, J, N] moved by the steps [N] s, or [1] for all."""
     sin, cos, along, across = _turn(bank, step)
     e, n, ve, vn = mean
     return np.stack([e + along * ve + across * vn, n - across * ve + along * vn,

@@ -103,7 +103,7 @@ def make_samples(seed: int, chunk: int) -> Samples:
     plots, seen = ship_tracks.observe(ships, radar, rng)
     phase = ship_tracks.phase(ships.manoeuvre)
 
-    bank, memory = filters.begin(plots[0], SPEED), gwnn_inputs.begin(plots[0])
+    bank, memory = filters.begin(plots[0], None, SPEED), gwnn_inputs.begin(plots[0])
     parts = []
     for k in range(1, SCANS):
         warm = np.flatnonzero(memory.plots >= gwnn.WARM)
@@ -125,7 +125,7 @@ def make_samples(seed: int, chunk: int) -> Samples:
 def _sample(bank, memory, ships, k, radar, cell) -> Samples:
     """Samples that ask for scan k."""
     time, frame = ships.time[:, k], memory.frame
-    ahead = filters.look(bank, time)
+    ahead = filters.look(bank, time - bank.time)
     at = gwnn.look(bank, frame, ahead, time)
     truth = np.concatenate([ships.position[:, k], ships.velocity[:, k]], 1).T
     off = gwnn_inputs.to_sigma(frame, truth - ahead.mean)

@@ -3,10 +3,11 @@
 import numpy as np
 
 from ..types import Extrapolation, Tracks
-from .lifecycle import LOST, TENTATIVE, hits
+from .lifecycle import LOST, TENTATIVE, hits, misses_in_a_row
 
 SAME = 9.49         # chi-square with 4 degrees of freedom, 95 %
 RECENT = 10         # scans over which two tracks are seen to share the plots of one target
+STARVED = 4         # misses in a row, each beside the other's plot, that tell as much
 
 
 def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, status):
@@ -17,7 +18,7 @@ def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, statu
 
     A track is one too many when it had no plot because another track took one in its gate, both
     agree in position and velocity, and together they had no more plots lately than one target
-    gives. Two ships in company both get plots, ships that cross differ in velocity.
+    gives (or this one none for long). Two ships in company both get plots, ships that cross differ in velocity.
     """
     double = np.zeros(len(status), bool)
     starved = (plot_of < 0) & (status != LOST)
@@ -29,8 +30,8 @@ def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, statu
     look = (starved[track] & (owner[plot] >= 0)).nonzero()[0]
     one, other = track[look], owner[plot[look]]
     had = hits(tracks, RECENT)
-    keep = (status[one] == TENTATIVE) | (
-        (status[other] != TENTATIVE) & (had[one] + had[other] <= RECENT + 1))
+    sharing = (had[one] + had[other] <= RECENT + 1) | (misses_in_a_row(tracks)[one] >= STARVED)
+    keep = (status[one] == TENTATIVE) | ((status[other] != TENTATIVE) & sharing)
     one, other = one[keep], other[keep]
     if not len(one):
         return double

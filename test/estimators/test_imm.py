@@ -7,7 +7,8 @@ import pytest
 from scipy.linalg import expm, logm
 from scipy.stats import multivariate_normal
 
-from marine_tracker.estimators.imm import PRESETS, Modes, imm, transition_power, turn_matrices
+from marine_tracker.estimators.imm import PRESETS, Modes, imm
+from marine_tracker.estimators.linear_modes import bank, move_means, transition_power
 
 MAX_SPEED = 24.0
 OBSERVE = np.eye(2, 4)
@@ -212,6 +213,14 @@ def test_modes_change_in_time_and_not_by_plot(modes):
 def test_a_chain_that_does_not_exist_in_continuous_time_is_refused():
     with pytest.raises(ValueError, match=r'0\.3.*too small'):
         transition_power((0.3, 0.3), 2.7)
+
+
+def turn_matrices(rate, step):
+    """[N, J, 4, 4]: what the modes make of each unit state."""
+    turns = bank(np.zeros(len(rate)), rate, ())
+    units = np.tile(np.eye(4)[:, :, None, None], (1, 1, len(rate), len(step)))
+    return np.stack([move_means(turns, unit, step) for unit in units.swapaxes(0, 1)],
+                    -1).transpose(2, 1, 0, 3)
 
 
 def test_turns_are_arcs_clockwise_for_a_positive_rate():

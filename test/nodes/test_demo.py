@@ -42,7 +42,7 @@ def gone(processes):
 
 def test_targets_show_and_ctrl_c_ends_it_all(demo, node_helpers):
     wait, _ = node_helpers
-    process = demo('--scenario', 'clean', '--rate', '10')
+    process = demo('--scenario', 'clean', '--rate', '25')
     assert process.says('TT06'), process.said
     started = nodes(process)
     assert set(started) == {'tracker', 'radar_simulator'}
@@ -54,15 +54,14 @@ def test_targets_show_and_ctrl_c_ends_it_all(demo, node_helpers):
 
 def test_a_recording_is_shown_with_the_parameters_of_its_radar(demo, node_helpers, recordings):
     wait, _ = node_helpers
-    process = demo('--recording', str(recordings / 'autosea_joyride'), '--rate', '10',
-                   '--estimator', 'cs_kalman')
+    process = demo('--recording', str(recordings / 'autosea_joyride'), '--rate', '25',
+                   '--estimator', 'imm')
     assert process.says('TT01'), process.said
     words = ' '.join(nodes(process)['tracker'].cmdline())
     for assignment in ('range_sigma_m:=12.0', 'bearing_sigma_deg:=0.8',
-                       'vessel_class:="small_craft"', 'estimator:="cs_kalman"',
+                       'vessel_class:="small_craft"', 'estimator:="imm"',
                        'use_sim_time:=true'):
         assert assignment in words
-    assert 'cs_kalman' in process.said
     process.stop(signal.SIGTERM)
 
 
@@ -81,7 +80,7 @@ def test_it_ends_with_the_scenario(demo, tmp_path):
 
 def test_a_node_that_dies_ends_the_demo_which_says_so(demo, node_helpers):
     wait, _ = node_helpers
-    process = demo('--scenario', 'clean', '--rate', '10')
+    process = demo('--scenario', 'clean', '--rate', '25')
     started = wait(lambda: len(nodes(process)) == 2 and nodes(process))
     started['tracker'].kill()
     assert process.ends() == 1
@@ -91,7 +90,7 @@ def test_a_node_that_dies_ends_the_demo_which_says_so(demo, node_helpers):
 
 def test_nodes_do_not_outlive_a_demo_that_is_killed(demo, node_helpers):
     wait, _ = node_helpers
-    process = demo('--scenario', 'clean', '--rate', '10')
+    process = demo('--scenario', 'clean', '--rate', '25')
     started = wait(lambda: len(nodes(process)) == 2 and nodes(process))
     process.send(signal.SIGKILL)
     wait(lambda: gone(started.values()))

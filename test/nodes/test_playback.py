@@ -82,7 +82,7 @@ def test_own_ship_its_fix_and_the_clock_cover_each_scan_in_order(
     node = graph.make(RadarSimulatorNode, scenario=short, rate=30.0)
     wait(lambda: node.done)
     own, fixes, clock = ears[topics.ODOMETRY], ears[topics.FIX], ears['/clock']
-    wait(lambda: len(ears[topics.PLOTS]) >= 11 and len(own) == len(fixes))
+    wait(lambda: len(ears[topics.PLOTS]) >= 11 and len(own) == len(fixes) >= 22)
     at = stamps(own.messages)
     assert (np.diff(at) > 0).all()
     assert np.diff(at).max() * 1e-9 <= 1.3 * own_ship_period(30.0)
@@ -106,16 +106,16 @@ def test_the_period_is_kept_within_one_percent_by_the_wall(launch, graph, node_h
         topics.best_available())
     own_ship = listener(node, Odometry, topics.ODOMETRY)
     process = launch('nodes.radar_simulator', '--ros-args', '-p', 'scenario:=clean')
-    wait(lambda: len(arrivals) >= 4)
+    wait(lambda: len(arrivals) >= 3)
     process.stop()
     wall = np.array([at for at, _ in arrivals])
     sent = np.array([convert.nanoseconds(stamp) for _, stamp in arrivals])
-    assert (wall[3] - wall[0]) / 3 == pytest.approx(60 / 22, rel=0.01)
+    assert (wall[2] - wall[0]) / 2 == pytest.approx(60 / 22, rel=0.01)
     assert np.diff(sent) == pytest.approx(PERIOD_NS, abs=2)
     # At rate 1 the stamps are the node's clock: a scan arrives when it has ended.
-    late = time.time() - (time.monotonic() - wall[3]) - (sent[3] + PERIOD_NS) * 1e-9
+    late = time.time() - (time.monotonic() - wall[2]) - (sent[2] + PERIOD_NS) * 1e-9
     assert abs(late) < 0.5
-    assert len(own_ship) >= 3 * 27          # 10 Hz
+    assert len(own_ship) >= 2 * 27          # 10 Hz
 
 
 def test_a_rate_of_forty_is_forty_times_as_fast(graph, node_helpers, ears):
@@ -154,7 +154,7 @@ def test_a_recording_is_published_as_it_was_recorded(
         position, velocity = convert.odometry_to_own_ship(own[k])
         assert position == pytest.approx(recording.own_ship.position[k])
         assert velocity == pytest.approx(recording.own_ship.velocity[k])
-    assert len(ears[topics.TRUTH]) == sum(len(truth.time) for truth in recording.truths)
+    wait(lambda: len(ears[topics.TRUTH]) == sum(len(t.time) for t in recording.truths))
     assert len(ears[topics.FIX]) == 0
 
 

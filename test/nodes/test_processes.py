@@ -14,9 +14,13 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import PointCloud2
 
 from marine_tracker.nodes import topics
+from marine_tracker.parameters import TrackerParameters, from_mapping
+from marine_tracker.recording import csv_folder
 from marine_tracker.simulation import scenario
+from marine_tracker.tracking.tracker import Tracker
 
 SIMULATOR, TRACKER, PLAYER = 'nodes.radar_simulator', 'nodes.tracker', 'nodes.recording_player'
+STATUS = ('', 'TRACKING', 'COASTING', 'LOST')      # tentative ones have no number
 READY = {SIMULATOR: 'scenario', TRACKER: 'waiting for', PLAYER: 'recording'}
 
 
@@ -45,22 +49,26 @@ def targets(graph, node_helpers):
     return ears
 
 
-def test_all_targets_of_a_clean_scenario_are_confirmed_and_an_estimator_may_change(
-        launch, targets, graph, node_helpers):
+def test_parameters_from_a_file_confirm_all_targets_and_the_estimator_may_change(
+        launch, targets, graph, node_helpers, tmp_path):
     wait, _ = node_helpers
-    tracker = launch(TRACKER, *p(use_sim_time='true', **for_clean()))
-    simulator = launch(SIMULATOR, *p(scenario='clean', rate=20.0))
+    file = tmp_path / 'mine.yaml'
+    file.write_text('/**:\n  ros__parameters:\n    use_sim_time: true\n' + ''.join(
+        f'    {name}: {value}\n' for name, value in {
+            'estimator': 'cs_kalman', **for_clean()}.items()))
+    tracker = launch(TRACKER, '--ros-args', '--params-file', str(file))
+    simulator = launch(SIMULATOR, *p(scenario='clean', rate=30.0))
     wait(lambda: len(targets.now()) == 6)
     assert set(targets.now()) == {f'TT{n:02d}' for n in range(1, 7)}
-    wait(lambda: {values['estimator'] for values in targets.now().values()} == {'imm'})
+    wait(lambda: {values['estimator'] for values in targets.now().values()} == {'cs_kalman'})
 
     client = graph.nodes[0].create_client(SetParameters, '/tracker/set_parameters')
     wait(client.service_is_ready)
     future = client.call_async(SetParameters.Request(
-        parameters=[Parameter('estimator', value='cs_kalman').to_parameter_msg()]))
+        parameters=[Parameter('estimator', value='imm').to_parameter_msg()]))
     wait(future.done)
     assert future.result().results[0].successful
-    wait(lambda: {values['estimator'] for values in targets.now().values()} == {'cs_kalman'})
+    wait(lambda: {values['estimator'] for values in targets.now().values()} == {'imm'})
     heard = len(targets)
     wait(lambda: len(targets) >= heard + 10)
     assert set(targets.now()) == {f'TT{n:02d}' for n in range(1, 7)}
@@ -68,34 +76,30 @@ def test_all_targets_of_a_clean_scenario_are_confirmed_and_an_estimator_may_chan
     tracker.stop(signal.SIGTERM)
 
 
-def test_a_recorded_boat_is_followed(launch, targets, node_helpers, recordings):
+def test_a_recording_over_dds_gives_the_tracks_of_a_replay(
+        launch, targets, node_helpers, recordings):
     wait, _ = node_helpers
-    tracker = launch(TRACKER, *p(use_sim_time='true', range_sigma_m=12.0, bearing_sigma_deg=0.8,
-                                 vessel_class='small_craft'))
-    player = launch(PLAYER, *p(folder=recordings / 'autosea_joyride', rate=20.0))
-    wait(lambda: any(float(values['speed_kn']) > 5 and int(values['hits_in_10']) >= 8
-                     for values in targets.now().values()))
-    player.stop()
-    tracker.stop()
-
-
-def test_parameters_come_from_a_file(launch, tmp_path, targets, node_helpers):
-    wait, _ = node_helpers
-    file = tmp_path / 'mine.yaml'
-    lines = ''.join(f'    {name}: {value}\n' for name, value in for_clean().items())
-    file.write_text(f'/**:\n  ros__parameters:\n    use_sim_time: true\n'
-                    f'    estimator: cs_kalman\n{lines}')
-    tracker = launch(TRACKER, '--ros-args', '--params-file', str(file))
-    launch(SIMULATOR, *p(scenario='clean', rate=30.0))
-    wait(lambda: targets.now())
-    assert {values['estimator'] for values in targets.now().values()} == {'cs_kalman'}
+    recording = csv_folder.read(recordings / 'autoferry_03')
+    parameters = recording.tracker_parameters
+    core = Tracker(from_mapping(TrackerParameters, parameters))
+    memory, expected = core.start(), []
+    for scan in recording.scans:
+        memory, report = core.step(memory, scan)
+        tracks = report.tracks
+        expected.append(sorted(
+            (f'TT{number:02d}', STATUS[status])
+            for number, status in zip(tracks.number.tolist(), tracks.status.tolist()) if number))
+    tracker = launch(TRACKER, *p(use_sim_time='true', **parameters))
+    player = launch(PLAYER, *p(folder=recordings / 'autoferry_03', rate=25.0))
+    wait(lambda: len(targets) >= len(recording.scans))
+    assert [[(entry.name, entry.message) for entry in message.status]
+            for message in targets.messages] == expected
+    assert player.ends() == 0
     tracker.stop()
 
 
 @pytest.mark.parametrize('module, content, said', [
     (TRACKER, 'estimatr: imm', 'tracker: unknown parameter estimatr; did you mean estimator?'),
-    (TRACKER, 'confirm_hits: []', 'tracker: parameter confirm_hits has no value'),
-    (SIMULATOR, 'rate: 0.0', 'radar_simulator: parameter rate is 0; it must'),
     (PLAYER, 'folder: 7', 'recording_player: parameter folder is 7, an integer'),
 ])
 def test_a_wrong_parameter_in_a_file_stops_the_start_in_one_line(
@@ -119,14 +123,14 @@ def test_two_radars_side_by_side_do_not_hear_each_other(launch, graph, node_help
         processes += [
             launch(TRACKER, *p(max_plots=100 * n), *where),
             # Their clocks would clash; the trackers go by the stamps alone.
-            launch(SIMULATOR, *p(scenario=name, rate=10.0), *where, '-r', '/clock:=clock')]
+            launch(SIMULATOR, *p(scenario=name, rate=20.0), *where, '-r', '/clock:=clock')]
     wait(lambda: len(tracks[1]) and len(tracks[2]))
     assert {message.child_frame_id for message in tracks[2].messages} == {'track_01'}
     wait(lambda: {message.child_frame_id for message in tracks[1].messages} >= {
         f'track_{k:02d}' for k in range(1, 6)})
     assert max(message.width for message in plots[2].messages) < 6
-    names = {entry.name for message in diagnostics.messages for entry in message.status}
-    assert {'radar_1/tracker: input', 'radar_2/tracker: input'} <= names
+    wait(lambda: {'radar_1/tracker: input', 'radar_2/tracker: input'} <= {
+        entry.name for message in diagnostics.messages for entry in message.status})
     ids = {entry.hardware_id for message in diagnostics.messages for entry in message.status}
     assert ids == {'radar_1/radar', 'radar_2/radar'}
     for process in processes:

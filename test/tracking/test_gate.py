@@ -32,7 +32,8 @@ def scene(rng, tracks, plots, *, reach=6000.0, sigma=60.0, bearing_sigma=0.0087,
         time = sweep.time_at(to_range_bearing(where)[1])
     position = position + time[:, None] * velocity
     if tracks:
-        near = position[rng.integers(0, tracks, plots)] + rng.normal(0, 2.5 * sigma, (plots, 2))
+        near = position[rng.integers(0, tracks, plots)] + sigma * (
+            rng.uniform(0.1, 2.5, (plots, 1)) * rng.normal(size=(plots, 2)))
     else:
         near = np.zeros((plots, 2))
     far = own.position + rng.uniform(-1, 1, (plots, 2)) * reach

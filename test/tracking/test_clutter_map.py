@@ -1,0 +1,84 @@
+import numpy as np
+import pytest
+
+from marine_tracker.tracking import clutter_map
+
+
+def sea(rng, density, reach, sectors=(0.0, 2 * np.pi)):
+    """Range and bearing of Poisson clutter of `density` 1/m^2 out to `reach` m."""
+    width = sectors[1] - sectors[0]
+    count = rng.poisson(density * width / 2 * reach ** 2)
+    return reach * np.sqrt(rng.random(count)), rng.uniform(*sectors, count)
+
+
+def learnt(rng, scans, before=None, **about):
+    clutter = clutter_map.empty() if before is None else before
+    for _ in range(scans):
+        clutter = clutter_map.learn(clutter, *sea(rng, **about))
+    return clutter
+
+
+@pytest.mark.parametrize('density', [2e-6, 2e-5])
+def test_the_density_of_an_even_sea_is_learnt(density):
+    """Over rings with dozens of plots the mean of a memory of 20 scans is known to a few per cent.
+
+    A cell may hold more than its share by chance and never counts less than its ring, so the
+    density may be overrated: by at most a half on average, and by no more than three in a cell.
+    """
+    rng = np.random.default_rng(1)
+    clutter = learnt(rng, 120, density=density, reach=6000.0)
+    found = clutter_map.density(clutter, *sea(rng, density, 4500.0)) / density
+    far = found[: len(found)]
+    assert np.median(far) > 0.85
+    assert 0.9 < far.mean() < 1.5
+    assert np.mean(far > 3) < 0.02
+
+
+def test_a_few_scans_tell_the_order_of_magnitude():
+    rng = np.random.default_rng(2)
+    clutter = learnt(rng, 3, density=1e-5, reach=6000.0)
+    found = clutter_map.density(clutter, *sea(rng, 1e-5, 5000.0)) / 1e-5
+    assert 0.5 < np.median(found) < 3.0
+
+
+def test_clutter_near_own_ship_is_told_from_the_clear_sea_outside():
+    rng = np.random.default_rng(3)
+    clutter = learnt(rng, 100, density=2e-5, reach=2000.0)
+    bearing = np.linspace(0, 6.2, 50)
+    near = clutter_map.density(clutter, np.full(50, 1200.0), bearing)
+    outside = clutter_map.density(clutter, np.full(50, 4000.0), bearing)
+    assert (near > 0.7 * 2e-5).all()
+    assert (outside < 0.01 * 2e-5).all()
+
+
+def test_clutter_on_one_side_weighs_most_there():
+    rng = np.random.default_rng(4)
+    clutter = learnt(rng, 150, density=2e-5, reach=5000.0, sectors=(np.pi, 2 * np.pi))
+    inside = clutter_map.density(clutter, *sea(rng, 1e-6, 4500.0, (3.6, 5.8)))
+    elsewhere = clutter_map.density(clutter, *sea(rng, 1e-6, 4500.0, (0.5, 2.6)))
+    assert 0.85 * 2e-5 < np.median(inside) < 1.4 * 2e-5
+    assert np.median(elsewhere) < 0.6 * np.median(inside)
+
+
+def test_clutter_that_has_gone_is_forgotten():
+    rng = np.random.default_rng(5)
+    clutter = learnt(rng, 60, density=2e-5, reach=5000.0)
+    nothing = np.zeros(0)
+    for _ in range(150):
+        clutter = clutter_map.learn(clutter, nothing, nothing)
+    assert (clutter_map.density(clutter, *sea(rng, 1e-6, 4000.0)) < 0.01 * 2e-5).all()
+
+
+def test_an_empty_sea_has_a_small_positive_density_everywhere():
+    where = np.array([0.0, 1e-9, 10.0, 50.0, 3e3, 4.4e4, 2e5, 1e6])
+    for clutter in (clutter_map.empty(), clutter_map.learn(clutter_map.empty(), *np.zeros((2, 0)))):
+        found = clutter_map.density(clutter, where, np.linspace(0, 2 * np.pi, 8))
+        assert np.isfinite(found).all() and (found > 0).all()
+        # Much less than one false plot in the gate of a track, 1 / (pi (3 x 60 m)^2).
+        assert (found[4:] < 1e-6).all()
+
+
+def test_learning_leaves_the_map_before_it_alone():
+    clutter = clutter_map.empty()
+    clutter_map.learn(clutter, np.array([100.0]), np.array([1.0]))
+    assert not clutter.plots.any() and clutter.scans == 0

@@ -1,0 +1,218 @@
+import itertools
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from marine_tracker.parameters import TrackerParameters
+from marine_tracker.tracking import lifecycle
+from marine_tracker.tracking.lifecycle import (
+    COASTING,
+    CONFIRMED,
+    LOST,
+    MISSED,
+    OUT_OF_RANGE,
+    TENTATIVE,
+)
+from marine_tracker.types import Tracks
+
+PERIOD = 60 / 22
+
+
+def one_plot(score=0.0, status=TENTATIVE):
+    """A track with its first plot, at time 0."""
+    one = np.ones(1, np.int64)
+    zero = np.zeros(1)
+    return Tracks(one, 0 * one, np.full(1, status, np.int8), one, np.array([score]), one, zero,
+                  zero, zero, zero)
+
+
+def live(pattern, gain=20.0, drift=0.0, beyond=False, score=0.0, status=TENTATIVE, **parameters):
+    """(status, reason, tracks) after each scan of the pattern: 1 hit, 0 missed, . not visible.
+
+    Ends with the track's loss. gain: what a plot adds to the score.
+    """
+    p = TrackerParameters(**parameters)
+    tracks, out = one_plot(score, status), []
+    for k, what in enumerate(pattern, 1):
+        hit = what == '1'
+        rows = np.arange(1) if hit else np.zeros(0, np.int64)
+        now = k * PERIOD
+        if hit:
+            tracks = tracks._replace(last_time=np.array([now]))
+        tracks = lifecycle.record(tracks, rows, np.full(len(rows), gain), np.array([what != '.']),
+                                  p)
+        found, reason = lifecycle.judge(tracks, p, np.array([hit]), np.array([beyond]),
+                                        np.array([drift]), now)
+        tracks = tracks._replace(status=found)
+        out.append((int(found[0]), int(reason[0]), tracks))
+        if found[0] == LOST:
+            break
+    return out
+
+
+def statuses(pattern, **about):
+    return [status for status, _, _ in live(pattern, **about)]
+
+
+@pytest.mark.parametrize(('needed', 'window'), [(2, 2), (2, 3), (3, 5), (4, 5), (6, 8)])
+def test_m_of_n_plots_confirm_and_what_cannot_get_there_is_dropped(needed, window):
+    """Every possible course of the first N scans."""
+    for pattern in itertools.product('01', repeat=window - 1):
+        expected = []
+        plots = 1
+        for scan, what in enumerate(pattern, 2):
+            plots += what == '1'
+            if plots >= needed:
+                expected.append(CONFIRMED if what == '1' else COASTING)
+                break
+            if plots + window - scan < needed:
+                expected.append(LOST)
+                break
+            expected.append(TENTATIVE)
+        found = statuses(''.join(pattern), confirm_hits=needed, confirm_scans=window)
+        assert found[:len(expected)] == expected, pattern
+        assert expected[-1] in (CONFIRMED, LOST)
+
+
+def test_plots_that_clutter_explains_as_well_do_not_confirm():
+    assert statuses('1111', gain=0.5, confirm_score=5.0) == [TENTATIVE] * 4
+    assert statuses('1111', gain=0.5, confirm_score=-10.0)[1] == CONFIRMED
+
+
+def test_the_score_may_come_later_than_the_plots():
+    assert statuses('1111', gain=1.5, confirm_score=5.0) == [
+        TENTATIVE, TENTATIVE, TENTATIVE, CONFIRMED]
+
+
+def test_a_doubtful_track_is_dropped_once_its_window_is_poor():
+    found = live('1110000', gain=0.5, confirm_score=5.0)
+    assert found[-1][:2] == (LOST, MISSED)
+    assert len(found) == 6                  # 1110 00: two in the last five
+
+
+def test_a_confirmed_track_coasts_and_comes_back():
+    assert statuses('110010') == [TENTATIVE, CONFIRMED, COASTING, COASTING, CONFIRMED, COASTING]
+
+
+@pytest.mark.parametrize(('detection', 'most', 'misses'), [
+    (0.8, 14.0, 9), (0.5, 14.0, 21), (0.9, 14.0, 7), (0.8, 5.0, 4)])
+def test_a_track_outlives_as_many_misses_as_its_score_is_worth(detection, most, misses):
+    """Each costs -ln(1 - Pd); the best score is `max_score`: lost when it is used up."""
+    found = live('1' * 30 + '0' * 30, gain=9.0, detection_probability=detection,
+                 max_score=most, confirm_score=1.0, hold_hits=1)
+    lost_by_score = 30 + misses
+    assert len(found) == min(lost_by_score, 30 + lifecycle.TEN)
+    assert found[-1][:2] == (LOST, MISSED)
+    assert found[29][2].score[0] == most
+
+
+@pytest.mark.parametrize('hold', [1, 3, 5])
+def test_a_confirmed_track_needs_its_plots_in_ten_scans(hold):
+    """With a score beyond all doubt: lost with the first ten scans that hold too few plots."""
+    rng = np.random.default_rng(hold)
+    for _ in range(30):
+        pattern = '1' * 10 + ''.join(rng.choice(list('01'), 40, p=[0.65, 0.35]))
+        found = live(pattern, gain=50.0, max_score=100.0, hold_hits=hold)
+        lengths = [k for k in range(1, len(pattern) + 1)
+                   if k >= 10 and ('1' + pattern)[k - 9:k + 1].count('1') < hold]
+        expected = lengths[0] if lengths else len(pattern)
+        assert len(found) == expected
+        assert (found[-1][0] == LOST) == bool(lengths)
+
+
+def test_five_plots_in_ten_hold_where_five_are_asked():
+    assert LOST not in statuses('1' * 9 + '0101010101' * 5, gain=50.0, hold_hits=5)
+    assert LOST not in statuses('1' * 9 + '0000011111' * 5, gain=50.0, hold_hits=5,
+                                max_score=100.0)
+    assert LOST in statuses('1' * 9 + '0000001111' * 5, gain=50.0, hold_hits=5, max_score=100.0)
+
+
+def test_a_young_confirmed_track_is_not_held_to_ten_scans():
+    assert statuses('11000', gain=50.0, hold_hits=5, max_score=100.0)[-1] == COASTING
+
+
+def test_a_coasting_track_that_may_be_anywhere_is_lost():
+    about = {'drift': 5.0, 'max_drift': 4.0, 'score': 10.0, 'status': CONFIRMED}
+    assert live('0', **about)[-1][:2] == (LOST, MISSED)
+    assert statuses('1', **about) == [CONFIRMED]
+    assert statuses('0', **{**about, 'max_drift': 6.0}) == [COASTING]
+
+
+def test_a_track_beyond_the_radars_range_has_left_by_range():
+    about = {'beyond': True, 'score': 10.0, 'status': CONFIRMED}
+    assert live('.', **about)[-1][:2] == (LOST, OUT_OF_RANGE)
+    assert statuses('1', **about) == [CONFIRMED]        # a plot is stronger than the estimate
+    assert live('.', beyond=True)[-1][:2] == (LOST, OUT_OF_RANGE)
+
+
+def test_where_the_radar_cannot_see_nothing_is_missed():
+    before, after = live('11'), live('11' + '.' * 12)
+    assert after[-1][0] == COASTING
+    for name in ('history', 'score', 'age'):
+        assert getattr(after[-1][2], name) == getattr(before[-1][2], name)
+    assert statuses('11' + '.' * 12 + '1')[-1] == CONFIRMED
+
+
+def test_a_plot_where_none_was_expected_counts():
+    """Such as a plot a little inside the blind range."""
+    p = TrackerParameters()
+    tracks = lifecycle.record(one_plot(), np.arange(1), np.array([2.0]), np.array([False]), p)
+    assert tracks.history[0] == 0b11 and tracks.age[0] == 2 and tracks.score[0] == 2.0
+
+
+def test_no_track_stays_in_the_dark_for_ever():
+    found = live('11' + '.' * 200)
+    assert found[-1][0] == LOST
+    assert 20 < len(found) < 60
+
+
+def test_hits_and_misses_are_counted():
+    rng = np.random.default_rng(0)
+    bits = rng.integers(0, 2, (200, 20))
+    history = bits @ (1 << np.arange(20))
+    tracks = one_plot()._replace(history=history)
+    for scans in (1, 5, 10, 20):
+        assert (lifecycle.hits(tracks, scans) == bits[:, :scans].sum(1)).all()
+    since = [next((k for k in range(20) if row[k]), 20) for row in bits]
+    assert lifecycle.misses_in_a_row(tracks).tolist() == since
+    assert lifecycle.misses_in_a_row(one_plot()._replace(history=np.zeros(1, np.int64))) == [20]
+
+
+def test_only_so_many_scans_are_remembered():
+    tracks = live('1' * 70)[-1][2]
+    assert tracks.history[0] == (1 << 20) - 1
+
+
+def test_the_evidence_of_a_plot_is_its_likelihood_ratio():
+    """Detected and so placed, against one of `density` false plots a square metre."""
+    rng = np.random.default_rng(6)
+    for _ in range(20):
+        root = rng.normal(size=(2, 2)) * 50
+        spread = root @ root.T + np.eye(2)
+        z = rng.normal(0, 60, 2)
+        density = 10 ** rng.uniform(-9, -4)
+        found = lifecycle.evidence(
+            np.array([z @ np.linalg.solve(spread, z)]), np.array([np.linalg.slogdet(spread)[1]]),
+            np.array([density]), 0.7)
+        expected = np.log(0.7) + multivariate_normal([0, 0], spread).logpdf(z) - np.log(density)
+        assert found == pytest.approx([expected])
+
+
+def test_tracks_are_judged_each_for_itself():
+    """One batch of all cases gives what each alone gives."""
+    rng = np.random.default_rng(8)
+    count, p = 300, TrackerParameters(hold_hits=3)
+    status = rng.integers(0, 3, count).astype(np.int8)
+    many = Tracks(np.arange(count), np.zeros(count, np.int64), status,
+                  rng.integers(0, 1 << 20, count), rng.uniform(-5, 14, count),
+                  rng.integers(1, 40, count), np.zeros(count), rng.uniform(-120, 0, count),
+                  np.zeros(count), np.zeros(count))
+    facts = (many.history & 1 == 1, rng.random(count) < 0.1, rng.uniform(0, 6, count))
+    found = lifecycle.judge(many, p, *facts, 0.0)
+    for row in range(count):
+        one = Tracks(*(np.asarray(column)[row:row + 1] for column in many))
+        alone = lifecycle.judge(one, p, *(fact[row:row + 1] for fact in facts), 0.0)
+        assert (alone[0][0], alone[1][0]) == (found[0][row], found[1][row])
+    assert set(found[0]) == {TENTATIVE, CONFIRMED, COASTING, LOST}
+    assert ((found[1] > 0) == (found[0] == LOST)).all()
