@@ -30,12 +30,14 @@ class State(NamedTuple):
     covariance: Array
 
 
-def init(plots):
-    """One row a plot: its position, and a velocity that may be anything."""
+def init(plots, velocity=None):
+    """One row a plot: its position, and its velocity where it is known, else anything."""
     count = len(plots.time)
     mean, covariance = np.zeros((count, 4)), np.zeros((count, 4, 4))
     mean[:, :2], covariance[:, :2, :2] = plots.position, plots.covariance
     covariance[:, 2:, 2:] = FIRST_SPEED ** 2 * np.eye(2)
+    if velocity is not None:
+        mean[:, 2:], covariance[:, 2:, 2:] = velocity.mean, velocity.covariance
     return State(plots.time, mean, covariance)
 
 
@@ -82,7 +84,6 @@ def typical_error(tracker, chosen):
 encounters = scenario.load('encounters')
 parameters = encounters.tracker_parameters()
 shipped = Tracker(TrackerParameters(estimator='cs_kalman', **parameters))
-own = Tracker(TrackerParameters(**parameters))
-own.estimator = Estimator(init, extrapolate, update)
+own = Tracker(TrackerParameters(**parameters), Estimator(init, extrapolate, update))
 print(f'cs_kalman          {typical_error(shipped, encounters):5.1f} m')
 print(f'your own estimator {typical_error(own, encounters):5.1f} m')

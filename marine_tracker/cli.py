@@ -6,7 +6,7 @@ import os
 import sys
 from importlib import metadata
 
-COMMANDS = ('demo', 'replay', 'score', 'bench', 'experiments', 'scenario', 'doctor')
+COMMANDS = ('demo', 'replay', 'score', 'bench', 'experiments', 'train', 'scenario', 'doctor')
 
 DESCRIPTION = """\
 Track vessels by radar as an ARPA does: on simulated, recorded or live plots."""

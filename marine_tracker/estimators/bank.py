@@ -17,8 +17,8 @@ import numpy as np
 
 from ..types import Array, Plots
 from . import cs_kalman, linear_modes
-from .imm import Modes
 from .contract import Velocity
+from .imm import Modes
 from .linear import first_velocity, kalman_update
 
 PERIOD = 60 / 22                # s, to which the settings refer

@@ -5,8 +5,8 @@ present estimate, with the variance of a modified Rayleigh density bounded by a_
 
     x(t+T) = F x + U abar + w,   cov w = 2 alpha sigma_a^2 q(T)
 
-Symbols: y = alpha T, e = exp(-y); F, U, q as in paper 003 eq 2-6. phi_d(T) below is the d-fold
-integral of exp(-alpha t), so F = [[1, T, phi_2], [0, 1, phi_1], [0, 0, phi_0]].
+Symbols: y = alpha T, e = exp(-y); F, U, q are the exact discrete form of paper 003 eq 3. phi_d(T)
+below is the d-fold integral of exp(-alpha t), so F = [[1, T, phi_2], [0, 1, phi_1], [0, 0, phi_0]].
 """
 
 from math import factorial
@@ -136,41 +136,58 @@ def _per_axis(block):
     return np.block([[block, zero], [zero, block]])
 
 
-# Which coefficient stands where, as rows of `predict`'s table: 0, 1, T, phi_0..2, U_1..3.
-_F = _per_axis([[1, 2, 5], [0, 1, 4], [0, 0, 3]])
-_U = _per_axis([[6], [7], [8]])
-# Rows of its noise table: 0, then q11, q12, q13, q22, q23, q33 of east, and of north.
-_Q = _per_axis([[1, 2, 3], [2, 4, 5], [3, 5, 6]])
-_Q[3:, 3:] += 6
+class _Layout(NamedTuple):
+    """Which coefficient stands where in the matrices of the wanted n entries of the state.
+
+    transition  [n, 6]  rows of `predict`'s table: 0, 1, T, phi_0..2, U_1..3
+    drive       [n]     likewise
+    axis        [n]     whose mean acceleration drives it
+    noise       [n, n]  rows of its noise table: 0, q11, q12, q13, q22, q23, q33 of east, of north
+    """
+
+    transition: Array
+    drive: Array
+    axis: Array
+    noise: Array
 
 
-def predict(mean, covariance, step, manoeuvre: Manoeuvre, rows=slice(None)):
+def _layout(rows):
+    noise = _per_axis([[1, 2, 3], [2, 4, 5], [3, 5, 6]])
+    noise[3:, 3:] += 6
+    return _Layout(_per_axis([[1, 2, 5], [0, 1, 4], [0, 0, 3]])[rows],
+                   np.array([6, 7, 8, 6, 7, 8])[rows], np.array([0, 0, 0, 1, 1, 1])[rows],
+                   noise[np.ix_(rows, rows)])
+
+
+WHOLE, SHOWN = _layout(np.arange(6)), _layout(POSITION_VELOCITY)
+
+
+def predict(mean, covariance, step, manoeuvre: Manoeuvre, wanted: _Layout = WHOLE):
     """States [N, 6] and covariances [N, 6, 6] moved by the steps [N] s.
 
-    rows: the entries of the state wanted (then [N, n] and [N, n, n]); all by default.
+    wanted: WHOLE, or SHOWN for position and velocity only (then [N, 4] and [N, 4, 4]).
     """
     phi, q = model(manoeuvre.frequency, step)
     acceleration = mean[:, [2, 5]]
     limit = manoeuvre.max_acceleration
     variance = 2 * manoeuvre.frequency * acceleration_variance(acceleration, limit)
+    abar = np.minimum(np.maximum(acceleration, -limit), limit)
 
     table = np.empty((9, len(step)))
     table[0], table[1], table[2], table[3:6] = 0.0, 1.0, step, phi
     table[6], table[7] = 0.5 * step * step - phi[2], step - phi[1]
     table[8] = 1 - phi[0]
     table = table.T
-    transition = table.take(_F[rows], 1)
-    drive = table.take(_U[rows], 1)
+    transition = table.take(wanted.transition, 1)
+    drive = table.take(wanted.drive, 1) * abar.take(wanted.axis, 1)
 
     table = np.zeros((13, len(step)))
     table[1:7], table[7:] = q * variance[:, 0], q * variance[:, 1]
-    noise = table.T.take(_Q[rows][:, rows], 1)
+    noise = table.T.take(wanted.noise, 1)
 
-    abar = np.minimum(np.maximum(acceleration, -limit), limit)
-    mean = (np.matmul(transition, mean[..., None]) + np.matmul(drive, abar[..., None]))[..., 0]
     moved = sandwich(transition, covariance)
     moved += noise
-    return mean, moved
+    return np.matmul(transition, mean[..., None])[..., 0] + drive, moved
 
 
 def predict_mean(mean, step, manoeuvre: Manoeuvre):
@@ -207,7 +224,7 @@ def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
 
     def extrapolate(state, time):
         mean, covariance = predict(state.mean, state.covariance, time - state.time, manoeuvre,
-                                   POSITION_VELOCITY)
+                                   SHOWN)
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state, plots, rows):

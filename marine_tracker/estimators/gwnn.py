@@ -9,8 +9,8 @@ get wrong:
 with l the log mode probabilities of the base IMM. The network never feeds back into the filters,
 so leaving it out is taking another output. That happens, track by track, where its expectations
 fit the plots worse than CS-Kalman's by more than `FALL` for the last dozen plots or so, or where
-it says anything that is not a number; it stays away until it has been better `RETURN` times in a
-row.
+it says anything that is not a number; it stays away until of the last few plots CS-Kalman's fit
+has been the worse one `RETURN` times in a row.
 """
 
 from typing import NamedTuple
@@ -27,11 +27,12 @@ from .contract import Estimator
 from .linear import sandwich
 
 GATE, REFUSALS = 16.0, 2        # squared distance from the base; plots refused in a row, at most
-WARM = 10                       # plots before the network is heard
+SETTLED = 10                    # plots before any is refused
+WARM = 8                        # plots before the network is heard
 FADE = 3.0                      # scans ahead up to which the network speaks
 OTHERS = -5.0                   # log weight of experts that are no modes of the base, silent network
 FALL, BACK, RETURN = 1.6, 1.0, 5
-KEEP = 0.9                      # of J, a plot
+KEEP, KEEP_LATELY = 0.9, 0.7    # of J, a plot: to fall back; to return
 WORST = 25.0                    # squared residual that counts at most
 EXPECTED = 2.2                  # squared residual of a good filter, sigma^2: where J starts
 WARMUP, GWNN, FALLBACK = 0.0, 1.0, 2.0
@@ -52,6 +53,7 @@ class Monitor(NamedTuple):
     status      WARMUP, GWNN or FALLBACK
     network     J of the network, heard or not: mean squared residual of its expectations, sigma^2
     cs          J of CS-Kalman
+    lately      both again, [N, 2], of fewer plots
     better      plots in a row at which a network not heard was the better one
     reason      of FALLBACK: index into REASONS
     """
@@ -59,6 +61,7 @@ class Monitor(NamedTuple):
     status: Array
     network: Array
     cs: Array
+    lately: Array
     better: Array
     reason: Array
 
@@ -132,11 +135,11 @@ def fuse(output, at: Look):
 def advance(bank: filters.BankState, memory: gwnn_inputs.Memory, plots):
     """Filters and memories of N rows after one plot each; and what the filters had expected.
 
-    A plot far off a track that is warm is refused by all filters alike, up to REFUSALS times in a
+    A plot far off a settled track is refused by all filters alike, up to REFUSALS times in a
     row.
     """
     expected = filters.expect(bank, plots)
-    used = ~((expected.nis > GATE) & (memory.refused < REFUSALS) & (memory.plots >= WARM))
+    used = ~((expected.nis > GATE) & (memory.refused < REFUSALS) & (memory.plots >= SETTLED))
     after = filters.correct(expected, plots)
     if not used.all():
         after = where(used, after, bank)
@@ -150,11 +153,13 @@ def weights(path: str = '') -> gwnn_weights.Weights:
                              {'fusion': OUTPUTS, 'spread': SPREADS})
 
 
-def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Estimator:
+def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
+         fall: float = FALL) -> Estimator:
     """The estimator.
 
     max_speed  m/s, of the targets: the velocity variance before the second plot
     period     s, of the radar
+    fall       J of the network over J of CS-Kalman that it falls back at
     """
     def speak(state, memory):
         """What the network says [N, 27] of rows, 0 while they are warming up."""
@@ -169,9 +174,10 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Esti
     def init(plots, velocity=None):
         count = len(plots.time)
         zero = np.zeros(count)
-        monitor = Monitor(zero, zero + EXPECTED, zero + EXPECTED, zero.copy(), zero.copy())
-        return GwnnState(filters.begin(plots, max_speed, velocity), gwnn_inputs.begin(plots), monitor,
-                         np.zeros((count, OUTPUTS + SPREADS)))
+        monitor = Monitor(zero, zero + EXPECTED, zero + EXPECTED, np.full((count, 2), EXPECTED),
+                          zero.copy(), zero.copy())
+        return GwnnState(filters.begin(plots, max_speed, velocity), gwnn_inputs.begin(plots),
+                         monitor, np.zeros((count, OUTPUTS + SPREADS)))
 
     def extrapolate(state, time):
         begun, frame = state.bank.time, state.memory.frame
@@ -195,7 +201,7 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Esti
             rows = take(state.bank, fallen)
             mean[fallen], covariance[fallen] = cs_kalman.predict(
                 rows.cs_mean, rows.cs_covariance, (time - begun)[fallen], filters.MANOEUVRE,
-                cs_kalman.POSITION_VELOCITY)
+                cs_kalman.SHOWN)
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state, plots, rows):
@@ -206,7 +212,8 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float) -> Esti
         shift = gwnn_inputs.from_sigma(frame, fuse(before.output, at))
         output = speak(bank, memory)
         sound = np.isfinite(output).all(1)
-        monitor = judge(before.monitor, plots, expected.ahead, shift, memory, sound)
+        monitor = judge(before.monitor, plots, expected.ahead, shift, memory, sound,
+                        fall)
         return put(state, rows, GwnnState(bank, memory, monitor,
                                           np.where(sound[:, None], output, 0.0)))
 
@@ -233,11 +240,12 @@ def respread(covariance, ratio, frame, scans):
     return sandwich(stretch, covariance)
 
 
-def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, sound) -> Monitor:
+def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, sound,
+          fall: float = FALL) -> Monitor:
     """The monitor after one plot each.
 
     shift [4, N]: the network's correction of the base, m; sound [N]: whether its new output is
-    all numbers; memory: after the plots.
+    all numbers; memory: after the plots; fall: J over J at which it falls back.
     """
     sigma = memory.frame[:, 2:].T
 
@@ -246,15 +254,18 @@ def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, sound) -
         size = (off * off).sum(0)
         return np.where(size < WORST, size, WORST)                  # nan counts as worst
     speaking = memory.plots > WARM              # before, its output was still empty
-    network, cs = (
-        np.where(speaking, KEEP * j + (1 - KEEP) * residual(position), j)
-        for j, position in ((monitor.network, ahead.mean[:2] + shift[:2]),
-                            (monitor.cs, ahead.experts[:2, filters.CS])))
+    residuals = np.stack([residual(ahead.mean[:2] + shift[:2]),
+                          residual(ahead.experts[:2, filters.CS])], 1)
+
+    def averaged(j, keep):
+        return np.where(speaking[:, None], keep * j + (1 - keep) * residuals, j)
+    network, cs = averaged(np.stack([monitor.network, monitor.cs], 1), KEEP).T
+    lately = averaged(monitor.lately, KEEP_LATELY)
     rho = network / cs
     fallen = monitor.status == FALLBACK
-    better = np.where(fallen & sound & (rho < BACK), monitor.better + 1, 0.0)
-    away = np.where(fallen, better < RETURN, rho > FALL) | ~sound
+    better = np.where(fallen & sound & (lately[:, 0] < BACK * lately[:, 1]), monitor.better + 1, 0.0)
+    away = np.where(fallen, better < RETURN, rho > fall) | ~sound
     status = np.where(memory.plots < WARM, WARMUP, np.where(away, FALLBACK, GWNN))
     reason = np.where(status != FALLBACK, 0.0, np.where(
         ~sound, 2.0, np.where(fallen, np.maximum(monitor.reason, 1.0), 1.0)))
-    return Monitor(status, network, cs, better, reason)
+    return Monitor(status, network, cs, lately, better, reason)

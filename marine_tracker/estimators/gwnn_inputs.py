@@ -15,6 +15,8 @@ from . import linear_modes
 
 SCAN = filters.PERIOD           # s: the unit of time of every input, whatever the radar's period
 VELOCITY = 4 * SCAN             # s
+VAGUER = 1.5                    # times; sigma grows by no more from plot to plot: a plot shared
+                                # by several targets may be as vague as it likes
 FARTHEST = 25.0                 # sigma: experts farther from the base are drawn in to this
 MEMORIES = (2.0, 5.0, 12.0)     # plots over which the base's innovations are averaged
 SLOW_KEEP = (0.6, 0.85)         # part kept of the slow filters' mean innovations, a plot
@@ -115,6 +117,7 @@ def variances(frame, covariance):
 def remember(memory: Memory, expected: filters.Expected, plots: Plots, step, used) -> Memory:
     """Memories after one plot each, which the filters took where `used` [N] holds."""
     frame = frame_of(plots)
+    frame[:, 2:] = np.minimum(frame[:, 2:], VAGUER * memory.frame[:, 2:])
     sigma = frame[:, 2:].T
     off = turn(frame, plots.position.T - expected.ahead.mean[:2]) / sigma          # [2, N]
     slow = turn(frame, plots.position.T[:, None] - expected.columns[:2, filters.SLOW]

@@ -9,7 +9,8 @@ Every plot trains it by the rules of variable step and momentum. The paper feeds
 radar's noise that carries the noise of two plots into every difference, so z(k) is here the
 posterior of a CS-Kalman filter, which also gives the covariance. Between plots and one scan ahead
 the track runs straight. The filter alone answers while the network is new, before the last plot,
-and where the network gives no number or leaves what the filter holds possible.
+and where the network gives no number or leaves what the filter holds possible; a network that is
+far out begins anew at the next plot.
 """
 
 from typing import NamedTuple
@@ -42,7 +43,9 @@ NEAR_SHARE = 0.5
 LEAST_GAIN = 0.01                   # a plot that tells less is no plot: z(k) stays
 SHORTEST, LONGEST = 0.3, 3.0        # scans from plot to plot that can teach a difference
 WARM_UP = 5                         # plots
-BELIEVED = 9.0                      # squared distance from the filter, in its own covariance
+# Squared distances from the filter, in its own covariance: up to the first the network answers,
+# beyond the second it begins anew. In between it may be the filter that lags.
+BELIEVED, HOPELESS = 9.0, 100.0
 
 
 class PaperState(NamedTuple):
@@ -136,32 +139,35 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
         return PaperState(base, plots.time.copy(), base.mean[:, POSITION_VELOCITY], weights,
                           np.zeros((count, 4)), plots.origin.copy(), np.zeros(count))
 
-    def extrapolate(state, time):
-        base = filter_.extrapolate(state.base, time)
-        scans = (time - state.time) / period
+    def ahead(state, time, base):
+        """Rows whose networks are warm, what they extrapolate, its squared distance from base."""
         rows = np.flatnonzero((state.taught >= WARM_UP) & (time > state.base.time))
-        if not len(rows):
-            return base
-        mine, scans = take(state, rows), scans[rows][:, None]
+        mine = take(state, rows)
         here, now = mine.mean[:, :2], mine.mean[:, 2:]
-        z = polar(mine.mean, mine.origin)
-        # A network gone bad may overflow; what comes of it is not believed below.
+        scans = ((time[rows] - mine.time) / period)[:, None]
+        # A network gone bad may overflow; what comes of it is not believed.
         with np.errstate(all='ignore'):
+            z = polar(mine.mean, mine.origin)
             output = forward(design, mine.weights, network_inputs(z, mine.centre)).output
             z = z + output_unit(z) * output
-            ahead = mine.origin + z[:, :1] * unit_vector(z[:, 1])
-            position = here + scans * (ahead - here)
+            there = mine.origin + z[:, :1] * unit_vector(z[:, 1])
+            position = here + scans * (there - here)
             velocity = now + np.minimum(scans, 1) * (z[:, 2:3] * unit_vector(z[:, 3]) - now)
-            believed = (
-                distance(position - base.position[rows], base.covariance[rows, :2, :2])
-                + distance(velocity - base.velocity[rows], base.covariance[rows, 2:, 2:])
-            ) <= BELIEVED
-        rows = rows[believed]
-        told = take(base, rows)._replace(position=position[believed], velocity=velocity[believed])
-        return put(base, rows, told)
+            base = take(base, rows)
+            off = (distance(position - base.position, base.covariance[:, :2, :2])
+                   + distance(velocity - base.velocity, base.covariance[:, 2:, 2:]))
+        return rows, base._replace(position=position, velocity=velocity), off
+
+    def extrapolate(state, time):
+        base = filter_.extrapolate(state.base, time)
+        rows, told, off = ahead(state, time, base)
+        believed = off <= BELIEVED
+        return put(base, rows[believed], take(told, believed))
 
     def update(state, plots, rows):
         old = take(state, rows)
+        warm, _, off = ahead(old, plots.time, filter_.extrapolate(old.base, plots.time))
+        old = renew(old, warm[~(off <= HOPELESS)])
         base = filter_.update(old.base, plots, np.arange(len(rows)))
         mean = base.mean[:, POSITION_VELOCITY]
         before, after = polar(old.mean, plots.origin), polar(mean, plots.origin)
@@ -179,15 +185,20 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
         new = PaperState(base, plots.time, mean, old.weights, centre, plots.origin, old.taught)
         return put(state, rows, where(told, new, old._replace(base=base)))
 
+    def renew(state, rows):
+        """The state with new networks in the named rows."""
+        return put(state, rows, take(state, rows)._replace(
+            weights=take(fresh, np.zeros(len(rows), int)), taught=np.zeros(len(rows))))
+
     def teach(state, lesson):
-        """The rows with their networks taught; a network that overflows begins anew."""
+        """The rows with their networks taught; one that overflows begins anew."""
         wanted = np.clip(lesson.wanted, -WANTED_LIMIT, WANTED_LIMIT)
         near = np.maximum(FINEST, NEAR_SHARE * lesson.deviation)
         with np.errstate(all='ignore'):
             weights = learn(design, state.weights, lesson.inputs, wanted, lesson.speed, RULE,
                             POSITION_UNIT, near, FAR_TO_NEAR * near)
         sound = np.isfinite(weights.outer).all((1, 2)) & np.isfinite(weights.inner).all((1, 2))
-        weights = where(sound, weights, take(fresh, np.zeros(len(sound), int)))
-        return state._replace(weights=weights, taught=np.where(sound, state.taught + 1, 0.0))
+        return renew(state._replace(weights=weights, taught=state.taught + 1),
+                     np.flatnonzero(~sound))
 
     return Estimator(init, extrapolate, update)

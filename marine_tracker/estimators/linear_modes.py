@@ -99,13 +99,13 @@ def unpack(rows):
 
 
 def columns_of(rows):
-    """Columns [14, J, N] of rows [N, J, 14]."""
-    return np.ascontiguousarray(rows.transpose(2, 1, 0))
+    """Columns [14, J, N] of rows [N, J, 14], always a copy."""
+    return rows.transpose(2, 1, 0).copy()
 
 
 def rows_of(columns):
-    """Rows [N, J, 14] of columns [14, J, N]."""
-    return np.ascontiguousarray(columns.transpose(2, 1, 0))
+    """Rows [N, J, 14] of columns [14, J, N], always a copy."""
+    return columns.transpose(2, 1, 0).copy()
 
 
 def _shares(chain: Chain, weight, step):

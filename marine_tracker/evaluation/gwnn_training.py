@@ -5,7 +5,10 @@ Samples are taken from the same functions that the estimator runs (`gwnn.advance
 the network saw after a plot and where the target was at that moment or at a later scan.
 """
 
+import json
+import zipfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -20,9 +23,13 @@ from . import ship_tracks
 SCANS = 110
 SPEED = 25.0                    # m/s, the fastest target the tracker is told of
 CHUNK = 588                     # tracks made at once, as many of each kind
+CHUNKS, STEPS = 40, 18000       # of the shipped training
+UNSEEN = 1 << 16                # number of a chunk that is never trained on
+FEW = 100                       # samples of a cell that say too little
+SAVE_EVERY = 500                # steps
 EXPECTED, KNOWN = 0.22, 0.10    # part of the rows sampled a scan: before the plot, after it
 NEAREST = 1000.0                # m; nearer tracks are left out ...
-CLOSE_SHARE, CLOSE_NEAREST = 0.10, 150.0            # ... but for those of a close-range radar
+CLOSE_SHARE, CLOSE_NEAREST = 0.15, 30.0             # ... but for those of a close-range radar
 HARD_SHARE = 0.25
 CLIP = 30.0                     # sigma: of the truth from the base
 HUBER, VELOCITY_WEIGHT = 10.0, 0.5
@@ -68,7 +75,8 @@ def cell_count() -> int:
 
 
 def conditions(count: int, rng):
-    """Radars [B], time steps [B, K] s and ranges [B] m to begin at; and which are close [B]."""
+    """Radars [B], time steps [B, K] s, ranges [B] m to begin at, fastest speeds [B] m/s, and
+    which are close [B]."""
     close = rng.random(count) < CLOSE_SHARE
     hard = (rng.random(count) < HARD_SHARE) | close
 
@@ -85,17 +93,18 @@ def conditions(count: int, rng):
         period=period)
     jitter = np.where(hard, rng.uniform(0, 0.06, count), 0.0)[:, None]
     steps = period[:, None] * (1 + jitter * np.clip(rng.standard_normal((count, SCANS)), -3, 3))
-    ranges = np.exp(draw(np.log(1500), np.log(18000), np.log(300), np.log(2500)))
-    return radar, steps, ranges, close
+    ranges = np.exp(draw(np.log(1500), np.log(18000), np.log(60), np.log(2500)))
+    fastest = draw(18, 18, 3, 18)
+    return radar, steps, ranges, fastest, close
 
 
 def make_samples(seed: int, chunk: int) -> Samples:
     """The samples of one chunk of tracks: the same for the same seed and number."""
     rng = np.random.default_rng([seed, chunk])
-    radar, steps, ranges, close = conditions(CHUNK, rng)
+    radar, steps, ranges, fastest, close = conditions(CHUNK, rng)
     names = list(ship_tracks.KINDS)
     kind = np.arange(CHUNK) % len(names)
-    ships = ship_tracks.sail([names[i] for i in kind], ranges, steps, rng)
+    ships = ship_tracks.sail([names[i] for i in kind], ranges, steps, rng, fastest)
     nearest = np.hypot(*np.moveaxis(ships.position, -1, 0)).min(1)
     keep = np.flatnonzero(nearest > np.where(close, CLOSE_NEAREST, NEAREST))
     radar, ships = take(radar, keep), take(ships, keep)
@@ -103,7 +112,7 @@ def make_samples(seed: int, chunk: int) -> Samples:
     plots, seen = ship_tracks.observe(ships, radar, rng)
     phase = ship_tracks.phase(ships.manoeuvre)
 
-    bank, memory = filters.begin(plots[0], None, SPEED), gwnn_inputs.begin(plots[0])
+    bank, memory = filters.begin(plots[0], SPEED), gwnn_inputs.begin(plots[0])
     parts = []
     for k in range(1, SCANS):
         warm = np.flatnonzero(memory.plots >= gwnn.WARM)
@@ -370,3 +379,89 @@ def weights_of(network: net.Network, spread: net.Network, manifest) -> gwnn_weig
         return net.Network(*(np.asarray(array, np.float32).astype(float) for array in one[:5]),
                            one.layout)
     return gwnn_weights.Weights(exact(network), exact(spread), manifest)
+
+
+def judge(weights: gwnn_weights.Weights, seed: int) -> dict[str, float]:
+    """RMS position error over the base IMM's, by kind and phase, on tracks not trained on."""
+    samples = make_samples(seed, UNSEEN)
+    out, _ = fuse(net.forward(weights.fusion, samples.seen), samples)
+    before = samples.cell % 4 < 2
+    size, against = (np.square(error[:, :2]).sum(1) for error in (out - samples.truth,
+                                                                  samples.truth))
+    ratios = {}
+    for i, kind in enumerate(ship_tracks.KINDS):
+        for phase, name in enumerate(('straight', 'manoeuvre')):
+            chosen = before & (samples.cell // 8 == i) & (samples.cell // 4 % 2 == phase)
+            if chosen.sum() > FEW:
+                ratios[f'{kind}, {name}'] = round(
+                    float(np.sqrt(size[chosen].mean() / against[chosen].mean())), 3)
+    return ratios
+
+
+def run(seed: int, chunks: int, steps: int, checkpoint: Path,
+        progress: Progress = lambda stage, done, whole: None) -> gwnn_weights.Weights:
+    """The whole training; goes on from the checkpoint file where there is one.
+
+    Raises ValueError where the checkpoint is of another training, or is damaged.
+    """
+    settings = {'seed': seed, 'chunks': chunks, 'steps': steps, 'layout': list(LAYOUT),
+                'inputs': gwnn_inputs.COUNT}
+    training = _resume(checkpoint, settings)
+    parts = []
+    for chunk in range(chunks):
+        progress('tracks', chunk, chunks)
+        parts.append(make_samples(seed, chunk))
+    samples = join(parts)
+    del parts
+    training = training or begin(samples, seed)
+    for step in range(training.moments.steps, steps, SAVE_EVERY):
+        progress('fusion', step, steps)
+        training = train(training, samples, seed, steps, min(step + SAVE_EVERY, steps))
+        _save(checkpoint, settings, training)
+    progress('spread', 0, 1)
+    spread = train_spread(training.network, samples, seed, SPREAD_STEPS)
+    weights = weights_of(training.network, spread, {
+        'made_by': 'marine_tracker train gwnn', 'seed': seed, 'steps': steps,
+        'tracks': chunks * CHUNK, 'samples': len(samples.cell), 'kinds': list(ship_tracks.KINDS),
+        'inputs': gwnn_inputs.COUNT, 'hidden': len(training.network.inner.T)})
+    progress('spread', 1, 1)
+    return weights._replace(manifest={**weights.manifest, 'ratios': judge(weights, seed)})
+
+
+def _state(training: Training) -> dict[str, Array]:
+    """All arrays of a training, by name."""
+    arrays = {name: getattr(training.network, name) for name in gwnn_weights.ARRAYS}
+    for kind in ('mean', 'square'):
+        for i, array in enumerate(getattr(training.moments, kind)):
+            arrays[f'{kind}{i}'] = array
+    return arrays | {'emphasis': training.emphasis, 'size': training.size,
+                     'against': training.against}
+
+
+def _save(path: Path, settings, training: Training) -> None:
+    """Write a checkpoint; whoever stops the process meanwhile leaves the last one whole."""
+    fresh = path.with_name(path.name + '.new')
+    with open(fresh, 'wb') as file:
+        np.savez(file, settings=np.array(json.dumps(settings)),
+                 steps=np.array(training.moments.steps),
+                 **_state(training))                                # type: ignore[arg-type]
+    fresh.replace(path)
+
+
+def _resume(path: Path, settings) -> Training | None:
+    if not path.exists():
+        return None
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            found = {name: file[name] for name in file.files}
+        other = json.loads(str(found['settings']))
+        network = net.Network(*(found[name] for name in gwnn_weights.ARRAYS), LAYOUT)
+        mean, square = ([found[f'{kind}{i}'] for i in range(3)] for kind in ('mean', 'square'))
+        moments = adam.Moments(mean, square, int(found['steps']))
+        training = Training(network, moments, found['emphasis'], found['size'], found['against'])
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise ValueError(f'checkpoint {path} is damaged: remove it') from error
+    if other != settings:
+        raise ValueError(f'checkpoint {path} is of another training, {other}; remove it, or '
+                         'train with its settings')
+    return training

@@ -3,6 +3,7 @@
 import json
 import math
 import sys
+import textwrap
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -22,6 +23,15 @@ class Figure(NamedTuple):
     limit: str | None = None
     ok: bool | None = None
     against: str | None = None
+
+
+class Claim(NamedTuple):
+    """A published claim: where it stands, what it says, what was found, and the verdict."""
+
+    source: str
+    claim: str
+    found: str
+    verdict: str
 
 
 def at_most(name: str, value, limit: float, unit: str = '', against: str | None = None) -> Figure:
@@ -44,16 +54,19 @@ def add_arguments(parser) -> None:
 
 
 def publish(title: str, figures: Sequence[Figure], json_to: str | None = None,
-            facts: dict[str, Any] | None = None) -> int:
-    """Print the table, write the JSON where asked, and return the exit code.
+            facts: dict[str, Any] | None = None, claims: Sequence[Claim] = ()) -> int:
+    """Print the table and the claims, write the JSON where asked, and return the exit code.
 
     json_to  a file, '-' for standard output, None for no JSON
     facts    what else the JSON object holds beside `figures`, e.g. {'seed': 1}
+    claims   printed below the table; a list `claims` in the JSON where there are any
     Returns 0, or 1 where a figure misses its limit.
     """
-    print(f'{title}\n{table(figures)}', file=sys.stderr if json_to == '-' else sys.stdout)
+    text = '\n'.join([title, table(figures), *map(in_words, claims)])
+    print(text, file=sys.stderr if json_to == '-' else sys.stdout)
     if json_to is not None:
-        text = to_json(figures, facts)
+        said = {'claims': [claim._asdict() for claim in claims]} if claims else {}
+        text = to_json(figures, {**(facts or {}), **said})
         if json_to == '-':
             print(text)
         else:
@@ -66,6 +79,12 @@ def to_json(figures: Sequence[Figure], facts: dict[str, Any] | None = None) -> s
     """One object, {**facts, 'figures': [...]}; numbers that are not finite become null."""
     rows = [figure._asdict() for figure in figures]
     return json.dumps(_plain({**(facts or {}), 'figures': rows}), indent=1, allow_nan=False)
+
+
+def in_words(claim: Claim) -> str:
+    """A claim as a paragraph: the verdict beside the claim, what was found below."""
+    head = f'\n{claim.source}: "{claim.claim}": {claim.verdict}'
+    return f'{head}\n{textwrap.fill(claim.found, 96, initial_indent="  ", subsequent_indent="  ")}'
 
 
 def table(figures: Sequence[Figure]) -> str:

@@ -63,10 +63,10 @@ KINDS = {
 }
 
 
-def sail(kinds, ranges, steps, rng) -> Ships:
+def sail(kinds, ranges, steps, rng, fastest=18.0) -> Ships:
     """Ships of the kinds [B] (names) that begin at the ranges [B] m.
 
-    steps [B, K] s: time from the scan before.
+    steps [B, K] s: time from the scan before; fastest m/s, of all or of each [B].
     """
     count, scans = steps.shape
     every = [KINDS[name] for name in kinds]
@@ -78,7 +78,7 @@ def sail(kinds, ranges, steps, rng) -> Ships:
     agile = tight < np.log(100.0)
 
     position = ranges[:, None] * unit_vector(rng.uniform(0, 2 * np.pi, count))
-    course, speed = rng.uniform(0, 2 * np.pi, count), rng.uniform(1.0, 18.0, count)
+    course, speed = rng.uniform(0, 2 * np.pi, count), rng.uniform(1.0, fastest, count)
     wander = rng.random(count) < drift
     speed_swing = wander * rng.uniform(0.2, 1.5, count)
     speed_rate = 2 * np.pi / rng.uniform(300, 1500, count)
@@ -104,7 +104,7 @@ def sail(kinds, ranges, steps, rng) -> Ships:
         side = np.where(rng.random(count) < 0.5, -1.0, 1.0)
         rate = np.where(turning, side * speed / radius, rate)
         left = np.where(turning, rng.uniform(np.radians(15), angle), left)
-        goal = np.where(changing, rng.uniform(1, 18, count), goal)
+        goal = np.where(changing, rng.uniform(1, fastest, count), goal)
         hard = rng.uniform(0.03, 0.3, count) * np.where(agile, 4.0, 1.0)
         push = np.where(changing, np.sign(goal - speed) * hard, push)
 

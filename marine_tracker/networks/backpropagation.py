@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import Array, put, take
+from ..types import Array, take
 from .wavelets import Units, hidden, sigmoid, sigmoid_slope, slope, units
 
 # The paper draws the weights from (0, 1]; unscaled they saturate the hidden units.
@@ -121,10 +121,7 @@ def correct(weights: Weights, passed: Passed, error, step, variable: bool = True
 
     error [B, O]: wanted output - output; step [B].
     """
-    back = weights.outer * error[..., None]
-    if passed.units.shape[1] == 1:
-        back = back.sum(1, keepdims=True)
-    back = (back * passed.slopes).reshape(len(error), -1)               # delta of the hidden layer
+    back = hidden_error(weights, passed, error)
     step = step[:, None, None]
     inner = step * back[..., None] * passed.layer[:, None]
     outer = step * error[..., None] * passed.units
@@ -132,6 +129,21 @@ def correct(weights: Weights, passed: Passed, error, step, variable: bool = True
         inner += momentum(back)[..., None] * weights.inner_change
         outer += momentum(error)[..., None] * weights.outer_change
     return Weights(weights.inner + inner, weights.outer + outer, inner, outer)
+
+
+def hidden_error(weights: Weights, passed: Passed, error):
+    """delta [B, C G] of the hidden units, from that of the outputs [B, O] (eq 8)."""
+    back = weights.outer * error[..., None]
+    if passed.units.shape[1] == 1:
+        back = back.sum(1, keepdims=True)
+    return (back * passed.slopes).reshape(len(error), -1)
+
+
+def input_gradient(design: Design, weights: Weights, inputs, error):
+    """-dE/de0 [B, I]: how the squared error falls with the inputs [B, I] (eq 17)."""
+    passed = forward(design, weights, inputs)
+    back = hidden_error(weights, passed, error)[:, None]
+    return np.matmul(back, weights.inner)[:, 0, :-1] * sigmoid_slope(inputs, design.width)
 
 
 def momentum(delta):
@@ -174,6 +186,7 @@ def learn(design: Design, weights: Weights, inputs, wanted, speed, rule: Rule, u
     count = len(wanted)
     near, far = np.broadcast_to(near, count), np.broadcast_to(far, count)
     rows, step, before = np.arange(count), first_step(rule, speed), np.full(count, np.inf)
+    weights = Weights(*(array.copy() for array in weights))
     for _ in range(rule.rounds):
         mine = take(weights, rows)
         passed = forward(design, mine, inputs[rows])
@@ -187,6 +200,7 @@ def learn(design: Design, weights: Weights, inputs, wanted, speed, rule: Rule, u
                 break
             mine, passed = take(mine, on), take(passed, on)
             rows, error, radial, step = rows[on], error[on], radial[on], step[on]
-        weights = put(weights, rows, correct(mine, passed, error, step, rule.variable))
+        for array, new in zip(weights, correct(mine, passed, error, step, rule.variable)):
+            array[rows] = new
         before = radial
     return weights

@@ -4,11 +4,6 @@ S(t) = tanh(t / 2q), phi(t) = S(t + 1) - S(t - 1), psi(t) = phi(t + 1) - phi(t -
 d = p = 1). Each linear output has a group of hidden units of its own (local connection): the
 scaling functions phi_{M,k} and the wavelets psi_{m,k}, m = 0..M, each over n translations k, so
 n (M + 2) units a group. The number of hidden units follows from M, n and the number of outputs.
-
-By the addition theorem of tanh every unit is a fraction of one tanh, T = S(t):
-
-    phi = 2 h (1 - T^2) / (1 - h^2 T^2),           h = tanh(1 / 2q)
-    psi = -2 k^2 T (1 - T^2) / (1 - k^2 T^2),      k = tanh(2 / 2q)
 """
 
 from typing import NamedTuple
@@ -16,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..types import Array
+from . import wavelets
+from .wavelets import Units, hidden, slope
 
-DILATION = 2.0                  # a
-TRANSLATION = 1.0               # b, at most 3.5 for a frame
 BLOCK = 128                     # rows at once: their hidden units fit the processor's cache
 
 
@@ -49,19 +44,6 @@ class Network(NamedTuple):
     layout: Layout
 
 
-class Units(NamedTuple):
-    """The hidden units' form, [H] each: unit(e) = (1 - T^2) (even + odd T) / (1 - pole T^2).
-
-    T = tanh(dilation e - shift).
-    """
-
-    dilation: Array
-    shift: Array
-    even: Array
-    odd: Array
-    pole: Array
-
-
 def group_size(layout: Layout) -> int:
     """G: hidden units to an output."""
     return layout.translations * (layout.levels + 2)
@@ -69,16 +51,8 @@ def group_size(layout: Layout) -> int:
 
 def units(layout: Layout, dtype=np.float64) -> Units:
     """The form of all H hidden units."""
-    n, levels, q = layout.translations, layout.levels, layout.q
-    level = np.concatenate([np.full(n, levels), np.repeat(np.arange(levels + 1), n)])
-    shift = np.tile(np.arange(n) - (n - 1) / 2, levels + 2) * TRANSLATION
-    scaling = np.arange(len(level)) < n
-    h, k = np.tanh(0.5 / q), np.tanh(1.0 / q)
-    norm = DILATION ** (-0.5 * level)
-    group = (DILATION ** -level.astype(float) / (2 * q), shift / (2 * q),
-             np.where(scaling, 2 * h, 0.0) * norm, np.where(scaling, 0.0, -2 * k * k) * norm,
-             np.where(scaling, h * h, k * k))
-    return Units(*(np.tile(column, layout.outputs).astype(dtype) for column in group))
+    return wavelets.units(layout.levels, layout.translations, layout.q, groups=layout.outputs,
+                          dtype=dtype)
 
 
 def squash(network: Network, inputs):
@@ -87,33 +61,6 @@ def squash(network: Network, inputs):
     np.tanh((inputs - network.centre) * (0.5 / network.scale), out=out[:, :-1])
     out[:, -1] = 1.0
     return out
-
-
-def hidden(form: Units, net):
-    """Values [N, H] of the hidden units at the net inputs [N, H], and T [N, H]."""
-    tanh = net * form.dilation
-    tanh -= form.shift
-    np.tanh(tanh, out=tanh)
-    square = tanh * tanh
-    value = form.odd * tanh
-    value += form.even
-    value *= 1 - square
-    square *= form.pole
-    value /= 1 - square
-    return value, tanh
-
-
-def slope(form: Units, value, tanh):
-    """Derivatives [N, H] of the hidden units by their net inputs, from what `hidden` gave."""
-    square = tanh * tanh
-    rest = 1 - square
-    inside = form.pole * value - (form.even + form.odd * tanh)
-    inside *= 2 * tanh
-    inside += rest * form.odd
-    inside /= 1 - form.pole * square
-    inside *= rest
-    inside *= form.dilation
-    return inside
 
 
 def forward(network: Network, inputs):

@@ -3,6 +3,8 @@
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+FEW = 32        # tracks; a matrix of so few is solved sooner than it is taken apart
+
 
 def associate(track, plot, gain, tracks: int, plots: int):
     """The assignment with the largest total gain; every track and plot is used at most once.
@@ -45,25 +47,29 @@ def _best_of_each(group, gain, pairs):
 
 
 def _solve(track, plot, gain):
-    """The pairs of the optimal assignment, one connected component after the other."""
+    """The pairs of the optimal assignment; many are solved one connected component at a time."""
     tracks, row = np.unique(track, return_inverse=True)
     plots, column = np.unique(plot, return_inverse=True)
+    if len(tracks) <= FEW:
+        return _assign(row, column, gain, np.arange(len(row)), len(tracks), len(plots))
     track_part, plot_part = _components(row, column, len(tracks), len(plots))
     height, row_place = _places(track_part, len(tracks))
     width, column_place = _places(plot_part, len(tracks))
-    part = track_part[row]
-    order = np.argsort(part, kind='stable')
-    parts = np.flatnonzero(height)
-    chosen = []
-    for c, pair in zip(parts, np.split(order, np.searchsorted(part[order], parts[1:])),
-                       strict=True):
-        i, j = row_place[row[pair]], column_place[column[pair]]
-        worth = np.zeros((height[c], width[c]))
-        which = np.full((height[c], width[c]), -1)
-        worth[i, j], which[i, j] = gain[pair], pair
-        taken = which[linear_sum_assignment(worth, maximize=True)]
-        chosen.append(taken[taken >= 0])
-    return np.concatenate(chosen)
+    row, column, part = row_place[row], column_place[column], track_part[row]
+    order = part.argsort(kind='stable')
+    parts = height.nonzero()[0]
+    return np.concatenate([
+        _assign(row[pairs], column[pairs], gain[pairs], pairs, height[c], width[c])
+        for c, pairs in zip(parts, np.split(order, part[order].searchsorted(parts[1:])))])
+
+
+def _assign(row, column, gain, pairs, height: int, width: int):
+    """Of the pairs of one small problem, those of the optimal assignment (Jonker-Volgenant)."""
+    worth = np.zeros((height, width))
+    which = np.full((height, width), -1)
+    worth[row, column], which[row, column] = gain, pairs
+    taken = which[linear_sum_assignment(worth, maximize=True)]
+    return taken[taken >= 0]
 
 
 def _components(row, column, rows: int, columns: int):

@@ -40,6 +40,8 @@ def pair_up(before: Plots, now: Plots, first, second, free, max_speed: float, ro
     """
     candidates = free[second]
     first, second = first[candidates], second[candidates]
+    if not len(first):
+        return first, second
     step = now.time[second] - before.time[first]
     way = now.position[second] - before.position[first]
     length = np.hypot(*way.T)

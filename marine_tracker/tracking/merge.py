@@ -18,7 +18,8 @@ def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, statu
 
     A track is one too many when it had no plot because another track took one in its gate, both
     agree in position and velocity, and together they had no more plots lately than one target
-    gives (or this one none for long). Two ships in company both get plots, ships that cross differ in velocity.
+    gives (or this one none for long). Two ships in company both get plots, ships that cross
+    differ in velocity.
     """
     double = np.zeros(len(status), bool)
     starved = (plot_of < 0) & (status != LOST)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..estimators import ESTIMATORS, Velocity
+from ..estimators import ESTIMATORS, Estimator, Velocity
 from ..geometry import locate, own_ship_at, to_range_bearing
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
@@ -64,11 +64,12 @@ class Tracker:
         estimate = tracker.extrapolate(report.tracks, report.time)      # Extrapolation, N rows
 
     A change of parameters is a new Tracker: `memory = new.adopt(memory, old)` keeps every track.
+    An estimator of your own takes the place of the one that the parameters name.
     """
 
-    def __init__(self, parameters: TrackerParameters):
+    def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
         self.parameters = parameters
-        self.estimator = ESTIMATORS[parameters.estimator](parameters)
+        self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
         self.bearing_sigma = float(np.radians(parameters.bearing_sigma_deg))
         self.gate_size = gate_size(parameters.gate_probability)
 
@@ -119,7 +120,8 @@ class Tracker:
                                 max(0, p.max_tracks - count))
         free[second] = False
         begun = take(lone, first)
-        tracks = append(tracks, self._begin(begun, memory.next_id))
+        if len(first):
+            tracks = append(tracks, self._begin(begun, memory.next_id))
         plot_of = np.concatenate([plot_of, second])
         rows = np.concatenate([held_rows, np.arange(count, len(plot_of))])
         chosen = take(plots, plot_of[rows])
@@ -163,8 +165,9 @@ class Tracker:
         single = np.ones(len(lone.time), bool)
         single[first] = False
         clutter = clutter_map.learn(memory.clutter, lone.range[single], lone.bearing[single])
+        alive = status != LOST
         return Memory(
-            take(tracks, status != LOST), take(plots, free), clutter,
+            tracks if alive.all() else take(tracks, alive), take(plots, free), clutter,
             own_ship_at(scan.own_ship, scan.end)[0],
             memory.next_id + len(second), memory.next_number + len(newly),
         ), Report(time, tracks, predicted, plot_of, reason)

@@ -113,6 +113,20 @@ def test_arguments_are_never_written_to(estimator, fleet, plots_at):
         np.testing.assert_array_equal(leaf, copy)
 
 
+@pytest.mark.parametrize('count', [0, 1, 2])
+def test_not_even_those_of_no_or_one_track(estimator, fleet, plots_at, count):
+    """Of few rows a transposed array may be the array itself: a copy left out shows."""
+    state, time, position, _ = fleet
+    few = frozen(take(state, np.arange(count)))
+    rows, at = frozen(np.arange(count)), frozen(time[:count] + PERIOD)
+    plots = frozen(plots_at(position[:count] + 20.0, at))
+    before = [leaf.copy() for leaf in leaves(few)]
+    estimator.extrapolate(few, at)
+    estimator.update(few, plots, rows)
+    for leaf, copy in zip(leaves(few), before, strict=True):
+        np.testing.assert_array_equal(leaf, copy)
+
+
 def test_the_same_arguments_give_the_same_result(estimator, fleet, plots_at):
     state, time, position, _ = fleet
     plots = plots_at(position + 20.0, time + PERIOD)

@@ -8,6 +8,7 @@ from scipy.linalg import block_diag, expm
 
 from marine_tracker.estimators.cs_kalman import (
     PRESETS,
+    SHOWN,
     SERIES_BELOW,
     Manoeuvre,
     acceleration_variance,
@@ -157,7 +158,7 @@ def test_part_of_a_prediction_is_the_part_of_the_whole():
     mean, covariance, step = rng.normal(size=(4, 6)), root @ root.swapaxes(1, 2), np.arange(4.0)
     rows = np.array([0, 3, 1, 4])
     whole = predict(mean, covariance, step, PRESETS['ship'])
-    part = predict(mean, covariance, step, PRESETS['ship'], rows)
+    part = predict(mean, covariance, step, PRESETS['ship'], SHOWN)
     np.testing.assert_allclose(part[0], whole[0][:, rows], rtol=1e-12)
     np.testing.assert_allclose(part[1], whole[1][:, rows][:, :, rows], rtol=1e-12)
 

@@ -1,5 +1,13 @@
-"""Experiments by name: each module has HELP, RUNS and run(runs, seed) -> figures."""
+"""Experiments by name: each module has HELP, RUNS and run(runs, seed) -> figures.
 
-from . import marine_table
+It may have claims(runs, seed) -> report.Claims, printed below the table, and pictures(folder,
+runs, seed) -> files drawn, for `--out`. One with DATA, a text, takes `--data FOLDER` and passes it to
+`run` as `data`.
+"""
 
-EXPERIMENTS = {'marine_table': marine_table}
+from types import ModuleType
+
+from . import gwnn_monte_carlo, gwnn_paper, marine_table
+
+EXPERIMENTS: dict[str, ModuleType] = {
+    'marine_table': marine_table, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo}

@@ -1,0 +1,83 @@
+"""Train the weights of an estimator anew.
+
+The training draws its own tracks, and takes some minutes of one processor. It may be stopped at
+any time: the same command goes on from the checkpoint beside the file (FILE.part). Use the result
+with the tracker's parameter `gwnn_weights`.
+"""
+
+import sys
+from pathlib import Path
+
+from ..evaluation import gwnn_training, report
+from ..heap import keep_freed_memory
+from ..networks import gwnn_weights
+
+HELP = 'train the weights of an estimator anew'
+
+
+def add_arguments(parser) -> None:
+    """The command line of `train`."""
+    names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
+    sub = names.add_parser('gwnn', help='the wavelet network of `gwnn`', description=__doc__)
+    sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
+    sub.add_argument('--out', default='gwnn.npz', metavar='FILE',
+                     help='where the weights go (default gwnn.npz)')
+    sub.add_argument('--tracks', type=int, default=gwnn_training.CHUNKS * gwnn_training.CHUNK,
+                     metavar='N', help='tracks to learn from, rounded up to full lots of '
+                     f'{gwnn_training.CHUNK} (default %(default)s)')
+    sub.add_argument('--steps', type=int, default=gwnn_training.STEPS, metavar='N',
+                     help='steps of the training (default %(default)s)')
+    report.add_arguments(sub)
+
+
+def run(args) -> int:
+    """Write the weights and print how they do on tracks that they were not trained on."""
+    for name in ('tracks', 'steps'):
+        if getattr(args, name) < 1:
+            raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least 1')
+    if args.seed < 0:
+        raise ValueError(f'--seed is {args.seed}; it must not be negative')
+    out = Path(args.out)
+    if not out.parent.is_dir():
+        raise ValueError(f'--out is {out}; there is no folder {out.parent}')
+    keep_freed_memory()
+    checkpoint = out.with_name(out.name + '.part')
+    chunks = -(-args.tracks // gwnn_training.CHUNK)
+    with _Bar() as bar:
+        weights = gwnn_training.run(args.seed, chunks, args.steps, checkpoint, bar.show)
+    manifest = gwnn_weights.save(out, weights)
+    checkpoint.unlink(missing_ok=True)
+    figures = [report.Figure(f'{cell}: position ratio', ratio, '', None, None, 'IMM')
+               for cell, ratio in manifest['ratios'].items()]
+    return report.publish(f'{out}: {manifest["tracks"]} tracks, {args.steps} steps, seed '
+                          f'{args.seed}', figures, args.json, manifest)
+
+
+class _Bar:
+    """A progress bar on a terminal, nothing elsewhere."""
+
+    TEXTS = {'tracks': 'making tracks', 'fusion': 'training to weigh the filters',
+             'spread': 'training to know the error'}
+
+    def __enter__(self):
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+        console = Console(stderr=True)
+        self.bar = Progress(TextColumn('{task.description}'), BarColumn(), TimeRemainingColumn(),
+                            console=console, disable=not sys.stderr.isatty())
+        self.tasks = {stage: self.bar.add_task(text, total=None)
+                      for stage, text in self.TEXTS.items()}
+        self.bar.start()
+        return self
+
+    def __exit__(self, *_):
+        self.bar.stop()
+
+    def show(self, stage: str, done: int, whole: int) -> None:
+        """Note how far a stage is; stages before it are done."""
+        for name, task in self.tasks.items():
+            if name == stage:
+                self.bar.update(task, completed=done, total=whole)
+                break
+            self.bar.update(task, completed=1, total=1)
