@@ -23,7 +23,7 @@ def test_the_yaml_of_a_node_reads_back_as_its_defaults(node):
 
 def test_every_parameter_stands_in_the_document_with_its_limits():
     text = parameter_files.document()
-    assert '| `gate_probability` | `0.999` |  | 0.5 to 0.999999 | live |' in text
+    assert '| `range_sigma_m` | `15.0` | m | 0.1 to 1000 | live |' in text
     assert 'one of ship, small_craft' in text
 
 

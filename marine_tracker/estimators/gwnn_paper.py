@@ -45,7 +45,7 @@ SHORTEST, LONGEST = 0.3, 3.0        # scans from plot to plot that can teach a d
 WARM_UP = 5                         # plots
 # Squared distances from the filter, in its own covariance: up to the first the network answers,
 # beyond the second it begins anew. In between it may be the filter that lags.
-BELIEVED, HOPELESS = 9.0, 100.0
+BELIEVED, HOPELESS = 2.0, 100.0
 
 
 class PaperState(NamedTuple):

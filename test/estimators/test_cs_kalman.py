@@ -8,8 +8,8 @@ from scipy.linalg import block_diag, expm
 
 from marine_tracker.estimators.cs_kalman import (
     PRESETS,
-    SHOWN,
     SERIES_BELOW,
+    SHOWN,
     Manoeuvre,
     acceleration_variance,
     cs_kalman,

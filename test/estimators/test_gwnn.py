@@ -1,0 +1,392 @@
+"""The wavelet network over its bank of filters: what it may do, must not do, and when it is left."""
+
+import json
+
+import numpy as np
+import pytest
+
+from marine_tracker.estimators import bank, cs_kalman, gwnn, gwnn_inputs, imm, linear_modes
+from marine_tracker.evaluation import ship_tracks, track_trials
+from marine_tracker.geometry import polar_to_position, to_range_bearing
+from marine_tracker.networks import gwnn_weights
+from marine_tracker.types import Plots, append, put, take
+
+PERIOD = 60 / 22
+SPEED = 25.0
+SHARE = 40                      # tracks of a short trial
+
+
+@pytest.fixture(scope='module')
+def weights():
+    return gwnn.weights()
+
+
+def radar(count, **other):
+    every = np.ones(count)
+    values = {'range_sigma': 25.0, 'bearing_sigma': np.radians(0.4), 'detection': 1.0,
+              'outliers': 0.0, 'truly': 1.0, 'period': PERIOD, **other}
+    return ship_tracks.Radar(**{name: value * every for name, value in values.items()})
+
+
+def make_trial(kind, seed=5, count=SHARE, scans=60, **other):
+    rng = np.random.default_rng(seed)
+    ships = ship_tracks.sail([kind] * count, np.exp(rng.uniform(8, 9, count)),
+                             np.full((count, scans), PERIOD), rng)
+    return track_trials.trial(ships, radar(count, **other), rng)
+
+
+def silent(weights):
+    """A network whose outputs are all zero."""
+    def hush(network):
+        return network._replace(outer=0 * network.outer, bias=0 * network.bias)
+    return weights._replace(fusion=hush(weights.fusion), spread=hush(weights.spread))
+
+
+def off_by(weights, sigma):
+    """A network whose positions are off along the line of sight."""
+    bias = weights.fusion.bias.copy()
+    bias[gwnn.AT_ONCE] += [sigma, 0.0]
+    return weights._replace(fusion=weights.fusion._replace(bias=bias))
+
+
+def drive(estimator, on, state=None, scans=None):
+    """The state after the trial's scans (from the first plot where there is no state)."""
+    every = np.arange(len(on.seen))
+    for k in scans or range(on.seen.shape[1]):
+        state = (estimator.init(on.plots[k]) if state is None
+                 else estimator.update(state, on.plots[k], every))
+    return state
+
+
+class TestBank:
+    def test_its_imms_and_cs_are_the_products_own(self):
+        """The same plots through the estimators by themselves: the same expectations."""
+        on = make_trial('sharp')
+        state = bank.begin(on.plots[0], SPEED)
+        alone = {slice(0, 2): imm.imm(bank.TUNED_ON_ALL, SPEED),
+                 12: imm.imm(bank.TUNED_FOR_MANOEUVRE, SPEED),
+                 bank.CS: cs_kalman.cs_kalman(bank.MANOEUVRE, SPEED)}
+        states = {key: one.init(on.plots[0]) for key, one in alone.items()}
+        for plots in on.plots[1:]:
+            state = bank.correct(bank.expect(state, plots), plots)
+            states = {key: alone[key].update(states[key], plots, np.arange(SHARE))
+                      for key in alone}
+        time = on.plots[-1].time + PERIOD
+        ahead = bank.look(state, np.array([PERIOD]))
+        for key, one in alone.items():
+            expected = one.extrapolate(states[key], time)
+            mean = ahead.mean if isinstance(key, slice) else ahead.experts[:, key]
+            np.testing.assert_allclose(mean[:2].T, expected.position, atol=1e-6)
+            np.testing.assert_allclose(mean[2:].T, expected.velocity, atol=1e-7)
+        columns = bank.base(state, time)
+        mean, covariance = linear_modes.unpack(columns.T)
+        expected = alone[slice(0, 2)].extrapolate(states[slice(0, 2)], time)
+        np.testing.assert_allclose(covariance, expected.covariance, rtol=1e-6, atol=1e-6)
+
+    def test_a_slow_filter_is_a_kalman_filter(self):
+        on = make_trial('steady')
+        state = drive_bank(on)
+        one = imm.imm(imm.Modes((PERIOD * bank.SLOW_ACCELERATION[2] ** 2,), (0,), (1,), PERIOD),
+                      SPEED)
+        alone = drive(one, on)
+        expected = one.extrapolate(alone, on.plots[-1].time)
+        np.testing.assert_allclose(bank.look(state, np.zeros(1)).experts[:2, 9].T,
+                                   expected.position, atol=1e-6)
+
+    def test_left_and_right_turns_are_told_apart(self):
+        """A ship that turns to starboard lies to the right of what left turns expect."""
+        angle = np.radians(2.5) * PERIOD * np.arange(30)
+        radius = 200.0
+        path = np.stack([6000 + radius * (1 - np.cos(angle)), radius * np.sin(angle)], 1)
+        state = None
+        for k, position in enumerate(path):
+            plots = plots_of(position[None], k * PERIOD)
+            state = (bank.begin(plots, SPEED) if state is None
+                     else bank.correct(bank.expect(state, plots), plots))
+        ahead = bank.look(state, np.array([PERIOD]))
+        right, left = (ahead.experts[:2, j, 0] for j in bank.TURNS[1])
+        heading = ahead.mean[2:, 0]
+        assert np.cross(np.append(heading, 0), np.append(right - left, 0))[2] < 0
+        assert ahead.weight[bank.RICH][3::2].sum() > 5 * ahead.weight[bank.RICH][4::2].sum()
+
+
+def drive_bank(on):
+    state = bank.begin(on.plots[0], SPEED)
+    for plots in on.plots[1:]:
+        state = bank.correct(bank.expect(state, plots), plots)
+    return state
+
+
+def plots_of(position, time):
+    distance, bearing = to_range_bearing(position)
+    where, covariance = polar_to_position(distance, bearing, 25.0, np.radians(0.4))
+    count = len(position)
+    return Plots(np.full(count, float(time)), distance, bearing, np.zeros(count),
+                 np.zeros((count, 2)), where, covariance)
+
+
+class TestInputs:
+    def test_there_is_one_for_every_kind(self):
+        on = make_trial('mix', scans=12)
+        state = drive(gwnn.gwnn(silent(gwnn.weights()), SPEED, PERIOD), on)
+        seen = gwnn_inputs.inputs(state.bank, state.memory, PERIOD)
+        assert seen.shape == (SHARE, gwnn_inputs.COUNT) and np.isfinite(seen).all()
+        assert gwnn_inputs.COUNT == 110
+
+    def test_sigma_check_reads_the_true_deviation_of_the_plots(self):
+        """True deviation over the stated one, within a sixth on the mean of 40 tracks."""
+        for truly in (0.5, 1.0, 2.0):
+            on = make_trial('steady', scans=90, truly=truly)
+            state = drive(gwnn.gwnn(silent(gwnn.weights()), SPEED, PERIOD), on)
+            assert state.memory.detail.mean() == pytest.approx(truly, rel=0.17)
+
+    def test_a_vague_plot_does_not_blow_up_the_units(self):
+        on = make_trial('steady')
+        state = drive(gwnn.gwnn(gwnn.weights(), SPEED, PERIOD), on)
+        plots = on.plots[-1]
+        vague = plots._replace(time=plots.time + PERIOD, covariance=1e8 * plots.covariance)
+        after = gwnn.gwnn(gwnn.weights(), SPEED, PERIOD).update(state, vague, np.arange(SHARE))
+        assert (after.memory.frame[:, 2:] <= 1.5 * state.memory.frame[:, 2:] + 1e-9).all()
+
+
+class TestFusion:
+    def test_a_silent_network_is_roughly_the_imm(self, weights):
+        on = make_trial('mix', count=100)
+        own = track_trials.run(gwnn.gwnn(silent(weights), SPEED, PERIOD, fall=np.inf), on, False)
+        base = track_trials.run(imm.imm(bank.TUNED_ON_ALL, SPEED), on, True)
+        assert track_trials.rms(own.position, on.counts) == pytest.approx(
+            track_trials.rms(base.position, on.counts), rel=0.05)
+
+    def test_warming_up_a_track_is_the_imm(self, weights):
+        on = make_trial('mix', scans=gwnn.WARM - 1)
+        network, base = gwnn.gwnn(weights, SPEED, PERIOD), imm.imm(bank.TUNED_ON_ALL, SPEED)
+        ours, theirs = drive(network, on), drive(base, on)
+        assert (gwnn.account(ours).status == gwnn.WARMUP).all()
+        time = on.plots[-1].time + 2.0
+        for one, other in zip(network.extrapolate(ours, time), base.extrapolate(theirs, time)):
+            np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-6)
+
+    @pytest.mark.parametrize(('kind', 'limit'), [('steady', 0.97), ('weave', 0.96),
+                                                 ('sharp', 1.0), ('agile', 0.95)])
+    def test_it_beats_the_imm_tuned_on_its_own_training_tracks(self, weights, kind, limit):
+        """150 tracks: the interval's upper end must stay below the limit."""
+        on = make_trial(kind, seed=77, count=150, scans=110)
+        own = track_trials.run(gwnn.gwnn(weights, SPEED, PERIOD), on, False)
+        base = track_trials.run(imm.imm(bank.TUNED_ON_ALL, SPEED), on, True)
+        found = track_trials.ratio(own.position, base.position, on.counts,
+                                   np.random.default_rng(0))
+        assert found.high < limit
+
+    def test_it_knows_how_far_off_it_is(self, weights):
+        """Squared distance of plots from where they are expected, by its own covariance: 2."""
+        on = make_trial('mix', seed=78, count=150, scans=80)
+        own = track_trials.run(gwnn.gwnn(weights, SPEED, PERIOD), on, False)
+        assert 1.6 < own.nis[on.counts & ~on.phase].mean() < 2.4
+        assert 1.6 < own.nis[on.counts].mean() < 2.8
+
+    def test_far_ahead_its_correction_is_carried_on_straight(self, weights):
+        on = make_trial('weave')
+        network = gwnn.gwnn(weights, SPEED, PERIOD)
+        state = drive(network, on)
+        base = imm.imm(bank.TUNED_ON_ALL, SPEED)
+        now = state.bank.time
+
+        def correction(scans):
+            time = now + scans * PERIOD
+            mean = bank.base(state.bank, time)[:4].T
+            ahead = network.extrapolate(state, time)
+            return ahead.position - mean[:, :2], ahead.velocity - mean[:, 2:]
+        near, velocity = correction(gwnn.FADE)
+        far, same = correction(gwnn.FADE + 10)
+        np.testing.assert_allclose(same, velocity, atol=1e-9)
+        np.testing.assert_allclose(far, near + 10 * PERIOD * velocity, atol=1e-6)
+        assert base is not None and np.abs(velocity).max() > 0.01
+
+    def test_the_picture_turned_or_mirrored_gives_the_track_turned_or_mirrored(self, weights):
+        """Not for every picture: along and across the line of sight are alike only by training.
+
+        Turned about own ship, though, it is the same picture.
+        """
+        on = make_trial('sharp')
+        network = gwnn.gwnn(weights, SPEED, PERIOD)
+        time = on.plots[-1].time + PERIOD
+        ahead = network.extrapolate(drive(network, on), time)
+        turn = np.array([[0.0, 1.0], [-1.0, 0.0]])                  # clockwise by 90 deg
+        turned = [p._replace(position=p.position @ turn.T,
+                             covariance=turn @ p.covariance @ turn.T) for p in on.plots]
+        found = network.extrapolate(drive(network, on._replace(plots=turned)), time)
+        np.testing.assert_allclose(found.position, ahead.position @ turn.T, atol=1e-5)
+        np.testing.assert_allclose(found.velocity, ahead.velocity @ turn.T, atol=1e-6)
+
+    def test_a_warm_track_does_not_depend_on_the_others(self, weights):
+        on = make_trial('mix')
+        network = gwnn.gwnn(weights, SPEED, PERIOD)
+        state = drive(network, on)
+        few = np.array([7, 3, 21])
+        later = on.plots[-1]._replace(time=on.plots[-1].time + PERIOD)
+        whole = network.update(state, later, np.arange(SHARE))
+        part = network.update(take(state, few), take(later, few), np.arange(3))
+        for one, other in zip(network.extrapolate(take(whole, few), later.time[few] + 1),
+                              network.extrapolate(part, later.time[few] + 1)):
+            np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-8)
+
+
+class TestMonitor:
+    def test_a_break_is_noticed_and_a_sound_network_comes_back(self, weights):
+        on = make_trial('mix', scans=120)
+        sound = gwnn.gwnn(weights, SPEED, PERIOD)
+        broken = gwnn.gwnn(off_by(weights, 4.0), SPEED, PERIOD)
+        state = drive(sound, on, scans=range(40))
+        assert (state.monitor.status == gwnn.GWNN).mean() > 0.9
+        state = drive(broken, on, state, range(40, 60))
+        account = gwnn.account(state)
+        assert (account.status == gwnn.FALLBACK).mean() > 0.9
+        assert gwnn.REASONS[account.reason[account.status == 2][0]].startswith('expectations')
+        assert (account.rho[account.status == 2] > 1).mean() > 0.9
+        state = drive(sound, on, state, range(60, 120))
+        assert (state.monitor.status == gwnn.GWNN).mean() > 0.8
+
+    def test_fallen_back_a_track_is_that_of_cs_kalman(self, weights):
+        on = make_trial('steady', scans=50)
+        network = gwnn.gwnn(off_by(weights, 30.0), SPEED, PERIOD)
+        state = drive(network, on)
+        alone = cs_kalman.cs_kalman(bank.MANOEUVRE, SPEED)
+        theirs = drive(alone, on)
+        fallen = np.flatnonzero((state.monitor.status == gwnn.FALLBACK)
+                                & (state.bank.time == on.plots[-1].time))
+        assert len(fallen) > 0.9 * SHARE
+        time = on.plots[-1].time + PERIOD
+        ours, cs = network.extrapolate(state, time), alone.extrapolate(theirs, time)
+        # A plot that the bank refused makes a difference that dies out.
+        close = np.abs(ours.position - cs.position)[fallen].max(1) < 1.0
+        assert close.mean() > 0.9
+        np.testing.assert_allclose(ours.covariance[fallen], cs.covariance[fallen], rtol=0.1,
+                                   atol=1.0)
+
+    @pytest.mark.parametrize('value', [np.nan, np.inf])
+    def test_weights_that_are_not_numbers_leave_no_trace(self, weights, value):
+        on = make_trial('mix')
+        bad = weights._replace(fusion=weights.fusion._replace(
+            outer=np.full_like(weights.fusion.outer, value)))
+        network = gwnn.gwnn(bad, SPEED, PERIOD)
+        with np.errstate(invalid='ignore'):
+            state = drive(network, on)
+            ahead = network.extrapolate(state, on.plots[-1].time + PERIOD)
+        account = gwnn.account(state)
+        assert (account.status == gwnn.FALLBACK).all()
+        assert {gwnn.REASONS[i] for i in account.reason} == {'network output is not a number'}
+        for array in ahead:
+            assert np.isfinite(array).all()
+        assert np.isfinite(state.output).all()
+        # And on good weights it returns.
+        sound = gwnn.gwnn(weights, SPEED, PERIOD)
+        later = make_trial('mix', scans=100)
+        state = drive(sound, later, state, range(60, 100))
+        assert (state.monitor.status == gwnn.GWNN).mean() > 0.8
+
+    def test_missed_plots_are_no_failure(self, weights):
+        on = make_trial('steady', scans=60, detection=0.7)
+        fallen = []
+        track_trials.run(gwnn.gwnn(weights, SPEED, PERIOD), on, False,
+                         lambda k, state: fallen.append(state.monitor.status == gwnn.FALLBACK))
+        assert np.mean(fallen) < 0.02
+
+    def test_an_outlier_moves_no_settled_track(self, weights):
+        on = make_trial('steady')
+        network = gwnn.gwnn(weights, SPEED, PERIOD)
+        state, every = drive(network, on), np.arange(SHARE)
+        wild = on.plots[-1]._replace(time=on.plots[-1].time + PERIOD)
+        wild = wild._replace(position=wild.position + 800.0)
+        after = network.update(state, wild, every)
+        time = wild.time + PERIOD
+        apart = network.extrapolate(after, time).position - network.extrapolate(
+            state, time).position
+        assert np.median(np.hypot(*apart.T)) < 20.0
+        # Three in a row are a target: then the filters follow.
+        for k in (1, 2, 3):
+            after = network.update(after, wild._replace(time=wild.time + k * PERIOD), every)
+        apart = network.extrapolate(after, time).position - network.extrapolate(
+            state, time).position
+        assert np.median(np.hypot(*apart.T)) > 200.0
+
+
+class TestWeights:
+    def test_the_shipped_file_says_how_it_came_about(self, weights):
+        manifest = weights.manifest
+        assert {'seed', 'tracks', 'steps', 'kinds', 'ratios', 'checksum'} <= set(manifest)
+        assert manifest['inputs'] == gwnn_inputs.COUNT
+
+    def test_what_is_saved_is_loaded(self, weights, tmp_path):
+        gwnn_weights.save(tmp_path / 'w.npz', weights)
+        again = gwnn.weights(str(tmp_path / 'w.npz'))
+        for one, other in zip(again.fusion[:5] + again.spread[:5],
+                              weights.fusion[:5] + weights.spread[:5]):
+            np.testing.assert_array_equal(one, other)
+
+    def test_a_missing_file_is_named(self, tmp_path):
+        with pytest.raises(ValueError, match=r'none\.npz cannot be read: No such file'):
+            gwnn.weights(str(tmp_path / 'none.npz'))
+
+    def test_anything_else_is_refused(self, tmp_path):
+        (tmp_path / 'w.npz').write_text('weights')
+        with pytest.raises(ValueError, match='no file of `marine_tracker train gwnn`'):
+            gwnn.weights(str(tmp_path / 'w.npz'))
+
+    def test_half_a_file_is_refused(self, weights, tmp_path):
+        file = tmp_path / 'w.npz'
+        gwnn_weights.save(file, weights)
+        file.write_bytes(file.read_bytes()[:5000])
+        with pytest.raises(ValueError, match='damaged'):
+            gwnn.weights(str(file))
+
+    @pytest.mark.parametrize(('change', 'message'), [
+        ({'fusion_bias': lambda a: a + 1}, 'checksum does not match'),
+        ({'fusion_bias': None}, 'right arrays: fusion_bias'),
+        ({'manifest': {'format': 99}}, 'format 99'),
+    ])
+    def test_tampering_is_noticed(self, weights, tmp_path, change, message):
+        file = tmp_path / 'w.npz'
+        gwnn_weights.save(file, weights)
+        with np.load(file) as found:
+            arrays = dict(found)
+        for name, how in change.items():
+            if how is None:
+                del arrays[name]
+            elif name == 'manifest':
+                arrays[name] = np.array(json.dumps({**json.loads(str(arrays[name])), **how}))
+            else:
+                arrays[name] = how(arrays[name])
+        np.savez(file, **arrays)
+        with pytest.raises(ValueError, match=message):
+            gwnn.weights(str(file))
+
+    def test_weights_of_another_network_are_refused(self, weights, tmp_path):
+        fusion = weights.fusion
+        other = fusion._replace(centre=fusion.centre[:-1])
+        gwnn_weights.save(tmp_path / 'w.npz', weights._replace(fusion=other))
+        with pytest.raises(ValueError, match=r'another network: fusion_centre has shape \(109,\)'):
+            gwnn.weights(str(tmp_path / 'w.npz'))
+
+    def test_weights_that_are_not_numbers_are_refused(self, weights, tmp_path):
+        bias = np.full_like(weights.fusion.bias, np.nan)
+        gwnn_weights.save(tmp_path / 'w.npz',
+                          weights._replace(fusion=weights.fusion._replace(bias=bias)))
+        with pytest.raises(ValueError, match='fusion_bias holds values that are not finite'):
+            gwnn.weights(str(tmp_path / 'w.npz'))
+
+
+def test_states_begin_and_end_at_any_time(weights):
+    """Rows of young and old tracks in one state, updated in parts."""
+    network = gwnn.gwnn(weights, SPEED, PERIOD)
+    on = make_trial('mix', scans=30)
+    old = drive(network, on)
+    young = network.init(on.plots[-1])
+    both = append(old, young)
+    rows = np.array([3, SHARE + 3])
+    plots = take(on.plots[-1], np.array([3, 3]))
+    plots = plots._replace(time=plots.time + PERIOD)
+    after = network.update(both, plots, rows)
+    assert after.monitor.status[3] == gwnn.GWNN and after.monitor.status[SHARE + 3] == gwnn.WARMUP
+    again = put(after, rows, take(both, rows))
+    for one, other in zip(again.bank, both.bank):
+        np.testing.assert_array_equal(one, other)
