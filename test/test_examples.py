@@ -50,3 +50,10 @@ def test_recording_is_replayed_and_scored(source, request):
 def test_own_estimator_is_about_as_good_as_a_shipped_one():
     shipped, own = metres(output_of('03_write_an_estimator.py'))
     assert 0 < own < 2 * shipped
+
+
+def test_the_picture_shows_the_ships_of_the_strait(tmp_path):
+    pytest.importorskip('matplotlib')
+    drawn = output_of('04_draw_tracks.py', tmp_path / 'strait.png')
+    assert 36 <= int(drawn.split()[0]) <= 44
+    assert (tmp_path / 'strait.png').stat().st_size > 50_000

@@ -9,8 +9,8 @@ get wrong:
 with l the log mode probabilities of the base IMM. The network never feeds back into the filters,
 so leaving it out is taking another output. That happens, track by track, where its expectations
 fit the plots worse than CS-Kalman's by more than `FALL` for the last dozen plots or so, or where
-it says anything that is not a number; it stays away until of the last few plots CS-Kalman's fit
-has been the worse one `RETURN` times in a row.
+it says anything that is not a number; it stays away until `RETURN` times in a row it has fitted
+the last few plots better than CS-Kalman.
 """
 
 from typing import NamedTuple
@@ -30,7 +30,7 @@ GATE, REFUSALS = 16.0, 2        # squared distance from the base; plots refused 
 SETTLED = 10                    # plots before any is refused
 WARM = 8                        # plots before the network is heard
 FADE = 3.0                      # scans ahead up to which the network speaks
-OTHERS = -5.0                   # log weight of experts that are no modes of the base, silent network
+OTHERS = -5.0                   # log weight, with a silent network, of all but the base's modes
 FALL, BACK, RETURN = 1.6, 1.0, 5
 KEEP, KEEP_LATELY = 0.9, 0.7    # of J, a plot: to fall back; to return
 WORST = 25.0                    # squared residual that counts at most
@@ -263,7 +263,8 @@ def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, sound,
     lately = averaged(monitor.lately, KEEP_LATELY)
     rho = network / cs
     fallen = monitor.status == FALLBACK
-    better = np.where(fallen & sound & (lately[:, 0] < BACK * lately[:, 1]), monitor.better + 1, 0.0)
+    ahead_of_cs = sound & (lately[:, 0] < BACK * lately[:, 1])
+    better = np.where(fallen & ahead_of_cs, monitor.better + 1, 0.0)
     away = np.where(fallen, better < RETURN, rho > fall) | ~sound
     status = np.where(memory.plots < WARM, WARMUP, np.where(away, FALLBACK, GWNN))
     reason = np.where(status != FALLBACK, 0.0, np.where(

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..estimators import bank as filters
 from ..estimators import gwnn, gwnn_inputs, linear_modes
@@ -141,11 +142,11 @@ def _sample(bank, memory, ships, k, radar, cell) -> Samples:
     columns = filters.base(bank, time)
     _, covariance = linear_modes.unpack(columns.T)
     spread = gwnn_inputs.variances(frame, covariance)
-    return Samples(*(np.ascontiguousarray(array, np.float32) for array in (
+    return Samples._make([*(np.ascontiguousarray(array, np.float32) for array in (
         gwnn_inputs.inputs(bank, memory, radar.period), at.apart.transpose(2, 1, 0),
         at.log_weight[:4].T, at.scans, np.clip(off, -CLIP, CLIP).T, np.log(spread).T,
         np.square(frame[:, 2:]).mean(1))),
-        cell.astype(np.int16), radar.truly.astype(np.float32))
+        cell.astype(np.int16), radar.truly.astype(np.float32)])
 
 
 def join(parts) -> Samples:
@@ -176,11 +177,11 @@ class Symmetry(NamedTuple):
     order, sign of the inputs; of a state of four; experts' order.
     """
 
-    inputs: Array
+    inputs: NDArray[np.int64]
     sign: Array
-    state: Array
+    state: NDArray[np.int64]
     state_sign: Array
-    experts: Array
+    experts: NDArray[np.int64]
 
 
 def symmetries() -> list[Symmetry]:
@@ -191,7 +192,8 @@ def symmetries() -> list[Symmetry]:
 
 def _symmetry(signs, swap) -> Symmetry:
     mirrored = -1 if (signs.prod() < 0) != swap else 1
-    order, sign = [], []
+    order: list[int] = []
+    sign: list[float] = []
     for kind in gwnn_inputs.KINDS:
         i = len(order)
         if kind in (gwnn_inputs.S, gwnn_inputs.P):
@@ -287,7 +289,8 @@ class Training(NamedTuple):
 def begin(samples: Samples, seed: int) -> Training:
     """An untrained network for these samples."""
     rng = np.random.default_rng([seed, 1 << 20])
-    network = net.start(LAYOUT, *standardise(samples.seen), rng)
+    centre, scale = standardise(samples.seen)
+    network = net.start(LAYOUT, centre, scale, rng)
     cells = np.zeros((cell_count(), 2))
     return Training(network, adam.start([network.inner, network.outer, network.bias]), cells,
                     cells.copy(), cells + 1e-9)
@@ -376,8 +379,8 @@ def train_spread(network: net.Network, samples: Samples, seed: int, steps: int) 
 def weights_of(network: net.Network, spread: net.Network, manifest) -> gwnn_weights.Weights:
     """Trained networks as the estimator takes them."""
     def exact(one):
-        return net.Network(*(np.asarray(array, np.float32).astype(float) for array in one[:5]),
-                           one.layout)
+        return net.Network._make([*(np.asarray(array, np.float32).astype(float)
+                                    for array in one[:5]), one.layout])
     return gwnn_weights.Weights(exact(network), exact(spread), manifest)
 
 
@@ -455,7 +458,7 @@ def _resume(path: Path, settings) -> Training | None:
         with np.load(path, allow_pickle=False) as file:
             found = {name: file[name] for name in file.files}
         other = json.loads(str(found['settings']))
-        network = net.Network(*(found[name] for name in gwnn_weights.ARRAYS), LAYOUT)
+        network = net.Network._make([*(found[name] for name in gwnn_weights.ARRAYS), LAYOUT])
         mean, square = ([found[f'{kind}{i}'] for i in range(3)] for kind in ('mean', 'square'))
         moments = adam.Moments(mean, square, int(found['steps']))
         training = Training(network, moments, found['emphasis'], found['size'], found['against'])

@@ -1,4 +1,4 @@
-"""True tracks that no weights were trained on: a ship under autopilot, the paper's turn, real ships.
+"""True tracks that no weights were trained on: autopilots, the turn of paper 000, real ships.
 
 All give `ship_tracks.Ships` for time steps [B, K] s.
 """

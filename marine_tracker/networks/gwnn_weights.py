@@ -77,7 +77,7 @@ def load(path, inputs: int, outputs: dict[str, int]) -> Weights:
         raise ValueError(f'{what} is damaged: the checksum does not match')
     networks = [_network(name, arrays, manifest['layouts'][name], inputs, outputs[name], what)
                 for name in NETWORKS]
-    return Weights(*networks, manifest)
+    return Weights(networks[0], networks[1], manifest)
 
 
 def _network(name, arrays, layout, inputs, outputs, what) -> Network:
@@ -94,4 +94,4 @@ def _network(name, arrays, layout, inputs, outputs, what) -> Network:
         if not np.isfinite(values).all():
             raise ValueError(f'{what}: {name}_{array} holds values that are not finite')
         found.append(values)
-    return Network(*found, form)
+    return Network._make([*found, form])

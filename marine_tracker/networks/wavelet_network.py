@@ -113,5 +113,5 @@ def start(layout: Layout, centre, scale, rng, dtype=np.float32) -> Network:
     inputs, group = len(centre), group_size(layout)
     inner = rng.normal(0, 1.5 * layout.q / np.sqrt(inputs), (inputs + 1, layout.outputs * group))
     outer = rng.normal(0, 0.1 / np.sqrt(group), (layout.outputs, group))
-    return Network(*(np.asarray(array, dtype) for array in (
-        centre, scale, inner, outer, np.zeros(layout.outputs))), layout)
+    arrays = (centre, scale, inner, outer, np.zeros(layout.outputs))
+    return Network._make([*(np.asarray(array, dtype) for array in arrays), layout])

@@ -57,3 +57,14 @@ def test_json_on_standard_output_stands_alone(capsys):
     (None, '-'), (math.inf, '-'), ('imm', 'imm'), (True, 'True')])
 def test_numbers_are_readable(value, text):
     assert report.number(value) == text
+
+
+def test_claims_stand_below_the_table_and_in_the_json(capsys):
+    claim = report.Claim('Fig 9', 'it flies', 'it does not, by far ' + 30 * 'and wide ', 'denied')
+    report.publish('title', [report.Figure('height', 0.0, 'm')], '-', claims=[claim])
+    printed = capsys.readouterr()
+    assert '\nFig 9: "it flies": denied\n  it does not' in printed.err
+    assert max(map(len, printed.err.splitlines())) <= 100
+    assert json.loads(printed.out)['claims'] == [claim._asdict()]
+    report.publish('title', [report.Figure('height', 0.0, 'm')], '-')
+    assert 'claims' not in json.loads(capsys.readouterr().out)

@@ -1,8 +1,8 @@
 """Experiments by name: each module has HELP, RUNS and run(runs, seed) -> figures.
 
 It may have claims(runs, seed) -> report.Claims, printed below the table, and pictures(folder,
-runs, seed) -> files drawn, for `--out`. One with DATA, a text, takes `--data FOLDER` and passes it to
-`run` as `data`.
+runs, seed) -> files drawn, for `--out`. One with DATA, a text, takes `--data FOLDER` and passes it
+to `run` as `data`.
 """
 
 from types import ModuleType

@@ -17,7 +17,7 @@ from ...estimators import bank, cs_kalman, gwnn, imm
 from ...estimators.contract import Estimator
 from ...networks.gwnn_weights import Weights
 from ...types import take
-from .. import held_out_tracks, report, ship_tracks, track_trials
+from .. import held_out_tracks, ship_tracks, track_trials
 from ..report import Figure, at_least, at_most
 
 HELP = 'GWNN against CS-Kalman, CV and three IMMs, on tracks it was trained on and others'
@@ -29,7 +29,8 @@ LEAST_CELL = 300                # scans; smaller cells are not judged
 BREAK_SCAN, BREAK_SIZE = 40, 3.0                    # sigma, of the network's position
 COST_TRACKS, COST_SCANS = 1000, 30
 AIS, BOAT = Path('ais_north_sea', 'ais.csv'), Path('autosea_joyride', 'truth.csv')
-DATA = 'also judge on real tracks: folder of recordings with ais_north_sea/ais.csv and autosea_joyride/truth.csv'
+DATA = (f'also judge on real tracks: a folder that holds {AIS} (60 ships) and {BOAT} (a speed boat), '
+        'or one of them')
 
 GEOMETRIC_MEAN = 0.96
 # Position ratios demanded, by cell; every other cell 1.00, with the interval's upper end 1.01.
