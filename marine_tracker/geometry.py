@@ -74,7 +74,7 @@ def own_ship_at(own_ship: OwnShip, time):
     at = own_ship.time
     if len(at) == 1:
         after = np.asarray(time - at[0])[..., None]
-        velocity = np.broadcast_to(own_ship.velocity[0], after.shape[:-1] + (2,))
+        velocity = own_ship.velocity[0] + 0.0 * after
         return own_ship.position[0] + after * velocity, velocity
     inside = np.clip(time, at[0], at[-1])
     position, velocity = (

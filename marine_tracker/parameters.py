@@ -87,6 +87,9 @@ class TrackerParameters:
     gwnn_weights: str = parameter(
         '', 'Weights of the estimator gwnn, a file of `marine_tracker train gwnn`; empty: those '
         'shipped.', live=True)
+    gwnn_learning: bool = parameter(
+        False, 'Whether each track of the estimator gwnn adds to the output weights what its own '
+        'plots tell.')
     vessel_class: str = parameter(
         'ship', 'Preset of the motion models: how hard targets are expected to manoeuvre.',
         choices=VESSEL_CLASSES, live=True)

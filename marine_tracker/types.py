@@ -142,7 +142,8 @@ def take(rows_of: Any, rows: Any) -> Any:
         return _map(lambda a: a[rows], rows_of)
     if rows.dtype == bool:
         rows = rows.nonzero()[0]
-    return _map(lambda a: a.take(rows, 0), rows_of)
+    parts = [take(a, rows) if isinstance(a, tuple) else a.take(rows, 0) for a in rows_of]
+    return rows_of._make(parts) if hasattr(rows_of, '_make') else tuple(parts)
 
 
 def append(first: Any, second: Any) -> Any:

@@ -1,19 +1,35 @@
-"""Estimators by name. An entry makes the estimator from the tracker's parameters."""
+"""Estimators by name. An entry makes the estimator from the tracker's parameters.
+
+An estimator that can fall back on another also has an entry in ACCOUNTS: from its state, how it
+fares with each track.
+"""
 
 from collections.abc import Callable
+from typing import Any
+
+import numpy as np
 
 from ..parameters import TrackerParameters
 from . import cs_kalman, gwnn, gwnn_paper, imm
-from .contract import Estimator, Velocity
+from .contract import Account, Estimator, Velocity
 
 ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
     'cs_kalman': lambda p: cs_kalman.cs_kalman(cs_kalman.PRESETS[p.vessel_class],
                                                 p.max_target_speed_mps),
     'imm': lambda p: imm.imm(imm.PRESETS[p.vessel_class], p.max_target_speed_mps),
     'gwnn': lambda p: gwnn.gwnn(gwnn.weights(p.gwnn_weights), p.max_target_speed_mps,
-                                p.scan_period_s),
+                                p.scan_period_s, learning=p.gwnn_learning),
     'gwnn_paper': lambda p: gwnn_paper.gwnn_paper(
         cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
 }
 
-__all__ = ['ESTIMATORS', 'Estimator', 'Velocity']
+
+def _gwnn_account(state: gwnn.GwnnState) -> Account:
+    status, *judged, reason = gwnn.account(state)
+    rho, j, j_fallback = (np.where(status == gwnn.WARMUP, np.nan, one) for one in judged)
+    return Account(gwnn.STATUS, status, rho, j, j_fallback, gwnn.REASONS, reason)
+
+
+ACCOUNTS: dict[str, Callable[[Any], Account]] = {'gwnn': _gwnn_account}
+
+__all__ = ['ACCOUNTS', 'ESTIMATORS', 'Account', 'Estimator', 'Velocity']

@@ -3,6 +3,9 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..types import Array, Extrapolation, Plots
 
 
@@ -33,3 +36,24 @@ class Estimator(NamedTuple):
     init: Callable[..., Any]
     extrapolate: Callable[[Any, Array], Extrapolation]
     update: Callable[[Any, Plots, Any], Any]
+
+
+class Account(NamedTuple):
+    """How an estimator that can fall back on another fares with N tracks, for people to read.
+
+    states      names of the states a track may be in
+    state       [N]  index into states
+    rho         [N]  j / j_fallback; this and both J are nan where there is nothing to judge yet
+    j           [N]  mean squared residual of its expectations, used or not, sigma^2
+    j_fallback  [N]  the same of what it falls back on
+    reasons     why a track may have fallen back; the first is '': it has not
+    reason      [N]  index into reasons
+    """
+
+    states: tuple[str, ...]
+    state: NDArray[np.int8]
+    rho: Array
+    j: Array
+    j_fallback: Array
+    reasons: tuple[str, ...]
+    reason: NDArray[np.int8]

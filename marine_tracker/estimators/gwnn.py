@@ -22,7 +22,7 @@ from ..networks import gwnn_weights
 from ..networks.wavelet_network import forward
 from ..types import Array, Extrapolation, put, take, where
 from . import bank as filters
-from . import cs_kalman, gwnn_inputs, linear_modes
+from . import cs_kalman, gwnn_adaptation, gwnn_inputs, linear_modes
 from .contract import Estimator
 from .linear import sandwich
 
@@ -31,7 +31,7 @@ SETTLED = 10                    # plots before any is refused
 WARM = 8                        # plots before the network is heard
 FADE = 3.0                      # scans ahead up to which the network speaks
 OTHERS = -5.0                   # log weight, with a silent network, of all but the base's modes
-FALL, BACK, RETURN = 1.6, 1.0, 5
+FALL, BACK, RETURN = 1.6, 1.0, 3
 KEEP, KEEP_LATELY = 0.9, 0.7    # of J, a plot: to fall back; to return
 WORST = 25.0                    # squared residual that counts at most
 EXPECTED = 2.2                  # squared residual of a good filter, sigma^2: where J starts
@@ -43,6 +43,7 @@ REASONS = ('', 'expectations worse than those of CS-Kalman', 'network output is 
 # when it speaks and per scan ahead, and of the velocity; in the units of `gwnn_inputs`.
 LOGITS = slice(0, filters.EXPERTS)
 AT_ONCE, PER_SCAN, OF_VELOCITY = slice(13, 15), slice(15, 17), slice(17, 19)
+POSITION = slice(13, 17)
 OUTPUTS = 19
 SPREADS = 8                     # log ratio of the variances to the base's: now, a scan ahead
 
@@ -67,12 +68,14 @@ class Monitor(NamedTuple):
 
 
 class GwnnState(NamedTuple):
-    """bank, memory, monitor; output [N, 27]: what the network said after the last plot."""
+    """bank, memory, monitor; output [N, 27]: what the network said after the last plot; adapted:
+    what the track has learned."""
 
     bank: filters.BankState
     memory: gwnn_inputs.Memory
     monitor: Monitor
     output: Array
+    adapted: gwnn_adaptation.Adapted
 
 
 class Account(NamedTuple):
@@ -132,6 +135,13 @@ def fuse(output, at: Look):
     return out
 
 
+def correct(state: GwnnState, frame, at: Look):
+    """The correction [4, N] of the base, m and m/s, with what the tracks have learned."""
+    shift = fuse(state.output, at)
+    shift[:2] += gwnn_adaptation.correction(state.adapted, at.scans)
+    return gwnn_inputs.from_sigma(frame, shift)
+
+
 def advance(bank: filters.BankState, memory: gwnn_inputs.Memory, plots):
     """Filters and memories of N rows after one plot each; and what the filters had expected.
 
@@ -154,22 +164,26 @@ def weights(path: str = '') -> gwnn_weights.Weights:
 
 
 def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
-         fall: float = FALL) -> Estimator:
+         fall: float = FALL, learning: bool = False) -> Estimator:
     """The estimator.
 
     max_speed  m/s, of the targets: the velocity variance before the second plot
     period     s, of the radar
     fall       J of the network over J of CS-Kalman that it falls back at
+    learning   whether tracks add to the output weights what their plots tell (`gwnn_adaptation`)
     """
     def speak(state, memory):
-        """What the network says [N, 27] of rows, 0 while they are warming up."""
+        """What the network says [N, 27] of rows, and the units that learn; 0 while warming up."""
         out = np.zeros((len(state.time), OUTPUTS + SPREADS))
+        units = gwnn_adaptation.begin(len(state.time), weights.fusion, learning).units
         warm = np.flatnonzero(memory.plots >= WARM)
         if len(warm):
             seen = gwnn_inputs.inputs(_chosen(state, warm), _chosen(memory, warm), period)
             out[warm, :OUTPUTS] = forward(weights.fusion, seen)
             out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
-        return out
+            if learning:
+                units[warm] = gwnn_adaptation.units_of(weights.fusion, seen, POSITION)
+        return out, units
 
     def init(plots, velocity=None):
         count = len(plots.time)
@@ -177,7 +191,8 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
         monitor = Monitor(zero, zero + EXPECTED, zero + EXPECTED, np.full((count, 2), EXPECTED),
                           zero.copy(), zero.copy())
         return GwnnState(filters.begin(plots, max_speed, velocity), gwnn_inputs.begin(plots),
-                         monitor, np.zeros((count, OUTPUTS + SPREADS)))
+                         monitor, np.zeros((count, OUTPUTS + SPREADS)),
+                         gwnn_adaptation.begin(count, weights.fusion, learning))
 
     def extrapolate(state, time):
         begun, frame = state.bank.time, state.memory.frame
@@ -190,7 +205,7 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
             rows = _chosen(state, heard)
             at = look(rows.bank, frame[heard],
                       filters.look(rows.bank, (near - begun)[heard]), near[heard])
-            shift = gwnn_inputs.from_sigma(frame[heard], fuse(rows.output, at)).T
+            shift = correct(rows, frame[heard], at).T
             # Beyond what it was trained for, the network's correction is carried on straight.
             shift[:, :2] += (time - near)[heard, None] * shift[:, 2:]
             mean[heard] += shift
@@ -209,13 +224,19 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
         frame = before.memory.frame
         bank, memory, expected = advance(before.bank, before.memory, plots)
         at = look(before.bank, frame, expected.ahead, plots.time)
-        shift = gwnn_inputs.from_sigma(frame, fuse(before.output, at))
-        output = speak(bank, memory)
+        shift = correct(before, frame, at)
+        output, units = speak(bank, memory)
         sound = np.isfinite(output).all(1)
+        adapted = before.adapted
+        if learning:
+            residual = gwnn_inputs.turn(frame, plots.position.T - expected.ahead.mean[:2]
+                                        - shift[:2]) / frame[:, 2:].T
+            adapted = gwnn_adaptation.learn(adapted, residual, at.scans,
+                                            np.where(sound[:, None, None], units, 0.0))
         monitor = judge(before.monitor, plots, expected.ahead, shift, memory, sound,
                         fall)
         return put(state, rows, GwnnState(bank, memory, monitor,
-                                          np.where(sound[:, None], output, 0.0)))
+                                          np.where(sound[:, None], output, 0.0), adapted))
 
     return Estimator(init, extrapolate, update)
 

@@ -340,7 +340,7 @@ def train(training: Training, samples: Samples, seed: int, steps: int, until: in
 def emphasize(emphasis, size, against):
     """More weight for the cells where the network gains least on the base."""
     known = against[:, 0] > 1e-3
-    ratio = np.sqrt(size / against)
+    ratio = np.sqrt(size / np.maximum(against, 1e-9))
     moved = emphasis + REWEIGH_BY * (ratio - ratio[known].mean(0))
     moved = np.clip(moved, -1.2, 2.0)
     return np.where(known[:, None], moved - moved[known].mean(0), 0.0)
@@ -374,14 +374,6 @@ def train_spread(network: net.Network, samples: Samples, seed: int, steps: int) 
         moments = adam.step(parameters, net.backward(spread, form, layer, value, tanh, back),
                             moments, adam.cosine(step, steps, 3e-3, WARM_UP))
     return spread
-
-
-def weights_of(network: net.Network, spread: net.Network, manifest) -> gwnn_weights.Weights:
-    """Trained networks as the estimator takes them."""
-    def exact(one):
-        return net.Network._make([*(np.asarray(array, np.float32).astype(float)
-                                    for array in one[:5]), one.layout])
-    return gwnn_weights.Weights(exact(network), exact(spread), manifest)
 
 
 def judge(weights: gwnn_weights.Weights, seed: int) -> dict[str, float]:
@@ -423,7 +415,7 @@ def run(seed: int, chunks: int, steps: int, checkpoint: Path,
         _save(checkpoint, settings, training)
     progress('spread', 0, 1)
     spread = train_spread(training.network, samples, seed, SPREAD_STEPS)
-    weights = weights_of(training.network, spread, {
+    weights = gwnn_weights.Weights(training.network, spread, {
         'made_by': 'marine_tracker train gwnn', 'seed': seed, 'steps': steps,
         'tracks': chunks * CHUNK, 'samples': len(samples.cell), 'kinds': list(ship_tracks.KINDS),
         'inputs': gwnn_inputs.COUNT, 'hidden': len(training.network.inner.T)})

@@ -106,7 +106,8 @@ def rms(square, chosen) -> float:
 
 def ratio(square, against, chosen, rng, resamples: int = 500) -> Ratio:
     """RMS of `square` over that of `against` [B, K], where chosen [B, K]; tracks resampled."""
-    one, other = (np.where(chosen, s, 0.0).sum(1) for s in (square, against))
+    has = chosen.any(1)
+    one, other = (np.where(chosen, s, 0.0).sum(1)[has] for s in (square, against))
     pick = rng.integers(0, len(one), (resamples, len(one)))
     spread = np.sqrt(one[pick].sum(1) / other[pick].sum(1))
     low, high = np.percentile(spread, [2.5, 97.5])

@@ -19,7 +19,8 @@ NETWORKS = ('fusion', 'spread')
 class Weights(NamedTuple):
     """fusion: weighs and corrects the experts; spread: says how sure that is.
 
-    manifest: how they came about; made known to people, not used.
+    manifest: how they came about; made known to people, not used. All arrays are float32: half
+    the time, for a micrometre or so.
     """
 
     fusion: Network
@@ -87,7 +88,7 @@ def _network(name, arrays, layout, inputs, outputs, what) -> Network:
               'outer': (outputs, group), 'bias': (outputs,)}
     found = []
     for array in ARRAYS:
-        values = arrays[f'{name}_{array}'].astype(np.float64)
+        values = arrays[f'{name}_{array}'].astype(np.float32)
         if values.shape != shapes[array]:
             raise ValueError(f'{what} belongs to another network: {name}_{array} has shape '
                              f'{values.shape}; it must be {shapes[array]}')

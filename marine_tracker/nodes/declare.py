@@ -17,6 +17,7 @@ from ..parameter_files import limits
 from ..parameters import from_mapping
 
 P = TypeVar('P')
+M = TypeVar('M')
 
 WORDS = {bool: 'a bool', int: 'an integer', float: 'a double', str: 'a string'}
 
@@ -58,12 +59,14 @@ def descriptor(field) -> ParameterDescriptor:
     return described
 
 
-def follow(node: Node, kind: type[P], apply: Callable[[P], None]) -> None:
-    """Call `apply` with the new parameters whenever live ones were changed.
+def follow(node: Node, kind: type[P], make: Callable[[P], M],
+           apply: Callable[[M], None]) -> None:
+    """Whenever live parameters were changed, `apply` what `make` made of them.
 
-    A change that the dataclass refuses is refused with the dataclass's reason. The check has no
-    side effect: another callback may still refuse the same change.
+    A change that the dataclass or `make` refuses with a ValueError is refused with that reason.
+    `make` must have no side effect: another callback may still refuse the same change.
     """
+    made: list[M] = []          # of the last change that was accepted here
     names = [field.name for field in dataclasses.fields(kind)]           # type: ignore[arg-type]
 
     def values(changed: list[Parameter]) -> dict[str, Any]:
@@ -71,15 +74,16 @@ def follow(node: Node, kind: type[P], apply: Callable[[P], None]) -> None:
         return now | {p.name: p.value for p in changed if p.name in now}
 
     def validate(changed: list[Parameter]) -> SetParametersResult:
-        try:
-            from_mapping(kind, values(changed))
-        except ValueError as error:
-            return SetParametersResult(successful=False, reason=str(error))
+        if any(parameter.name in names for parameter in changed):
+            try:
+                made[:] = [make(from_mapping(kind, values(changed)))]
+            except ValueError as error:
+                return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
     def changed(changed: list[Parameter]) -> None:
         if any(parameter.name in names for parameter in changed):
-            apply(from_mapping(kind, values([])))
+            apply(made.pop())
 
     node.add_on_set_parameters_callback(validate)
     node.add_post_set_parameters_callback(changed)

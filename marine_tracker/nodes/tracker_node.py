@@ -34,7 +34,7 @@ from .diagnostics import OK, WARN, Durations, Tally
 from .markers import MarkersWriter
 from .readable import TargetsWriter
 from .runnable import RunnableNode
-from .view import view
+from .view import Standing, standing, view
 
 MISSED = 'revolutions missed'
 FAILED = 'callbacks failed'
@@ -59,7 +59,7 @@ class TrackerNode(RunnableNode):
     def __init__(self, **node_arguments):
         super().__init__('tracker', **node_arguments)
         parameters = declare(self, TrackerParameters)
-        follow(self, TrackerParameters, self._change)
+        follow(self, TrackerParameters, Tracker, self._change)
         self._tracker = Tracker(parameters)
         self._memory = self._tracker.start()
         self._base_ns: int | None = None            # stamps are seconds after this
@@ -72,6 +72,7 @@ class TrackerNode(RunnableNode):
         self._heard: float | None = None            # wall time of the last plots
         self._taken = self._samples = self._plots_in_scan = 0
         self._status_count = np.zeros(4, int)
+        self._standing = Standing({}, 0, '')
         self._processing, self._lateness = Durations(), Durations()
         self.bad_input = Tally((*convert.CLOUD_REASONS, *intake.PLOT_REASONS,
                                 *intake.SCAN_REASONS, MISSED), self._tell)
@@ -171,12 +172,11 @@ class TrackerNode(RunnableNode):
             self._lateness.add((now - start_ns) * 1e-9 - length)
         self._processing.add(time.perf_counter() - began)
 
-    def _change(self, parameters: TrackerParameters) -> None:
+    def _change(self, tracker: Tracker) -> None:
         """Live parameters were changed: another tracker takes the tracks over."""
-        tracker = Tracker(parameters)
         self._memory = tracker.adopt(self._memory, self._tracker)
         self._tracker = tracker
-        self.get_logger().info(f'parameters changed; estimator {parameters.estimator}')
+        self.get_logger().info(f'parameters changed; estimator {tracker.parameters.estimator}')
 
     @property
     def period(self) -> float:
@@ -217,7 +217,8 @@ class TrackerNode(RunnableNode):
         own_position, _ = own_ship_at(scan.own_ship, scan.end)
         shown = take(tracks, targets)
         seen = view(shown, report.reason[targets], tracker.extrapolate(shown, scan.end),
-                    own_position)
+                    own_position, tracker.parameters.estimator)
+        self._standing = standing(seen)
         end_ns = int(self._stamps(scan.end))
         self._to_targets.publish(
             self._targets.message(seen, tracker.parameters.estimator, end_ns))
@@ -283,18 +284,25 @@ class TrackerNode(RunnableNode):
 
     def _tracking_status(self, wall: float) -> DiagnosticStatus:
         level, message = OK, f'{self._status_count[[CONFIRMED, COASTING]].sum()} targets'
-        slow = self._processing.percentile(99)
+        slow, worries = self._processing.percentile(99), []
         if slow > 0.5 * self.period:
-            level, message = WARN, f'a scan takes up to {slow:.2f} s of {self.period:.2f} s'
+            worries.append(f'a scan takes up to {slow:.2f} s of {self.period:.2f} s')
         elif self._lateness.percentile(50) > self.period:
-            level, message = WARN, 'plots come more than a revolution late'
+            worries.append('plots come more than a revolution late')
+        confirmed, (states, fallen, reason) = self._status_count[CONFIRMED], self._standing
+        if fallen > 0.5 * confirmed:
+            worries.append(f'{fallen} of {confirmed} targets have fallen back: {reason}')
+        if worries:
+            level, message = WARN, '; '.join(worries)
         fresh = self.failures.fresh(wall)
         if fresh:
             level, message = diagnostics.ERROR, 'lately: ' + ', '.join(fresh)
         parameters = self._tracker.parameters
         values = {
             'estimator': parameters.estimator,
-            'confirmed': self._status_count[CONFIRMED], 'coasting': self._status_count[COASTING],
+            **{f'confirmed in {state}': count for state, count in states.items()},
+            'fallback reason': reason,
+            'confirmed': confirmed, 'coasting': self._status_count[COASTING],
             'tentative': self._status_count[TENTATIVE],
             'at max_tracks': len(self._memory.tracks.id) >= parameters.max_tracks,
             'processing_p50_ms': f'{1e3 * self._processing.percentile(50):.1f}',

@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..estimators import ACCOUNTS, Account
 from ..geometry import to_range_bearing, wrap_bearing
 from ..tracking import lifecycle
+from ..tracking.lifecycle import CONFIRMED
 from ..types import Array, Extrapolation, Tracks
 
 
@@ -24,6 +26,7 @@ class View(NamedTuple):
     hits        [N]     plots in the last 10 scans
     misses      [N]     scans since the last plot
     age         [N]     s since the first plot
+    account     how the estimator fares with them, N rows; without words where it gives none
     """
 
     number: NDArray[np.int64]
@@ -37,17 +40,52 @@ class View(NamedTuple):
     hits: NDArray[np.int64]
     misses: NDArray[np.int64]
     age: Array
+    account: Account
 
 
-def view(tracks: Tracks, reason, estimate: Extrapolation, own_position) -> View:
-    """The targets among tracks [N] with their estimates; own_position [2] m."""
+def view(tracks: Tracks, reason, estimate: Extrapolation, own_position, estimator: str) -> View:
+    """The targets among tracks [N] with their estimates; own_position [2] m.
+
+    estimator: the name of the one that their state belongs to.
+    """
     distance, bearing = to_range_bearing(estimate.position - own_position)
     velocity = estimate.velocity
     return View(
         tracks.number, tracks.status, reason, estimate, distance, bearing,
         wrap_bearing(np.arctan2(velocity[:, 0], velocity[:, 1])),
         np.hypot(velocity[:, 0], velocity[:, 1]), lifecycle.hits(tracks, 10),
-        lifecycle.misses_in_a_row(tracks), estimate.time - tracks.first_time)
+        lifecycle.misses_in_a_row(tracks), estimate.time - tracks.first_time,
+        ACCOUNTS[estimator](tracks.state) if estimator in ACCOUNTS
+        else no_account(len(tracks.id)))
+
+
+class Standing(NamedTuple):
+    """The account of the confirmed targets in sum.
+
+    states   how many are in each state of the estimator; empty where it has none
+    fallen   how many have fallen back
+    reason   why most of them have; '' where none has
+    """
+
+    states: dict[str, int]
+    fallen: int
+    reason: str
+
+
+def standing(seen: View) -> Standing:
+    """How the estimator fares with the confirmed targets of a view."""
+    account, confirmed = seen.account, seen.status == CONFIRMED
+    states = np.bincount(account.state[confirmed], minlength=len(account.states))
+    fallen = np.bincount(account.reason[confirmed], minlength=len(account.reasons))[1:]
+    return Standing(
+        {name: count for name, count in zip(account.states, states.tolist()) if name},
+        int(fallen.sum()), account.reasons[1 + int(fallen.argmax())] if fallen.any() else '')
+
+
+def no_account(count: int) -> Account:
+    """That of an estimator that never falls back, of `count` tracks."""
+    none, unknown = np.zeros(count, np.int8), np.full(count, np.nan)
+    return Account(('',), none, unknown, unknown, unknown, ('',), none)
 
 
 def names(number) -> list[str]:

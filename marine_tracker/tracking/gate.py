@@ -47,16 +47,20 @@ def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
         rings = np.maximum((np.minimum(high, most) / width).astype(np.int64) - first + 1, 0)
         track = track.repeat(rings)
         line = (np.arange(len(track)) - (rings.cumsum() - rings - first).repeat(rings)) * (3 * TURN)
-        key = (plot_range / width).astype(np.int64) * (3 * TURN) + key
         start, stop = line + start[track], line + stop[track]
-    key = np.concatenate([key, key + TURN])
-    order = key.argsort()
-    key = key[order]
+        key = (plot_range / width).astype(np.int64) * (3 * TURN) + key
+        key = np.concatenate([key, key + TURN])
+        order = key.argsort()
+        key, order = key[order], order % len(plot_range)
+    else:
+        order = key.argsort()
+        key = key[order]
+        key, order = np.concatenate([key, key + TURN]), np.concatenate([order, order])
     begin = key.searchsorted(start, 'left')
     count = key.searchsorted(stop, 'right') - begin
     track = track.repeat(count)
     place = np.arange(len(track)) - (count.cumsum() - count - begin).repeat(count)
-    plot = order[place] % len(plot_range)
+    plot = order[place]
     distance = plot_range[plot]
     inside = (distance >= low[track]) & (distance <= high[track])
     return track[inside], plot[inside]
@@ -90,7 +94,8 @@ def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origi
     # Near own ship plots may lie in any direction, each with its noise along its own.
     radius = along + reach * np.sqrt(a + d + noise)
     near = distance < 4 * radius
-    along, across = np.where(near, radius, along), np.where(near, radius, across)
+    if near.any():
+        along, across = np.where(near, radius, along), np.where(near, radius, across)
     half_width = _half_width(distance, along, across)
     if sweep.period:
         # The plot's time may differ from the track's: by little, but where the revolution

@@ -76,13 +76,14 @@ def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now
     confirmed = ~tentative | ((recent >= needed) & (tracks.score >= parameters.confirm_score))
     # Of the window's scans still to come none may be missing more than it can.
     remaining = np.maximum(window - tracks.age, 0)
-    hopeless = tentative & ~confirmed & (recent + remaining < needed)
-    gone = ~tentative & ((tracks.score < 0) | (~hit & (drift > parameters.max_drift))
-                         | (hits(tracks, TEN) < parameters.hold_hits) & (tracks.age >= TEN))
+    gone = np.where(
+        tentative, ~confirmed & (recent + remaining < needed),
+        (tracks.score < 0) | (~hit & (drift > parameters.max_drift))
+        | ((hits(tracks, TEN) < parameters.hold_hits) & (tracks.age >= TEN)))
     left = beyond & ~hit
-    dark = now - tracks.last_time > IN_THE_DARK * parameters.scan_period_s
-    lost = hopeless | gone | left | dark
+    lost = gone | left | (now - tracks.last_time > IN_THE_DARK * parameters.scan_period_s)
     status = np.where(confirmed, np.where(hit, CONFIRMED, COASTING), TENTATIVE)
-    status = np.where(lost, LOST, status).astype(np.int8)
-    reason = lost * np.where(left & ~(hopeless | gone), OUT_OF_RANGE, MISSED)
-    return status, reason.astype(np.int8)
+    status[lost] = LOST
+    reason = lost * MISSED
+    reason[left & ~gone] = OUT_OF_RANGE
+    return status.astype(np.int8), reason.astype(np.int8)

@@ -21,6 +21,8 @@ class Sweep(NamedTuple):
 
     def time_at(self, bearing):
         """s, when the beam passes the bearings [...] rad."""
+        if self.period == 0:
+            return np.full(np.shape(bearing), self.start)
         turned = np.mod(bearing - self.bearing0, 2 * np.pi)
         return self.start + self.period / (2 * np.pi) * turned
 

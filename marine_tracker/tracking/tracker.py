@@ -24,7 +24,7 @@ class Memory(NamedTuple):
     tracks       N tracks, lost ones left out
     leftover     plots of the last scan that belong to no track: one may be a new target's first
     clutter      the density of false plots
-    origin       [2] m, own ship at the end of the last scan
+    origin       [2] m, own ship when last heard of
     next_id      the next track's id
     next_number  the next confirmed track's target number
     """
@@ -136,23 +136,26 @@ class Tracker:
         predicted[:count] = ahead.position + later[:, None] * ahead.velocity
 
         # lifecycle
-        seen_from = np.concatenate([origin[:count], begun.origin])
-        seen_from[rows] = chosen.origin
-        distance, bearing = to_range_bearing(predicted - seen_from)
+        missed = (plot_of < 0).nonzero()[0]
+        distance, bearing, drift = np.zeros((3, len(time)))
         distance[rows], bearing[rows] = chosen.range, chosen.bearing
+        distance[missed], bearing[missed] = to_range_bearing(
+            ahead.position[missed] - origin[missed])
+        drift[missed] = np.sqrt(
+            (ahead.covariance[missed, 0, 0] + ahead.covariance[missed, 1, 1])
+            / (p.range_sigma_m ** 2 + (distance[missed] * self.bearing_sigma) ** 2))
         density = clutter_map.density(memory.clutter, chosen.range, chosen.bearing)
         own = (plot_of[track] == plot).nonzero()[0]                # pairs, as held_rows ascends
         held = len(held_rows)
-        gained = np.concatenate([
-            lifecycle.evidence(nis[own], log_det[own], density[:held], p.detection_probability),
-            first_score(begun, take(chosen, slice(held, None)), density[held:],
-                        p.max_target_speed_mps, p.detection_probability)])
+        gained = lifecycle.evidence(nis[own], log_det[own], density[:held],
+                                    p.detection_probability)
+        if len(first):
+            gained = np.concatenate([gained, first_score(
+                begun, take(chosen, slice(held, None)), density[held:], p.max_target_speed_mps,
+                p.detection_probability)])
         visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
         tracks = lifecycle.record(tracks._replace(state=state, last_time=last_time,
                                                   bearing=bearing), rows, gained, visible, p)
-        drift = np.zeros(len(time))
-        drift[:count] = np.sqrt((ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1]) / (
-            p.range_sigma_m ** 2 + (distance[:count] * self.bearing_sigma) ** 2))
         status, reason = lifecycle.judge(tracks, p, plot_of >= 0, distance > p.max_range_m,
                                          drift, scan.end)
         double = duplicates(track, plot, plot_of, ahead, tracks, status)
@@ -168,7 +171,7 @@ class Tracker:
         alive = status != LOST
         return Memory(
             tracks if alive.all() else take(tracks, alive), take(plots, free), clutter,
-            own_ship_at(scan.own_ship, scan.end)[0],
+            scan.own_ship.position[-1],
             memory.next_id + len(second), memory.next_number + len(newly),
         ), Report(time, tracks, predicted, plot_of, reason)
 

@@ -29,8 +29,7 @@ LEAST_CELL = 300                # scans; smaller cells are not judged
 BREAK_SCAN, BREAK_SIZE = 40, 3.0                    # sigma, of the network's position
 COST_TRACKS, COST_SCANS = 1000, 30
 AIS, BOAT = Path('ais_north_sea', 'ais.csv'), Path('autosea_joyride', 'truth.csv')
-DATA = (f'also judge on real tracks: a folder that holds {AIS} (60 ships) and {BOAT} (a speed boat), '
-        'or one of them')
+DATA = f'also judge on real tracks: a folder that holds {AIS} or {BOAT}, or both'
 
 GEOMETRIC_MEAN = 0.96
 # Position ratios demanded, by cell; every other cell 1.00, with the interval's upper end 1.01.

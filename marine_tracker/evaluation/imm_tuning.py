@@ -1,0 +1,206 @@
+"""The best settings of the four-mode IMM that a search finds: rivals of `gwnn` as strong as can be.
+
+Tracks are those that the weights of `gwnn` are trained on, drawn with a seed apart, but for those
+of close-range radars: the comparison has none, and an IMM tuned for them too were a weaker rival.
+Every candidate sees the same plots (common random numbers), one scan ahead, with the gate of the
+comparison. What counts is the geometric mean, over kinds of motion and phases, of the RMS
+position error in the plots' true deviations: each kind and phase counts alike.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import optimize
+from scipy.stats import qmc
+
+from ..estimators import imm
+from ..types import Array, take
+from . import gwnn_training, ship_tracks, track_trials
+
+# Weight of a cell where ships keep course and speed, by what the IMM is tuned for.
+STRAIGHT_WEIGHT = {'training': 1.0, 'manoeuvre': 0.0}
+PERIOD = 60 / 22                # s, to which the settings refer
+LEAST_TRACKS = 10 * len(ship_tracks.KINDS)
+DRAWN = 2                       # times as many tracks are drawn: close ones are left out
+SPREAD_SHARE = 1 / 3            # of the evaluations, all over the bounds; the rest go downhill
+SIMPLEX = 0.12                  # of the bounds' width, first step of the way down; then smaller
+
+# Least and most of what is searched. Noises are deviations, m/s^2, of the acceleration over a
+# scan; a mode is left with the chance stated in a scan. Searched by their logarithms.
+BOUNDS = {
+    'quiet_noise': (1e-4, 0.1),
+    'loud_noise': (0.03, 5.0),
+    'turn_noise': (1e-4, 1.0),
+    'turn_rate': (0.003, 0.3),  # rad/s
+    'leave_quiet': (1e-4, 0.3),
+    'leave_loud': (0.01, 0.45),
+    'leave_turn': (0.01, 0.45),
+}
+
+Progress = Callable[[int, int], None]
+
+
+class Course(NamedTuple):
+    """Tracks to judge on, with which scans count for which cell.
+
+    trial; cells: names; counts [C, B, K]: a cell's scans; kind [B] number of each track's kind;
+    straight [C].
+    """
+
+    trial: track_trials.Trial
+    cells: tuple[str, ...]
+    counts: NDArray[np.bool_]
+    kind: NDArray[np.int64]
+    straight: NDArray[np.bool_]
+
+
+class Found(NamedTuple):
+    """What a search came to: the settings, their loss, and the best loss after each evaluation."""
+
+    modes: imm.Modes
+    loss: float
+    best: list[float]
+
+
+def course(tracks: int, rng) -> Course:
+    """About so many tracks, as many of each kind."""
+    each = tracks // len(ship_tracks.KINDS)
+    names = list(ship_tracks.KINDS)
+    kind = np.repeat(np.arange(len(names)), DRAWN * each)
+    radar, steps, ranges, fastest, close = gwnn_training.conditions(len(kind), rng)
+    ships = ship_tracks.sail([names[i] for i in kind], ranges, steps, rng, fastest)
+    nearest = np.hypot(*np.moveaxis(ships.position, -1, 0)).min(1)
+    fit = ~close & (nearest > gwnn_training.NEAREST)
+    keep = np.concatenate([np.flatnonzero(fit & (kind == i))[:each] for i in range(len(names))])
+    on = track_trials.trial(take(ships, keep), take(radar, keep), rng)
+    kind, cells, counts, straight = kind[keep], [], [], []
+    for i, name in enumerate(names):
+        for phase, within in (('straight', ~on.phase), ('manoeuvre', on.phase)):
+            chosen = on.counts & within & (kind == i)[:, None]
+            if chosen.any():
+                cells.append(f'{name}, {phase}')
+                counts.append(chosen)
+                straight.append(phase == 'straight')
+    return Course(on, tuple(cells), np.stack(counts), kind, np.array(straight))
+
+
+def errors(modes: imm.Modes, on: Course):
+    """Squared errors [C, B] of an IMM summed over the scans of each cell, in true deviations."""
+    estimator = imm.imm(modes, gwnn_training.SPEED)
+    found = track_trials.run(estimator, on.trial, gated=True).position
+    found = found / np.square(on.trial.radar.truly)[:, None]
+    return np.einsum('bk,cbk->cb', found, on.counts)
+
+
+def loss(error, on: Course, target: str) -> float:
+    """Mean log RMS, over the cells that count for the target, of errors [C, B]."""
+    return float(_weights(on, target) @ _levels(error.sum(1), on.counts.sum((1, 2))))
+
+
+def _levels(square, count):
+    """Log RMS an axis of sums of squares."""
+    return 0.5 * np.log(square / count / 2)
+
+
+def _weights(on: Course, target: str):
+    weight = np.where(on.straight, STRAIGHT_WEIGHT[target], 1.0)
+    return weight / weight.sum()
+
+
+def cell_ratios(error, against, on: Course) -> dict[str, float]:
+    """RMS of errors [C, B] over that of others, by cell."""
+    return dict(zip(on.cells, np.sqrt(error.sum(1) / against.sum(1)).tolist()))
+
+
+def compare(error, against, on: Course, target: str, rng, resamples=1000) -> track_trials.Ratio:
+    """Geometric mean of the cells' ratios; its interval by tracks resampled within each kind."""
+    weight = _weights(on, target)
+    pick = np.concatenate([
+        rows[rng.integers(0, len(rows), (resamples, len(rows)))]
+        for rows in (np.flatnonzero(on.kind == i) for i in np.unique(on.kind))], 1)
+    times = np.stack([np.bincount(one, minlength=len(on.kind)) for one in pick])
+    # A resample may leave a cell of few tracks without any scan: it then has no say.
+    one, other = error @ times.T, against @ times.T
+    known = (one > 0) & (other > 0)
+    level = 0.5 * np.log(np.where(known, one, 1.0) / np.where(known, other, 1.0))
+    low, high = np.exp(np.percentile(weight @ level, [2.5, 97.5]))
+    value = np.exp(weight @ (0.5 * np.log(error.sum(1) / against.sum(1))))
+    return track_trials.Ratio(float(value), float(low), float(high))
+
+
+def modes_at(point) -> imm.Modes:
+    """The IMM at a point [7] of the search, each coordinate 0 to 1 over its bounds."""
+    low, high = np.log(np.array(list(BOUNDS.values()))).T
+    quiet, loud, turn, rate, leave_quiet, leave_loud, leave_turn = map(
+        float, np.exp(low + np.clip(point, 0, 1) * (high - low)))
+    noise = (PERIOD * quiet ** 2, PERIOD * loud ** 2, PERIOD * turn ** 2, PERIOD * turn ** 2)
+    stay = (1 - leave_quiet, 1 - leave_loud, 1 - leave_turn, 1 - leave_turn)
+    return imm.Modes(noise, (0.0, 0.0, rate, -rate), stay, PERIOD)
+
+
+def search(judge: Callable[[imm.Modes], float], evaluations: int, seed: int, start=None,
+           progress: Progress = lambda done, whole: None) -> Found:
+    """The settings of the least loss found with so many evaluations; repeatable.
+
+    A third of them are spread over the bounds (scrambled Sobol points, after the start), the
+    others go downhill from the best so far by bounded Nelder-Mead, again with a smaller simplex
+    when it comes to rest.
+
+    judge  gives the loss
+    start  [7] within 0 to 1, where the search begins; the middle of the bounds by default
+    """
+    count = len(BOUNDS)
+    tried: list[tuple[float, tuple[float, ...]]] = []
+    best: list[float] = []
+
+    def at(point):
+        if len(tried) == evaluations:
+            raise _SpentError
+        tried.append((judge(modes_at(point)), tuple(point)))
+        best.append(min(tried)[0])
+        progress(len(tried), evaluations)
+        return tried[-1][0]
+
+    rng = np.random.default_rng([seed, 11])
+    sobol = qmc.Sobol(count, seed=rng).random_base2(int(np.ceil(np.log2(evaluations + 1))))
+    try:
+        at(np.full(count, 0.5) if start is None else np.asarray(start, float))
+        for point in sobol[:int(SPREAD_SHARE * evaluations)]:
+            at(point)
+        size = SIMPLEX
+        while True:
+            origin = np.array(min(tried)[1])
+            corners = np.tile(origin, (count + 1, 1))
+            corners[1:] += np.diag(np.where(origin < 0.5, size, -size))     # into the bounds
+            optimize.minimize(at, origin, method='Nelder-Mead', bounds=[(0, 1)] * count,
+                              options={'initial_simplex': corners, 'adaptive': True,
+                                       'xatol': size / 20, 'fatol': 1e-5})
+            size /= 2
+    except _SpentError:
+        pass
+    least, point = min(tried)
+    return Found(modes_at(point), least, best)
+
+
+class _SpentError(Exception):
+    """No evaluations are left."""
+
+
+def tune(target: str, tracks: int, evaluations: int, seed: int,
+         progress: Progress = lambda done, whole: None) -> tuple[Found, Course]:
+    """The settings found for a target of STRAIGHT_WEIGHT, and the tracks they were found on."""
+    on = course(tracks, _tracks_rng(seed, 0))
+    return search(lambda modes: loss(errors(modes, on), on, target), evaluations, seed,
+                  progress=progress), on
+
+
+def fresh(tracks: int, seed: int) -> Course:
+    """Tracks that `tune` with this seed does not see."""
+    return course(tracks, _tracks_rng(seed, 1))
+
+
+def _tracks_rng(seed: int, part: int):
+    """Apart from every seed of a training or of its comparison, whose numbers come in threes."""
+    return np.random.default_rng([seed, 11, 11, part])
