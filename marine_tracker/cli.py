@@ -6,7 +6,8 @@ import os
 import sys
 from importlib import metadata
 
-COMMANDS = ('demo', 'replay', 'score', 'bench', 'experiments', 'train', 'scenario', 'doctor')
+COMMANDS = ('demo', 'replay', 'score', 'bench', 'experiments', 'train', 'tune', 'scenario',
+            'doctor')
 
 DESCRIPTION = """\
 Track vessels by radar as an ARPA does: on simulated, recorded or live plots."""

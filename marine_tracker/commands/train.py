@@ -2,9 +2,10 @@
 
 The training draws its own tracks, and takes some minutes of one processor. It may be stopped at
 any time: the same command goes on from the checkpoint beside the file (FILE.part). Use the result
-with the tracker's parameter `gwnn_weights`.
+with the tracker's parameter `gwnn_weights`. A .json file beside it tells how it came about.
 """
 
+import json
 import sys
 from pathlib import Path
 
@@ -40,12 +41,15 @@ def run(args) -> int:
     out = Path(args.out)
     if not out.parent.is_dir():
         raise ValueError(f'--out is {out}; there is no folder {out.parent}')
+    if out.suffix == '.json':
+        raise ValueError(f'--out is {out}; that name is for the description beside the weights')
     keep_freed_memory()
     checkpoint = out.with_name(out.name + '.part')
     chunks = -(-args.tracks // gwnn_training.CHUNK)
     with _Bar() as bar:
         weights = gwnn_training.run(args.seed, chunks, args.steps, checkpoint, bar.show)
     manifest = gwnn_weights.save(out, weights)
+    out.with_suffix('.json').write_text(json.dumps(manifest, indent=1) + '\n')
     checkpoint.unlink(missing_ok=True)
     figures = [report.Figure(f'{cell}: position ratio', ratio, '', None, None, 'IMM')
                for cell, ratio in manifest['ratios'].items()]

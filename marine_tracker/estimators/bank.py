@@ -11,6 +11,7 @@ All take the same plots. From them come 13 experts, each with its own opinion wh
 The base IMM's mean is where a network that says nothing leaves the track.
 """
 
+import hashlib
 from typing import NamedTuple
 
 import numpy as np
@@ -44,6 +45,14 @@ NINE = _modes((0.0005, 0.05, 0.6) + (0.03,) * 6,
 NINE_ENTERED = (1, 1, 0.5, 1, 1, 1, 1, 0.5, 0.5)
 SLOW_ACCELERATION = (0.0005, 0.006, 0.03, 0.12)
 MANOEUVRE = cs_kalman.Manoeuvre(max_acceleration=1.0, frequency=1 / 60)
+
+
+def settings() -> str:
+    """A mark of the filters' settings: weights belong to the filters they were trained over."""
+    numbers = [number for modes in (TUNED_ON_ALL, NINE, TUNED_FOR_MANOEUVRE)
+               for number in (*modes.noise, *modes.turn_rate, *modes.stay)]
+    numbers += [*NINE_ENTERED, *SLOW_ACCELERATION, *MANOEUVRE]
+    return hashlib.sha256(' '.join(f'{number:.9g}' for number in numbers).encode()).hexdigest()[:16]
 
 
 class BankState(NamedTuple):

@@ -13,6 +13,7 @@ from math import factorial
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..types import Array, Extrapolation, put, take
 from .contract import Estimator
@@ -145,10 +146,10 @@ class _Layout(NamedTuple):
     noise       [n, n]  rows of its noise table: 0, q11, q12, q13, q22, q23, q33 of east, of north
     """
 
-    transition: Array
-    drive: Array
-    axis: Array
-    noise: Array
+    transition: NDArray[np.int64]
+    drive: NDArray[np.int64]
+    axis: NDArray[np.int64]
+    noise: NDArray[np.int64]
 
 
 def _layout(rows):

@@ -159,8 +159,12 @@ def advance(bank: filters.BankState, memory: gwnn_inputs.Memory, plots):
 
 def weights(path: str = '') -> gwnn_weights.Weights:
     """Trained weights from a file, or those shipped; ValueError where the file is not fit."""
-    return gwnn_weights.load(path or gwnn_weights.SHIPPED, gwnn_inputs.COUNT,
-                             {'fusion': OUTPUTS, 'spread': SPREADS})
+    found = gwnn_weights.load(path or gwnn_weights.SHIPPED, gwnn_inputs.COUNT,
+                              {'fusion': OUTPUTS, 'spread': SPREADS})
+    if found.manifest.get('filters') != filters.settings():
+        raise ValueError(f'GWNN weights {path or gwnn_weights.SHIPPED} were trained over filters '
+                         'with other settings; train anew')
+    return found
 
 
 def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,

@@ -12,7 +12,7 @@ import numpy as np
 from ..networks import wavelet_network as net
 from ..types import Array
 
-STEP = 0.0015                   # of the error, a plot, along the units' values
+STEP = 0.001                    # of the error, a plot, along the units' values
 LEAK = 0.01                     # of a track's own weights forgotten a plot
 MOST_MOMENTUM = 0.9             # a share of 1 would never die out
 CLIP = 3.0                      # sigma: larger residuals count as this

@@ -62,16 +62,17 @@ def transition_power(stay, period, entered=None):
     stay = np.asarray(stay, float)
     count = len(stay)
     share = np.ones(count) if entered is None else np.asarray(entered, float)
-    matrix = np.tile(share, (count, 1))
-    np.fill_diagonal(matrix, 0.0)
-    matrix *= ((1 - stay) / np.maximum(matrix.sum(1), 1e-300))[:, None]
+    # A chain of this form is reversible: rescaled, its matrix is symmetric. Of that one, modes
+    # alike, whose eigenvalues coincide, do no harm. The floor is for modes that are never left.
+    rate = np.maximum(1 - stay, 1e-12) / np.maximum(share.sum() - share, 1e-12)
+    matrix = np.sqrt(np.outer(rate * share, rate * share))
     np.fill_diagonal(matrix, stay)
-    values, vectors = np.linalg.eig(matrix)     # real: a chain of this form is reversible
-    values, vectors = values.real, vectors.real
+    values, vectors = np.linalg.eigh(matrix)
     if values.min() <= 0:
         raise ValueError(f'stay probabilities {tuple(stay)} are too small for a chain in '
                          'continuous time; they must be well above 1 / number of modes')
-    inverse = np.linalg.inv(vectors)
+    scale = np.sqrt(rate / share)[:, None]
+    vectors, inverse = scale * vectors, vectors.T / scale.T
     decay = np.log(values) / period
     outer = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(count, -1)
 

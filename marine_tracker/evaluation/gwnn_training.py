@@ -400,7 +400,7 @@ def run(seed: int, chunks: int, steps: int, checkpoint: Path,
     Raises ValueError where the checkpoint is of another training, or is damaged.
     """
     settings = {'seed': seed, 'chunks': chunks, 'steps': steps, 'layout': list(LAYOUT),
-                'inputs': gwnn_inputs.COUNT}
+                'inputs': gwnn_inputs.COUNT, 'filters': filters.settings()}
     training = _resume(checkpoint, settings)
     parts = []
     for chunk in range(chunks):
@@ -418,7 +418,8 @@ def run(seed: int, chunks: int, steps: int, checkpoint: Path,
     weights = gwnn_weights.Weights(training.network, spread, {
         'made_by': 'marine_tracker train gwnn', 'seed': seed, 'steps': steps,
         'tracks': chunks * CHUNK, 'samples': len(samples.cell), 'kinds': list(ship_tracks.KINDS),
-        'inputs': gwnn_inputs.COUNT, 'hidden': len(training.network.inner.T)})
+        'inputs': gwnn_inputs.COUNT, 'hidden': len(training.network.inner.T),
+        'filters': filters.settings()})
     progress('spread', 1, 1)
     return weights._replace(manifest={**weights.manifest, 'ratios': judge(weights, seed)})
 

@@ -13,18 +13,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
-from scipy.stats import qmc
 
 from ..estimators import imm
-from ..types import Array, take
+from ..types import take
 from . import gwnn_training, ship_tracks, track_trials
+from .report import Figure
 
 # Weight of a cell where ships keep course and speed, by what the IMM is tuned for.
 STRAIGHT_WEIGHT = {'training': 1.0, 'manoeuvre': 0.0}
 PERIOD = 60 / 22                # s, to which the settings refer
 LEAST_TRACKS = 10 * len(ship_tracks.KINDS)
 DRAWN = 2                       # times as many tracks are drawn: close ones are left out
-SPREAD_SHARE = 1 / 3            # of the evaluations, all over the bounds; the rest go downhill
+GLOBAL_SHARE = 2 / 3            # of the evaluations, all over the bounds; the rest go downhill
+POPULATION = 4                  # times the number of settings searched, rounded up to 2^n
 SIMPLEX = 0.12                  # of the bounds' width, first step of the way down; then smaller
 
 # Least and most of what is searched. Noises are deviations, m/s^2, of the acceleration over a
@@ -144,37 +145,47 @@ def search(judge: Callable[[imm.Modes], float], evaluations: int, seed: int, sta
            progress: Progress = lambda done, whole: None) -> Found:
     """The settings of the least loss found with so many evaluations; repeatable.
 
-    A third of them are spread over the bounds (scrambled Sobol points, after the start), the
-    others go downhill from the best so far by bounded Nelder-Mead, again with a smaller simplex
-    when it comes to rest.
+    Two thirds of them by differential evolution over the bounds (there are several valleys), the
+    others downhill from its best by bounded Nelder-Mead, again with a smaller simplex when that
+    comes to rest.
 
     judge  gives the loss
     start  [7] within 0 to 1, where the search begins; the middle of the bounds by default
+    Raises FloatingPointError where a loss is not a finite number.
     """
     count = len(BOUNDS)
     tried: list[tuple[float, tuple[float, ...]]] = []
     best: list[float] = []
 
     def at(point):
-        if len(tried) == evaluations:
+        if len(tried) == limit:
             raise _SpentError
-        tried.append((judge(modes_at(point)), tuple(point)))
+        modes = modes_at(point)
+        value = judge(modes)
+        if not np.isfinite(value):
+            raise FloatingPointError(f'the error of {modes} is {value}')
+        tried.append((value, tuple(point)))
         best.append(min(tried)[0])
         progress(len(tried), evaluations)
-        return tried[-1][0]
+        return value
 
-    rng = np.random.default_rng([seed, 11])
-    sobol = qmc.Sobol(count, seed=rng).random_base2(int(np.ceil(np.log2(evaluations + 1))))
+    limit = max(1, int(GLOBAL_SHARE * evaluations))
+    bounds = [(0.0, 1.0)] * count
     try:
-        at(np.full(count, 0.5) if start is None else np.asarray(start, float))
-        for point in sobol[:int(SPREAD_SHARE * evaluations)]:
-            at(point)
+        optimize.differential_evolution(
+            at, bounds, x0=np.full(count, 0.5) if start is None else start, init='sobol',
+            popsize=POPULATION, maxiter=evaluations, tol=0, polish=False,
+            seed=np.random.default_rng([seed, 11]))
+    except _SpentError:
+        pass
+    limit = evaluations
+    try:
         size = SIMPLEX
         while True:
             origin = np.array(min(tried)[1])
             corners = np.tile(origin, (count + 1, 1))
             corners[1:] += np.diag(np.where(origin < 0.5, size, -size))     # into the bounds
-            optimize.minimize(at, origin, method='Nelder-Mead', bounds=[(0, 1)] * count,
+            optimize.minimize(at, origin, method='Nelder-Mead', bounds=bounds,
                               options={'initial_simplex': corners, 'adaptive': True,
                                        'xatol': size / 20, 'fatol': 1e-5})
             size /= 2
@@ -202,5 +213,44 @@ def fresh(tracks: int, seed: int) -> Course:
 
 
 def _tracks_rng(seed: int, part: int):
-    """Apart from every seed of a training or of its comparison, whose numbers come in threes."""
+    """Apart from every seed of a training and of the comparison."""
     return np.random.default_rng([seed, 11, 11, part])
+
+
+class Verdict(NamedTuple):
+    """The figures of settings beside others'; ratio: to one of them, on fresh tracks."""
+
+    figures: list[Figure]
+    ratio: track_trials.Ratio
+
+
+def judge(modes: imm.Modes, shipped: dict[str, imm.Modes], rival: str, target: str,
+          seen: Course, unseen: Course, seed: int) -> Verdict:
+    """How settings do beside the shipped ones, on tracks they were found on and on others.
+
+    rival  the one of `shipped` that is for the same target
+    """
+    rng = np.random.default_rng([seed, 11, 12])
+    figures = []
+    for place, on in (('tracks of the search', seen), ('fresh tracks', unseen)):
+        found = errors(modes, on)
+        others = {name: errors(one, on) for name, one in shipped.items()}
+        for name, error in [('found', found), *others.items()]:
+            figures.append(Figure(f'{place}: {name}', float(np.exp(loss(error, on, target))),
+                                  'sigma'))
+        for name, error in others.items():
+            ratio = compare(found, error, on, target, rng)
+            figures.append(Figure(f'{place}: found over {name}', ratio.value, '', None, None,
+                                  f'[{ratio.low:.4f} {ratio.high:.4f}]'))
+            if name == rival:
+                to_rival, cells = ratio, cell_ratios(found, error, on)
+    figures += [Figure(f'fresh tracks, {cell}: found over {rival}', value)
+                for cell, value in cells.items()]
+    return Verdict(figures, to_rival)
+
+
+def as_text(modes: imm.Modes) -> str:
+    """The settings as Python, to paste."""
+    noise, turn_rate, stay = (', '.join(f'{value:.5g}' for value in values)
+                              for values in modes[:3])
+    return f'Modes(noise=({noise}), turn_rate=({turn_rate}), stay=({stay}), period=60 / 22)'

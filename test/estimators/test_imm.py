@@ -210,6 +210,23 @@ def test_modes_change_in_time_and_not_by_plot(modes):
         np.testing.assert_allclose(matrix, chain(modes, step), atol=1e-9)
 
 
+def test_modes_left_alike_make_no_chain_singular():
+    """Their eigenvalues coincide; a general solver may then give vectors that do not span."""
+    rng = np.random.default_rng(1)
+    for quiet, others in 1 - np.exp(rng.uniform(np.log(1e-4), np.log(0.45), (60, 2))):
+        modes = Modes((1,) * 4, (0,) * 4, (quiet, others, others, others), 2.7)
+        found = transition_power(modes.stay, modes.period)(np.array([2.7, 5.4]))
+        np.testing.assert_allclose(found[0], chain(modes, 2.7), atol=1e-9)
+        np.testing.assert_allclose(found[1], chain(modes, 5.4), atol=1e-9)
+
+
+def test_modes_never_left_are_kept():
+    for stay in ((1.0,), (1.0, 1.0), (1.0, 1.0, 0.9)):
+        found = transition_power(stay, 2.7)(np.array([0.0, 2.7, 3600.0]))
+        np.testing.assert_allclose(found.sum(2), 1.0, atol=1e-8)
+        np.testing.assert_allclose(found[:, 0, 0], 1.0, atol=1e-8)
+
+
 def test_a_chain_that_does_not_exist_in_continuous_time_is_refused():
     with pytest.raises(ValueError, match=r'0\.3.*too small'):
         transition_power((0.3, 0.3), 2.7)

@@ -237,7 +237,8 @@ def test_training_by_command_gives_weights_that_load(tmp_path, command, monkeypa
 
 def test_wrong_options_are_told(tmp_path, command):
     for options, text in ((('--steps', 0), '--steps is 0'), (('--seed', -1), '--seed is -1'),
-                          (('--out', tmp_path / 'no' / 'w.npz'), 'there is no folder')):
+                          (('--out', tmp_path / 'no' / 'w.npz'), 'there is no folder'),
+                          (('--out', tmp_path / 'w.json'), 'that name is for')):
         done = command('train', 'gwnn', *options)
         assert done.returncode == 2 and text in done.stderr
 

@@ -1,0 +1,82 @@
+"""Search the best settings of an IMM, and say what they gain over the shipped ones.
+
+The search draws the tracks that the weights of `gwnn` are trained on, with a seed apart, and
+minimises the position error one scan ahead; the figures are also given on fresh tracks that the
+search did not see. Some minutes of one processor.
+"""
+
+import sys
+
+from ..estimators import bank
+from ..evaluation import imm_tuning, report
+from ..heap import keep_freed_memory
+
+HELP = 'search the best settings of an IMM'
+EVALUATIONS, TRACKS = 600, 280
+FRESH = 10                      # times the tracks of the search
+CLEAR = 0.995                   # ratio of errors that settings better than the shipped ones have
+SHIPPED = {'training': ('TUNED_ON_ALL', bank.TUNED_ON_ALL),
+           'manoeuvre': ('TUNED_FOR_MANOEUVRE', bank.TUNED_FOR_MANOEUVRE)}
+
+
+def add_arguments(parser) -> None:
+    """The command line of `tune`."""
+    names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
+    sub = names.add_parser('imm', help='the four-mode IMM that `gwnn` is compared with',
+                           description=__doc__)
+    sub.add_argument('--for', dest='target', choices=list(imm_tuning.STRAIGHT_WEIGHT),
+                     default='training', help='what it is to be best at: every kind of motion and '
+                     'phase alike, or manoeuvres only (default %(default)s)')
+    sub.add_argument('--evaluations', type=int, default=EVALUATIONS, metavar='N',
+                     help='settings to try (default %(default)s)')
+    sub.add_argument('--tracks', type=int, default=TRACKS, metavar='N',
+                     help='tracks to try each on (default %(default)s); '
+                     f'{FRESH} times as many fresh ones are judged on')
+    sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
+    report.add_arguments(sub)
+
+
+def run(args) -> int:
+    """Print the settings found and how they and the shipped ones do."""
+    for name, least in (('evaluations', 1), ('tracks', imm_tuning.LEAST_TRACKS), ('seed', 0)):
+        if getattr(args, name) < least:
+            raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
+    keep_freed_memory()
+    with _Bar() as bar:
+        found, seen = imm_tuning.tune(args.target, args.tracks, args.evaluations, args.seed,
+                                      bar.show)
+    verdict = imm_tuning.judge(found.modes, dict(SHIPPED.values()), SHIPPED[args.target][0],
+                               args.target, seen, imm_tuning.fresh(FRESH * args.tracks, args.seed),
+                               args.seed)
+    settings = imm_tuning.as_text(found.modes)
+    better = verdict.ratio.high < 1 and verdict.ratio.value < CLEAR
+    claim = report.Claim(
+        SHIPPED[args.target][0], 'tuned as well as can be', settings,
+        'NO: on fresh tracks the settings found are clearly better; use them' if better
+        else 'nothing clearly better was found')
+    return report.publish(
+        f'IMM for {args.target}: {args.evaluations} evaluations on {len(seen.kind)} tracks, seed '
+        f'{args.seed}', verdict.figures, args.json,
+        {'target': args.target, 'evaluations': args.evaluations, 'tracks': len(seen.kind),
+         'seed': args.seed, 'settings': found.modes._asdict(), 'best': found.best}, [claim])
+
+
+class _Bar:
+    """A progress bar on a terminal, nothing elsewhere."""
+
+    def __enter__(self):
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+        self.bar = Progress(TextColumn('trying settings'), BarColumn(), TimeRemainingColumn(),
+                            console=Console(stderr=True), disable=not sys.stderr.isatty())
+        self.task = self.bar.add_task('', total=None)
+        self.bar.start()
+        return self
+
+    def __exit__(self, *_):
+        self.bar.stop()
+
+    def show(self, done: int, whole: int) -> None:
+        """Note how far the search is."""
+        self.bar.update(self.task, completed=done, total=whole)
