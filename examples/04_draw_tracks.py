@@ -17,7 +17,7 @@ from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking.tracker import Tracker
 
 matplotlib.use('Agg')
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 SCANS = 110             # five minutes
 VECTOR_S = 180.0
@@ -39,7 +39,8 @@ for scan, _ in radar.simulate(strait, seed=1):
 
 figure, axes = plt.subplots(figsize=(9, 9), facecolor='#0b1a24')
 axes.set_facecolor('#0b1a24')
-axes.plot(*np.concatenate(plots).T / NAUTICAL_MILE, '.', color='#7d8f99', markersize=1.2, alpha=0.35)
+axes.plot(*np.concatenate(plots).T / NAUTICAL_MILE, '.', color='#7d8f99', markersize=1.2,
+          alpha=0.35)
 shown = set(memory.tracks.number[memory.tracks.number > 0])
 for number in sorted(shown):
     way = np.array(ways[number]) / NAUTICAL_MILE

@@ -1,9 +1,9 @@
 """The classical filters at sea: position and velocity errors on three tracks.
 
-22 rpm, 15 m and 0.5 deg, targets that start 5 km off: a straight run at 8 m/s; the same with two turns
-of 90 deg at 1.5 deg/s; a fast boat, 15 m/s with turns of 90 deg at 3 deg/s. Errors are RMS an
-axis after the first 40 scans. The figures demanded of `cs_kalman` come from a prototype of the
-same filter on the same tracks.
+22 rpm, 15 m and 0.5 deg, targets that start 5 km off: a straight run at 8 m/s; the same with two
+turns of 90 deg at 1.5 deg/s; a fast boat, 15 m/s with turns of 90 deg at 3 deg/s. Errors are RMS an
+axis after the first 40 scans. The figures demanded of `cs_kalman` come from a prototype of the same
+filter on the same tracks.
 """
 
 from typing import NamedTuple
