@@ -30,6 +30,8 @@ GATE, REFUSALS = 16.0, 2        # squared distance from the base; plots refused 
 SETTLED = 10                    # plots before any is refused
 WARM = 8                        # plots before the network is heard
 FADE = 3.0                      # scans ahead up to which the network speaks
+MOST = 4.0                      # what it may add by itself; trained, it adds less than half of it
+MISSED, SURE = 1.5, 1.0         # scans without a plot; sigma: then it corrects by no more
 OTHERS = -5.0                   # log weight, with a silent network, of all but the base's modes
 FALL, BACK, RETURN = 1.6, 1.0, 3
 KEEP, KEEP_LATELY = 0.9, 0.7    # of J, a plot: to fall back; to return
@@ -37,7 +39,8 @@ WORST = 25.0                    # squared residual that counts at most
 EXPECTED = 2.2                  # squared residual of a good filter, sigma^2: where J starts
 WARMUP, GWNN, FALLBACK = 0.0, 1.0, 2.0
 STATUS = ('WARMUP', 'GWNN', 'FALLBACK')
-REASONS = ('', 'expectations worse than those of CS-Kalman', 'network output is not a number')
+REASONS = ('', 'expectations worse than those of CS-Kalman', 'network output is not a number',
+           'network output out of all proportion')
 
 # The network's outputs: what it adds to the experts' log weights; corrections of the position
 # when it speaks and per scan ahead, and of the velocity; in the units of `gwnn_inputs`.
@@ -135,11 +138,18 @@ def fuse(output, at: Look):
     return out
 
 
-def correct(state: GwnnState, frame, at: Look):
-    """The correction [4, N] of the base, m and m/s, with what the tracks have learned."""
+def correct(state: GwnnState, at: Look):
+    """The correction [4, N] of the base, in the units of `gwnn_inputs`, with what the tracks have
+    learned."""
     shift = fuse(state.output, at)
     shift[:2] += gwnn_adaptation.correction(state.adapted, at.scans)
-    return gwnn_inputs.from_sigma(frame, shift)
+    return shift
+
+
+def flaw(output):
+    """What is wrong with outputs [N, 27]: index into REASONS, 0 for nothing."""
+    alone = np.abs(output[:, AT_ONCE.start:OF_VELOCITY.stop]).max(1)
+    return np.where(~np.isfinite(output).all(1), 2.0, np.where(alone > MOST, 3.0, 0.0))
 
 
 def advance(bank: filters.BankState, memory: gwnn_inputs.Memory, plots):
@@ -209,12 +219,17 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
             rows = _chosen(state, heard)
             at = look(rows.bank, frame[heard],
                       filters.look(rows.bank, (near - begun)[heard]), near[heard])
-            shift = correct(rows, frame[heard], at).T
+            shift, ratio = correct(rows, at), rows.output[:, OUTPUTS:]
+            # Were a large correction wrong, no plot would come near enough to tell.
+            size = np.hypot(*shift[:2])
+            cut = ((near - begun)[heard] > MISSED * period) & (size > SURE)
+            shift = shift * np.where(cut, SURE / np.maximum(size, SURE), 1.0)
+            ratio = np.where(cut[:, None], np.maximum(ratio, 0.0), ratio)
+            shift = gwnn_inputs.from_sigma(frame[heard], shift).T
             # Beyond what it was trained for, the network's correction is carried on straight.
             shift[:, :2] += (time - near)[heard, None] * shift[:, 2:]
             mean[heard] += shift
-            covariance[heard] = respread(covariance[heard], rows.output[:, OUTPUTS:],
-                                         frame[heard], at.scans)
+            covariance[heard] = respread(covariance[heard], ratio, frame[heard], at.scans)
         fallen = np.flatnonzero(state.monitor.status == FALLBACK)
         if len(fallen):
             rows = take(state.bank, fallen)
@@ -228,16 +243,17 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
         frame = before.memory.frame
         bank, memory, expected = advance(before.bank, before.memory, plots)
         at = look(before.bank, frame, expected.ahead, plots.time)
-        shift = correct(before, frame, at)
+        shift = gwnn_inputs.from_sigma(frame, correct(before, at))
         output, units = speak(bank, memory)
-        sound = np.isfinite(output).all(1)
+        wrong = flaw(output)
+        sound = wrong == 0
         adapted = before.adapted
         if learning:
             residual = gwnn_inputs.turn(frame, plots.position.T - expected.ahead.mean[:2]
                                         - shift[:2]) / frame[:, 2:].T
             adapted = gwnn_adaptation.learn(adapted, residual, at.scans,
                                             np.where(sound[:, None, None], units, 0.0))
-        monitor = judge(before.monitor, plots, expected.ahead, shift, memory, sound,
+        monitor = judge(before.monitor, plots, expected.ahead, shift, memory, wrong,
                         fall)
         return put(state, rows, GwnnState(bank, memory, monitor,
                                           np.where(sound[:, None], output, 0.0), adapted))
@@ -265,12 +281,12 @@ def respread(covariance, ratio, frame, scans):
     return sandwich(stretch, covariance)
 
 
-def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, sound,
+def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, wrong,
           fall: float = FALL) -> Monitor:
     """The monitor after one plot each.
 
-    shift [4, N]: the network's correction of the base, m; sound [N]: whether its new output is
-    all numbers; memory: after the plots; fall: J over J at which it falls back.
+    shift [4, N]: the network's correction of the base, m; wrong [N]: the flaw of its new
+    output; memory: after the plots; fall: J over J at which it falls back.
     """
     sigma = memory.frame[:, 2:].T
 
@@ -287,11 +303,11 @@ def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, sound,
     network, cs = averaged(np.stack([monitor.network, monitor.cs], 1), KEEP).T
     lately = averaged(monitor.lately, KEEP_LATELY)
     rho = network / cs
-    fallen = monitor.status == FALLBACK
+    sound, fallen = wrong == 0, monitor.status == FALLBACK
     ahead_of_cs = sound & (lately[:, 0] < BACK * lately[:, 1])
     better = np.where(fallen & ahead_of_cs, monitor.better + 1, 0.0)
     away = np.where(fallen, better < RETURN, rho > fall) | ~sound
     status = np.where(memory.plots < WARM, WARMUP, np.where(away, FALLBACK, GWNN))
     reason = np.where(status != FALLBACK, 0.0, np.where(
-        ~sound, 2.0, np.where(fallen, np.maximum(monitor.reason, 1.0), 1.0)))
+        ~sound, wrong, np.where(fallen, np.maximum(monitor.reason, 1.0), 1.0)))
     return Monitor(status, network, cs, lately, better, reason)

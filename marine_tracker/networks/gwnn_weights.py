@@ -64,11 +64,14 @@ def load(path, inputs: int, outputs: dict[str, int]) -> Weights:
             arrays = {name: file[name] for name in file.files if name != 'manifest'}
     except OSError as error:
         raise ValueError(f'{what} cannot be read: {error.strerror or error}') from error
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except (ValueError, KeyError, EOFError, TypeError, RuntimeError, MemoryError,
+            zipfile.BadZipFile) as error:       # a wrong bit anywhere, or another kind of file
         raise ValueError(f'{what}: this is no file of `marine_tracker train gwnn`, or it is '
                          'damaged') from error
-    if manifest.get('format') != FORMAT:
-        raise ValueError(f'{what} has format {manifest.get("format")}; this version reads '
+    if not isinstance(manifest, dict) or 'format' not in manifest:
+        raise ValueError(f'{what}: this is no file of `marine_tracker train gwnn`')
+    if manifest['format'] != FORMAT:
+        raise ValueError(f'{what} has format {manifest["format"]}; this version reads '
                          f'{FORMAT}: train anew')
     wanted = {f'{name}_{array}' for name in NETWORKS for array in ARRAYS}
     if set(arrays) != wanted:

@@ -235,7 +235,7 @@ class TestMonitor:
     def test_a_break_is_noticed_and_a_sound_network_comes_back(self, weights):
         on = make_trial('mix', scans=120)
         sound = gwnn.gwnn(weights, SPEED, PERIOD)
-        broken = gwnn.gwnn(off_by(weights, 4.0), SPEED, PERIOD)
+        broken = gwnn.gwnn(off_by(weights, 3.0), SPEED, PERIOD)
         state = drive(sound, on, scans=range(40))
         assert (state.monitor.status == gwnn.GWNN).mean() > 0.9
         state = drive(broken, on, state, range(40, 60))
