@@ -169,7 +169,7 @@ def predict(mean, covariance, step, manoeuvre: Manoeuvre, wanted: _Layout = WHOL
     wanted: WHOLE, or SHOWN for position and velocity only (then [N, 4] and [N, 4, 4]).
     """
     phi, q = model(manoeuvre.frequency, step)
-    acceleration = mean[:, [2, 5]]
+    acceleration = mean.take((2, 5), 1)
     limit = manoeuvre.max_acceleration
     variance = 2 * manoeuvre.frequency * acceleration_variance(acceleration, limit)
     abar = np.minimum(np.maximum(acceleration, -limit), limit)
@@ -232,7 +232,7 @@ def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         before = take(state, rows)
         mean, covariance = predict(before.mean, before.covariance, plots.time - before.time,
                                    manoeuvre)
-        innovation = plots.position - mean[:, POSITION]
+        innovation = plots.position - mean.take(POSITION, 1)
         mean, covariance, _, _ = kalman_update(mean, covariance, innovation, plots.covariance,
                                                POSITION)
         return put(state, rows, CsState(plots.time, mean, covariance))

@@ -53,8 +53,8 @@ def view(tracks: Tracks, reason, estimate: Extrapolation, own_position, estimato
     return View(
         tracks.number, tracks.status, reason, estimate, distance, bearing,
         wrap_bearing(np.arctan2(velocity[:, 0], velocity[:, 1])),
-        np.hypot(velocity[:, 0], velocity[:, 1]), lifecycle.hits(tracks, 10),
-        lifecycle.misses_in_a_row(tracks), estimate.time - tracks.first_time,
+        np.hypot(velocity[:, 0], velocity[:, 1]), lifecycle.hits(tracks.history, 10),
+        lifecycle.misses_in_a_row(tracks.history), estimate.time - tracks.first_time,
         ACCOUNTS[estimator](tracks.state) if estimator in ACCOUNTS
         else no_account(len(tracks.id)))
 

@@ -62,7 +62,7 @@ def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
     place = np.arange(len(track)) - (count.cumsum() - count - begin).repeat(count)
     plot = order[place]
     distance = plot_range[plot]
-    inside = (distance >= low[track]) & (distance <= high[track])
+    inside = ((distance >= low[track]) & (distance <= high[track])).nonzero()[0]
     return track[inside], plot[inside]
 
 
@@ -112,13 +112,13 @@ def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origi
     track, plot = window_pairs(distance - along, farthest, bearing, half_width,
                                plots.range, plots.bearing)
     later = (plots.time[plot] - time[track])[:, None]
-    apart = plots.position[plot] - position[track] - later * velocity[track]
+    apart = plots.position.take(plot, 0) - position.take(track, 0) - later * velocity.take(track, 0)
     de, dn = apart.T
-    noise = plots.covariance[plot]
+    noise = plots.covariance.take(plot, 0)
     a, b, d = (noise[:, i, j] + s[track] for i, j, s in ((0, 0, a), (0, 1, b), (1, 1, d)))
     determinant = a * d - b * b
     nis = (d * de * de - 2 * b * de * dn + a * dn * dn) / determinant
-    inside = nis < size
+    inside = (nis < size).nonzero()[0]
     return track[inside], plot[inside], nis[inside], np.log(determinant[inside])
 
 

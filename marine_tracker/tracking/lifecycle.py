@@ -19,17 +19,17 @@ _COUNT = _BITS.sum(1)
 _SINCE = np.where(_BITS.any(1), _BITS.argmax(1), _HALF)
 
 
-def hits(tracks: Tracks, scans: int):
-    """Plots [N] of each track in its last `scans` scans (at most types.HISTORY)."""
-    recent = tracks.history & ((1 << scans) - 1)
+def hits(history, scans: int):
+    """Plots [N] of each history [N] in its last `scans` scans (at most types.HISTORY)."""
+    recent = history & ((1 << scans) - 1)
     count = _COUNT[recent & (len(_COUNT) - 1)]
     return count if scans <= _HALF else count + _COUNT[recent >> _HALF]
 
 
-def misses_in_a_row(tracks: Tracks):
-    """Scans [N] since the last plot, at most types.HISTORY."""
-    since = _SINCE[tracks.history & (len(_SINCE) - 1)]
-    return np.where(since < _HALF, since, _HALF + _SINCE[tracks.history >> _HALF])
+def misses_in_a_row(history):
+    """Scans [N] since the last plot of each history [N], at most types.HISTORY."""
+    since = _SINCE[history & (len(_SINCE) - 1)]
+    return np.where(since < _HALF, since, _HALF + _SINCE[history >> _HALF])
 
 
 def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters) -> Tracks:
@@ -72,14 +72,14 @@ def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now
     """
     needed, window = parameters.confirm_hits, parameters.confirm_scans
     tentative = tracks.status == TENTATIVE
-    recent = hits(tracks, window)
+    recent = hits(tracks.history, window)
     confirmed = ~tentative | ((recent >= needed) & (tracks.score >= parameters.confirm_score))
     # Of the window's scans still to come none may be missing more than it can.
     remaining = np.maximum(window - tracks.age, 0)
     gone = np.where(
         tentative, ~confirmed & (recent + remaining < needed),
         (tracks.score < 0) | (~hit & (drift > parameters.max_drift))
-        | ((hits(tracks, TEN) < parameters.hold_hits) & (tracks.age >= TEN)))
+        | ((hits(tracks.history, TEN) < parameters.hold_hits) & (tracks.age >= TEN)))
     left = beyond & ~hit
     lost = gone | left | (now - tracks.last_time > IN_THE_DARK * parameters.scan_period_s)
     status = np.where(confirmed, np.where(hit, CONFIRMED, COASTING), TENTATIVE)

@@ -30,8 +30,9 @@ def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, statu
     owner[plot_of[has]] = has
     look = (starved[track] & (owner[plot] >= 0)).nonzero()[0]
     one, other = track[look], owner[plot[look]]
-    had = hits(tracks, RECENT)
-    sharing = (had[one] + had[other] <= RECENT + 1) | (misses_in_a_row(tracks)[one] >= STARVED)
+    mine, others = tracks.history[one], tracks.history[other]
+    sharing = (hits(mine, RECENT) + hits(others, RECENT) <= RECENT + 1) | (
+        misses_in_a_row(mine) >= STARVED)
     keep = (status[one] == TENTATIVE) | ((status[other] != TENTATIVE) & sharing)
     one, other = one[keep], other[keep]
     if not len(one):

@@ -45,6 +45,7 @@ class Report(NamedTuple):
     predicted  [N, 2]  m, where the track was expected at `time`; nan for a new track
     plot       [N]     row of the scan's plots that the track took, -1 for none
     reason     [N]     why a LOST track was lost: one of lifecycle.REASONS' numbers, 0 = not lost
+    begun      [B]     the first plots, of the last scan, of the tracks just initiated: the last B
     """
 
     time: Array
@@ -52,6 +53,7 @@ class Report(NamedTuple):
     predicted: Array
     plot: NDArray[np.int64]
     reason: NDArray[np.int8]
+    begun: Plots
 
 
 class Tracker:
@@ -140,9 +142,9 @@ class Tracker:
         distance, bearing, drift = np.zeros((3, len(time)))
         distance[rows], bearing[rows] = chosen.range, chosen.bearing
         distance[missed], bearing[missed] = to_range_bearing(
-            ahead.position[missed] - origin[missed])
+            ahead.position.take(missed, 0) - origin.take(missed, 0))
         drift[missed] = np.sqrt(
-            (ahead.covariance[missed, 0, 0] + ahead.covariance[missed, 1, 1])
+            (ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])[missed]
             / (p.range_sigma_m ** 2 + (distance[missed] * self.bearing_sigma) ** 2))
         density = clutter_map.density(memory.clutter, chosen.range, chosen.bearing)
         own = (plot_of[track] == plot).nonzero()[0]                # pairs, as held_rows ascends
@@ -173,7 +175,7 @@ class Tracker:
             tracks if alive.all() else take(tracks, alive), take(plots, free), clutter,
             scan.own_ship.position[-1],
             memory.next_id + len(second), memory.next_number + len(newly),
-        ), Report(time, tracks, predicted, plot_of, reason)
+        ), Report(time, tracks, predicted, plot_of, reason, begun)
 
     def adopt(self, memory: Memory, previous: 'Tracker') -> Memory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.

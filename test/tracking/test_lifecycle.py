@@ -173,10 +173,10 @@ def test_hits_and_misses_are_counted():
     history = bits @ (1 << np.arange(20))
     tracks = one_plot()._replace(history=history)
     for scans in (1, 5, 10, 20):
-        assert (lifecycle.hits(tracks, scans) == bits[:, :scans].sum(1)).all()
+        assert (lifecycle.hits(tracks.history, scans) == bits[:, :scans].sum(1)).all()
     since = [next((k for k in range(20) if row[k]), 20) for row in bits]
-    assert lifecycle.misses_in_a_row(tracks).tolist() == since
-    assert lifecycle.misses_in_a_row(one_plot()._replace(history=np.zeros(1, np.int64))) == [20]
+    assert lifecycle.misses_in_a_row(tracks.history).tolist() == since
+    assert lifecycle.misses_in_a_row(np.zeros(1, np.int64)) == [20]
 
 
 def test_only_so_many_scans_are_remembered():
