@@ -15,6 +15,11 @@ from .parameters import NODES
 COMMAND = 'python -m marine_tracker.parameter_files'
 
 
+def fields(node: str) -> list[dataclasses.Field]:
+    """All parameters of a node."""
+    return [field for kind in NODES[node] for field in dataclasses.fields(kind)]
+
+
 def limits(field) -> str:
     """The values a parameter may take, in words; '' when any will do."""
     about = field.metadata
@@ -41,7 +46,7 @@ def node_yaml(node: str) -> str:
     """The parameter file of a node: every parameter at its default, described above it."""
     lines = [f'# Parameters of the node `{node}` at their defaults. Written by', f'# `{COMMAND}`.',
              '/**:', '  ros__parameters:']
-    for field in dataclasses.fields(NODES[node]):
+    for field in fields(node):
         facts = [part for part in (
             f'unit {field.metadata["unit"]}' if field.metadata['unit'] else '', limits(field),
             'may change while running' if field.metadata['live'] else '') if part]
@@ -57,10 +62,10 @@ def document() -> str:
              'A node refuses to start on an unknown, mistyped or out-of-range parameter and names',
              'it. A double is written with its point (`15.0`, not `15`). Those marked live may',
              'change while the node runs; no track is lost by it.']
-    for node, kind in NODES.items():
+    for node in NODES:
         lines += ['', f'## {node}', '', '| name | default | unit | limits | live | meaning |',
                   '|---|---|---|---|---|---|']
-        for field in dataclasses.fields(kind):
+        for field in fields(node):
             about = field.metadata
             cells = (f'`{field.name}`', f'`{yaml_value(field.default)}`', about['unit'],
                      limits(field), 'live' if about['live'] else '', about['text'])

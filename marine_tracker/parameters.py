@@ -8,7 +8,7 @@ names the parameter, the value and the limit.
 import dataclasses
 import difflib
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -54,13 +54,19 @@ P = TypeVar('P')
 
 def from_mapping(kind: type[P], values: Mapping[str, Any]) -> P:
     """A parameter object from a mapping; an unknown key is an error that names its neighbours."""
-    known = [field.name for field in dataclasses.fields(kind)]       # type: ignore[arg-type]
+    return from_mappings((kind,), values)[0]
+
+
+def from_mappings(kinds: Sequence[type], values: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Parameter objects of several kinds, whose names all differ, from one mapping."""
+    known = {field.name: kind for kind in kinds for field in dataclasses.fields(kind)}
     for name in values:
         if name not in known:
             near = difflib.get_close_matches(str(name), known, 1)
             hint = f'; did you mean {near[0]}?' if near else ''
             raise ValueError(f'unknown parameter {name}{hint}')
-    return kind(**values)
+    return tuple(kind(**{name: value for name, value in values.items() if known[name] is kind})
+                 for kind in kinds)
 
 
 def read_yaml_mapping(path) -> dict[str, Any]:
@@ -182,8 +188,8 @@ class RecordingPlayerParameters:
         check(self)
 
 
-NODES = {
-    'tracker': TrackerParameters,
-    'radar_simulator': RadarSimulatorParameters,
-    'recording_player': RecordingPlayerParameters,
+NODES: dict[str, tuple[type, ...]] = {
+    'tracker': (TrackerParameters,),
+    'radar_simulator': (RadarSimulatorParameters,),
+    'recording_player': (RecordingPlayerParameters,),
 }

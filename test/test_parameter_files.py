@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from marine_tracker import parameter_files
-from marine_tracker.parameters import NODES, from_mapping
+from marine_tracker.parameters import NODES, from_mappings
 
 CHECKOUT = Path(__file__).resolve().parents[1]
 
@@ -18,7 +18,7 @@ def test_the_shipped_file_is_what_the_dataclasses_say(name):
 @pytest.mark.parametrize('node', NODES)
 def test_the_yaml_of_a_node_reads_back_as_its_defaults(node):
     values = yaml.safe_load(parameter_files.node_yaml(node))['/**']['ros__parameters']
-    assert from_mapping(NODES[node], values) == NODES[node]()
+    assert from_mappings(NODES[node], values) == tuple(kind() for kind in NODES[node])
 
 
 def test_every_parameter_stands_in_the_document_with_its_limits():

@@ -12,7 +12,8 @@ from marine_tracker.parameters import (
     read_yaml_mapping,
 )
 
-FIELDS = [(kind, field) for kind in NODES.values() for field in dataclasses.fields(kind)]
+KINDS = [kind for kinds in NODES.values() for kind in kinds]
+FIELDS = [(kind, field) for kind in KINDS for field in dataclasses.fields(kind)]
 NUMBERS = [(kind, field) for kind, field in FIELDS if field.type in (int, float)]
 
 
@@ -33,7 +34,7 @@ def test_every_parameter_is_described(kind, field):
             assert about['unit'] == unit
 
 
-@pytest.mark.parametrize('kind', NODES.values(), ids=name_of)
+@pytest.mark.parametrize('kind', KINDS, ids=name_of)
 def test_the_defaults_are_allowed(kind):
     kind()
 

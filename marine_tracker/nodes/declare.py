@@ -14,7 +14,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from ..parameter_files import limits
-from ..parameters import from_mapping
+from ..parameters import from_mapping, from_mappings
 
 P = TypeVar('P')
 M = TypeVar('M')
@@ -22,23 +22,24 @@ M = TypeVar('M')
 WORDS = {bool: 'a bool', int: 'an integer', float: 'a double', str: 'a string'}
 
 
-def declare(node: Node, kind: type[P]) -> P:
-    """Declare every field of the dataclass on the node; the values it was started with.
+def declare(node: Node, *kinds: type) -> tuple[Any, ...]:
+    """Declare every field of the dataclasses on the node; the values it was started with.
 
     ValueError names the parameter if one that was given (YAML file, command line, launch) is
     unknown, has no value, has the wrong type or lies outside its limits. rclpy alone would pass
     over unknown ones in silence.
     """
-    fields = {field.name: field for field in dataclasses.fields(kind)}   # type: ignore[arg-type]
+    fields = {field.name: field for kind in kinds for field in dataclasses.fields(kind)}
     # Parameters that rclpy itself declared (use_sim_time, ...) and QoS overrides are not ours.
     given = {name: override.value for name, override in node._parameter_overrides.items()
              if not node.has_parameter(name) and not name.startswith('qos_overrides.')}
     for name, value in given.items():
         if name in fields:
             _check_type(name, value, fields[name].type)
-    parameters = from_mapping(kind, given)
-    for name, field in fields.items():
-        node.declare_parameter(name, getattr(parameters, name), descriptor(field))
+    parameters = from_mappings(kinds, given)
+    for kind, values in zip(kinds, parameters):
+        for field in dataclasses.fields(kind):
+            node.declare_parameter(field.name, getattr(values, field.name), descriptor(field))
     return parameters
 
 

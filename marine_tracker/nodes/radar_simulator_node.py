@@ -24,7 +24,7 @@ class RadarSimulatorNode(RunnableNode):
 
     def __init__(self, **node_arguments):
         super().__init__('radar_simulator', **node_arguments)
-        parameters = declare(self, RadarSimulatorParameters)
+        parameters, = declare(self, RadarSimulatorParameters)
         chosen = scenario.load(parameters.scenario)
         step = own_ship_period(parameters.rate)
 

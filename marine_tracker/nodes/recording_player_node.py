@@ -20,7 +20,7 @@ class RecordingPlayerNode(RunnableNode):
 
     def __init__(self, **node_arguments):
         super().__init__('recording_player', **node_arguments)
-        parameters = declare(self, RecordingPlayerParameters)
+        parameters, = declare(self, RecordingPlayerParameters)
         if not parameters.folder:
             raise ValueError('parameter folder is empty; it must name the folder of a recording')
         recording = csv_folder.read(parameters.folder)

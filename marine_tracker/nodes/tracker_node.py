@@ -58,7 +58,7 @@ class TrackerNode(RunnableNode):
 
     def __init__(self, **node_arguments):
         super().__init__('tracker', **node_arguments)
-        parameters = declare(self, TrackerParameters)
+        parameters, = declare(self, TrackerParameters)
         follow(self, TrackerParameters, Tracker, self._change)
         self._tracker = Tracker(parameters)
         self._memory = self._tracker.start()

@@ -6,10 +6,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from marine_tracker.nodes.declare import declare, follow
-from marine_tracker.parameters import (
-    RadarSimulatorParameters,
-    TrackerParameters,
-)
+from marine_tracker.parameters import NODES, TrackerParameters
 
 
 @pytest.fixture
@@ -33,22 +30,21 @@ def given(text):
 
 
 def test_defaults_are_those_of_the_dataclass(start):
-    assert declare(start(), TrackerParameters) == TrackerParameters()
+    assert declare(start(), TrackerParameters) == (TrackerParameters(),)
 
 
 def test_a_parameter_file_is_read(start, tmp_path):
     file = tmp_path / 'own.yaml'
     file.write_text('/**:\n  ros__parameters:\n    range_sigma_m: 40.0\n    confirm_hits: 3\n')
-    parameters = declare(start('--params-file', str(file)), TrackerParameters)
+    parameters, = declare(start('--params-file', str(file)), TrackerParameters)
     assert parameters == TrackerParameters(range_sigma_m=40.0, confirm_hits=3)
 
 
-@pytest.mark.parametrize('node, kind', [
-    ('tracker', TrackerParameters), ('radar_simulator', RadarSimulatorParameters)])
-def test_the_shipped_parameter_file_is_the_defaults(start, node, kind):
+@pytest.mark.parametrize('node, kinds', NODES.items())
+def test_the_shipped_parameter_file_is_the_defaults(start, node, kinds):
     from marine_tracker import config
     path = config.path(f'{node}.yaml')
-    assert declare(start('--params-file', str(path)), kind) == kind()
+    assert declare(start('--params-file', str(path)), *kinds) == tuple(kind() for kind in kinds)
 
 
 @pytest.mark.parametrize('text, said', [
@@ -74,7 +70,7 @@ def test_a_wrong_parameter_stops_the_start_and_is_named(start, text, said):
 
 def test_parameters_of_rclpy_itself_are_not_unknown(start):
     node = start('-p', 'use_sim_time:=true', '-p', 'qos_overrides./tracks.publisher.depth:=5')
-    assert declare(node, TrackerParameters) == TrackerParameters()
+    assert declare(node, TrackerParameters) == (TrackerParameters(),)
     assert node.get_parameter('use_sim_time').value is True
 
 
