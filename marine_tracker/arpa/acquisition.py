@@ -1,0 +1,224 @@
+"""Acquisition: which tracks are targets.
+
+The tracker initiates and confirms by itself; the operator's rules stand here. Automatic
+acquisition takes confirmed tracks everywhere or in guard zones only, never in exclusion zones. A
+click acquires any track near it, tentative ones too: such a target is shown at once, as acquiring
+and by its track's id, for it has no number before the tracker confirms it (targets.label).
+
+How targets end: the track is lost, leaves by range or is merged into another track, which takes
+the target over; it is cancelled; it enters an exclusion zone, unless acquired by hand; or it gives
+way where there are more than may be (capacity.py).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..tracking.lifecycle import LOST
+from ..types import Array, append, take
+from .capacity import make_room
+from .rows import row_of
+from .situation import Situation
+from .targets import (
+    ACQUIRED,
+    AUTOMATIC,
+    CANCELLED,
+    DISPLACED,
+    EXCLUDED,
+    MANUAL,
+    NO_ROOM,
+    NOTHING_THERE,
+    Events,
+    Targets,
+    at_tracks,
+    carry_over,
+    join,
+    nearest_track,
+)
+
+EVERYWHERE, ZONES, NOWHERE = WHERE = ('everywhere', 'zones', 'nowhere')
+MAX_CLICKS = 20                     # that may be pending
+
+
+class Settings(NamedTuple):
+    """How targets are acquired.
+
+    automatic     where tracks are acquired by themselves: everywhere, zones or nowhere
+    capacity      most targets
+    click_radius  m, how far from a click its track may be
+    click_wait    s, how long a click waits for a track to appear
+    border        s, how long a target must be outside of a zone before it enters or leaves anew:
+                  keeps those at the border from being acquired and dropped again and again
+    brief         s, within which the loss of a target that was acquired automatically is told as an
+                  event, but raises no alarm: most such tracks are clutter's; 0 alarms for all
+    """
+
+    automatic: str = EVERYWHERE
+    capacity: int = 200
+    click_radius: float = 500.0
+    click_wait: float = 20.0
+    border: float = 20.0
+    brief: float = 40.0
+
+
+class Barred(NamedTuple):
+    """Tracks that are not acquired automatically for now, one row each.
+
+    id         [R]  track id
+    cancelled  [R]  by the operator: until it enters a guard zone anew; else it was in an
+                    exclusion zone: until it has left it
+    last       [R]  s, when it was last inside that zone; nan: not looked yet, -inf: never
+    """
+
+    id: NDArray[np.int64]
+    cancelled: NDArray[np.bool_]
+    last: Array
+
+
+class Clicks(NamedTuple):
+    """Clicks for which there is no track yet: position [C, 2] m and since [C] s."""
+
+    position: Array
+    since: Array
+
+
+class Acquisition(NamedTuple):
+    """All that is known between two scans.
+
+    waiting  tracks that were not acquired in the last scan because there was no room
+    """
+
+    targets: Targets
+    barred: Barred
+    clicks: Clicks
+    waiting: int
+
+
+def begin() -> Acquisition:
+    """No targets yet."""
+    ids, times = np.zeros(0, np.int64), np.zeros(0)
+    return Acquisition(Targets(ids, ids, np.zeros(0, np.int8), times),
+                       Barred(ids, np.zeros(0, bool), times), Clicks(np.zeros((0, 2)), times), 0)
+
+
+def acquire(state: Acquisition, position, now: float) -> Acquisition:
+    """The operator's click at position [2] m; the next `step` finds its track.
+
+    ValueError where the position is not finite or MAX_CLICKS are pending already.
+    """
+    position = np.asarray(position, float)
+    if position.shape != (2,) or not np.isfinite(position).all():
+        raise ValueError(f'the position to acquire is {position}; it must be two finite numbers')
+    if len(state.clicks.since) >= MAX_CLICKS:
+        raise ValueError(f'{MAX_CLICKS} clicks are waiting for a track already')
+    return state._replace(clicks=append(state.clicks, Clicks(position[None], np.array([now]))))
+
+
+def cancel(state: Acquisition, number: int) -> tuple[Acquisition, Events]:
+    """The target is none any more. ValueError where there is no target of that number.
+
+    It is not acquired automatically again unless it enters a guard zone anew; a click does.
+    """
+    row = (state.targets.number == number).nonzero()[0]
+    if number <= 0 or not len(row):
+        raise ValueError(f'there is no target {number} to cancel')
+    return _cancel(state, row)
+
+
+def cancel_all(state: Acquisition) -> tuple[Acquisition, Events]:
+    """No target is one any more, those being acquired included, and no click waits."""
+    nothing = state._replace(clicks=begin().clicks, waiting=0)
+    return _cancel(nothing, np.arange(len(state.targets.id)))
+
+
+def how_acquired(state: Acquisition, ids) -> NDArray[np.int8]:
+    """AUTOMATIC or MANUAL [N] for the tracks that are targets, -1 for the others."""
+    row = row_of(state.targets.id, ids)
+    return np.where(row >= 0, np.append(state.targets.acquired, 0)[row], -1).astype(np.int8)
+
+
+def step(state: Acquisition, settings: Settings, situation: Situation,
+         now: float) -> tuple[Acquisition, Events]:
+    """One scan; now s. Afterwards the targets are tracks of the situation that live.
+
+    ValueError where the settings do not say where targets are to be acquired.
+    """
+    if settings.automatic not in WHERE:
+        raise ValueError(f'automatic acquisition is {settings.automatic!r}; it must be one of '
+                         f'{", ".join(WHERE)}')
+    how, since, events = carry_over(state.targets, situation, settings.click_radius,
+                                    settings.brief, now)
+    before = how >= 0
+    barred = _bar(state.barred, settings, situation, events, now)
+
+    clicks, clicked, lapsed = _answer_clicks(state.clicks, settings, situation, how, now)
+    how[clicked] = MANUAL
+    candidate = (how < 0) & (situation.status != LOST) & (situation.number > 0)
+    candidate &= ~situation.excluded
+    if settings.automatic != EVERYWHERE:
+        candidate &= situation.guarded & (settings.automatic == ZONES)
+    candidate[row_of(situation.id, barred.id)] = False
+    taken, dropped, refused = make_room(settings.capacity, situation, how, candidate,
+                                        clicked[~before[clicked]])
+    how[taken] = AUTOMATIC
+    how[np.concatenate([dropped, refused])] = -1
+
+    rows = (how >= 0).nonzero()[0]
+    begun = np.union1d(rows[~before[rows]], clicked[how[clicked] >= 0])
+    targets = Targets(situation.id[rows], situation.number[rows], how[rows], since[rows])
+    return Acquisition(
+        targets, take(barred, row_of(targets.id, barred.id) < 0), clicks,
+        int(candidate.sum()) - len(taken) + len(dropped),
+    ), join(events, at_tracks(ACQUIRED, situation, begun),
+            at_tracks(DISPLACED, situation, dropped), at_tracks(NO_ROOM, situation, refused),
+            Events(np.full(len(lapsed), NOTHING_THERE, np.int8), np.zeros(len(lapsed), np.int64),
+                   np.zeros(len(lapsed), np.int64), lapsed))
+
+
+def _bar(barred: Barred, settings: Settings, situation: Situation, events: Events,
+         now: float) -> Barred:
+    """Who stays barred, and those that dropped out of the targets in an exclusion zone."""
+    row = row_of(situation.id, barred.id)
+    here = row >= 0
+    here[here] = situation.status[row[here]] != LOST
+    barred, row = take(barred, here), row[here]
+    within = np.where(barred.cancelled, situation.guarded[row], situation.excluded[row])
+    last = np.where(np.isnan(barred.last), np.where(within, now, -np.inf), barred.last)
+    free = (within == barred.cancelled) & (now - last > settings.border)
+    stay = take(barred._replace(last=np.where(within, now, last)), ~free)
+    new = events.id[events.kind == EXCLUDED]
+    new = new[situation.status[row_of(situation.id, new)] != LOST]
+    return append(stay, Barred(new, np.zeros(len(new), bool), np.full(len(new), now)))
+
+
+def _answer_clicks(clicks: Clicks, settings: Settings, situation: Situation, how, now: float):
+    """Clicks that wait on, rows of the tracks clicked, and positions of clicks that lapse.
+
+    A click takes the nearest track that is no target yet; where there are only targets, the
+    nearest of them becomes one acquired by hand.
+    """
+    free, clicked, wait = (how < 0) & (situation.status != LOST), [], []
+    targets = how >= 0
+    for position in clicks.position:
+        row = nearest_track(situation, position, free, settings.click_radius)
+        if row < 0:
+            row = nearest_track(situation, position, targets, settings.click_radius)
+        wait.append(row < 0)
+        if row >= 0:
+            free[row] = False
+            clicked.append(row)
+    waiting = np.array(wait, bool)
+    lapse = waiting & (now - clicks.since > settings.click_wait)
+    return (take(clicks, waiting & ~lapse), np.array(list(dict.fromkeys(clicked)), np.int64),
+            clicks.position[lapse])
+
+
+def _cancel(state: Acquisition, rows) -> tuple[Acquisition, Events]:
+    chosen = take(state.targets, rows)
+    count = len(chosen.id)
+    stay = np.ones(len(state.targets.id), bool)
+    stay[rows] = False
+    barred = append(state.barred, Barred(chosen.id, np.ones(count, bool), np.full(count, np.nan)))
+    return state._replace(targets=take(state.targets, stay), barred=barred), Events(
+        np.full(count, CANCELLED, np.int8), chosen.id, chosen.number, np.full((count, 2), np.nan))

@@ -1,0 +1,189 @@
+"""The alarms of the ARPA: what raises each of them, and what it says.
+
+What an alert is and how it lives: alerts.py. Here are the kinds and their causes:
+
+    danger           CPA and TCPA of a target below the limits, or likely so (situation.danger);
+                     raised only by a scan in which the target shows, for a track that clutter
+                     began does not show again, while its course is a guess
+    lost target      its track ended for want of plots; not one that left by range, was merged,
+                     cancelled, lay in an exclusion zone, or had hardly been acquired
+    new target       a confirmed track in a guard zone, whether it entered or was first seen there,
+                     target already or not; one alert for each zone
+    near capacity    NEARLY_FULL of the targets that may be
+    capacity         as many targets as may be
+    heading, position, plots missing    not heard for too long
+    fallback         at least a share of the confirmed targets have fallen back from their filter
+    swap risk        the gate of a target overlaps that of another track
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..tracking.lifecycle import CONFIRMED, LOST
+from ..types import Array, take
+from . import alerts as machine
+from .acquisition import Acquisition, how_acquired
+from .alerts import KEEP, OFF, ON, VALUES, Alerts, Causes, Rule
+from .rows import row_of
+from .situation import Situation
+from .targets import LOST_FROM_SIGHT, Events
+from .zones import Zones
+
+NAMES = ('danger', 'lost target', 'new target', 'near capacity', 'capacity', 'heading missing',
+         'position missing', 'plots missing', 'fallback', 'swap risk')
+(DANGER, LOST_TARGET, NEW_TARGET, NEAR_CAPACITY, CAPACITY, HEADING_MISSING,
+ POSITION_MISSING, PLOTS_MISSING, FALLBACK, SWAP_RISK) = range(len(NAMES))
+PRIORITY = ('alarm', 'warning', 'warning', 'caution', 'warning', 'warning',
+            'warning', 'warning', 'caution', 'caution')
+CAUTION = np.array([priority == 'caution' for priority in PRIORITY])
+MOMENTARY = np.arange(len(NAMES)) == LOST_TARGET
+NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level that keeps an alert
+APART = 1.44                        # overlap of gates (see swap_risk) that ends a swap risk
+
+
+class Settings(NamedTuple):
+    """How alarms behave.
+
+    danger_after    s, how long a danger must show before it raises
+    end_after       s, how long any cause must be gone before its alert ends
+    lapse_after     s, after which an alert without a cause lapses that nobody acknowledged
+    sensor_timeout  s without heading, position or plots
+    fallback_share  of the confirmed targets
+    """
+
+    danger_after: float = 5.0
+    end_after: float = 15.0
+    lapse_after: float = 1800.0
+    sensor_timeout: float = 10.0
+    fallback_share: float = 0.5
+
+
+class Tracking(NamedTuple):
+    """How the tracking of a scan fares.
+
+    capacity  most targets
+    fallen    confirmed targets that have fallen back from their filter
+    overlap   [N]  of the gates and
+    other     [N]  row of the track they overlap with, as swap_risk gives them
+    """
+
+    capacity: int
+    fallen: int
+    overlap: Array
+    other: Array
+
+
+class Silence(NamedTuple):
+    """For how long, s, each has not been heard; inf for never."""
+
+    heading: float
+    position: float
+    plots: float
+
+
+def step(alerts: Alerts, settings: Settings, situation: Situation, acquisition: Acquisition,
+         events: Events, zones: Zones, tracking: Tracking, now: float) -> tuple[Alerts, Alerts]:
+    """The alerts after a scan, and those that changed; now s.
+
+    acquisition and its events are those of the same scan. The sensors have a step of their own.
+    """
+    target = how_acquired(acquisition, situation.id) >= 0
+    numbered = (target & (situation.number > 0)).nonzero()[0]
+    confirmed = int((target & (situation.status == CONFIRMED)).sum())
+    danger = np.minimum(situation.danger, np.where(situation.status == CONFIRMED, ON, KEEP))
+    lost = row_of(situation.id, events.id[events.kind == LOST_FROM_SIGHT])
+    count, capacity, fallen = len(acquisition.targets.id), tracking.capacity, tracking.fallen
+    swap = np.where(tracking.overlap < 1, ON, np.where(tracking.overlap < APART, KEEP, OFF))
+    partner = np.append(situation.number, 0)[tracking.other]
+    causes = [
+        (DANGER, 0, _of_tracks(situation, numbered, danger, situation.cpa, situation.tcpa,
+                               situation.probability)),
+        (LOST_TARGET, 0, _of_tracks(situation, lost, np.full(len(situation.id), ON))),
+        (NEAR_CAPACITY, 0, _single(count, np.ceil(NEARLY_FULL * capacity), count, capacity)),
+        (CAPACITY, 0, _single(count, capacity, count, capacity, acquisition.waiting)),
+        (FALLBACK, 0, _single(fallen, max(settings.fallback_share * confirmed, 1), fallen,
+                              confirmed)),
+        (SWAP_RISK, 0, _of_tracks(situation, numbered, swap, partner)),
+        *_in_guard_zones(alerts, situation, acquisition, zones)]
+    return _advance(alerts, causes, settings, now)
+
+
+def watch(alerts: Alerts, settings: Settings, silence: Silence,
+          now: float) -> tuple[Alerts, Alerts]:
+    """The alerts after a look at the sensors, and those that changed: to be called by the clock.
+
+    Where plots are missing there is no scan to call `step`. now s, of the same time as scans'.
+    """
+    causes = [(kind, 0, _causes(silent > settings.sensor_timeout, silent)) for kind, silent in (
+        (HEADING_MISSING, silence.heading), (POSITION_MISSING, silence.position),
+        (PLOTS_MISSING, silence.plots))]
+    return _advance(alerts, causes, settings, now)
+
+
+def acknowledge(alerts: Alerts, now: float, kind: int | None = None,
+                number: int | None = None) -> tuple[Alerts, Alerts]:
+    """The operator has seen one alert, all of a kind, all of a target, or all (alerts.py)."""
+    return machine.acknowledge(alerts, now, MOMENTARY, kind, number)
+
+
+def rules(settings: Settings) -> tuple[Rule, ...]:
+    """How each kind behaves."""
+    return tuple(Rule(settings.danger_after if kind == DANGER else 0.0, settings.end_after,
+                      settings.lapse_after, bool(CAUTION[kind]), bool(MOMENTARY[kind]))
+                 for kind in range(len(NAMES)))
+
+
+def _advance(alerts, causes, settings, now):
+    """Each kind and zone by itself; those without causes here stay as they are."""
+    by_kind, parts, changes = rules(settings), [], [machine.begin()]
+    rest = np.ones(len(alerts.kind), bool)
+    for kind, zone, cause in causes:
+        rows = (alerts.kind == kind) & (alerts.zone == zone)
+        if not rows.any() and not (cause.level == ON).any():
+            continue
+        rest &= ~rows
+        part, changed = machine.advance(take(alerts, rows), kind, zone, cause, by_kind[kind], now)
+        parts.append(part)
+        changes.append(changed)
+    return _join([take(alerts, rest), *parts]), _join(changes)
+
+
+def _in_guard_zones(alerts, situation, acquisition, zones):
+    """Causes of `new target`, zone by zone; a zone that is no more has none."""
+    cancelled = acquisition.barred.id[acquisition.barred.cancelled]
+    rows = ((situation.number > 0) & (situation.status != LOST) & ~situation.excluded
+            & ~np.isin(situation.id, cancelled)).nonzero()[0]
+    guard = zones.guard.nonzero()[0]
+    keys = zones.key[guard].tolist()
+    gone = set(alerts.zone[alerts.kind == NEW_TARGET].tolist()) - set(keys)
+    return ([(NEW_TARGET, key, _of_tracks(situation, rows, ON * situation.inside[:, zone]))
+             for key, zone in zip(keys, guard)]
+            + [(NEW_TARGET, key, _of_tracks(situation, rows[:0], situation.danger))
+               for key in sorted(gone)])
+
+
+def _of_tracks(situation, rows, level, *told):
+    """Causes of the tracks at the rows; level [N], and what else is told of each [N]."""
+    values = np.full((len(rows), VALUES), np.nan)
+    for column, value in enumerate((situation.range, situation.bearing, *told)):
+        values[:, column] = value[rows]
+    return Causes(situation.id[rows], situation.number[rows], level[rows].astype(np.int8),
+                  situation.position[rows], values)
+
+
+def _single(value, limit, *told):
+    """The cause of a kind that concerns no track, there from a value of `limit` on."""
+    return _causes(value >= limit, *told, keep=value >= NO_LONGER * limit)
+
+
+def _causes(there, *told, keep=False):
+    values = np.full((1, VALUES), np.nan)
+    values[0, :len(told)] = told
+    none = np.zeros(1, np.int64)
+    return Causes(none, none, np.array([ON if there else KEEP if keep else OFF], np.int8),
+                  np.full((1, 2), np.nan), values)
+
+
+def _join(parts):
+    return Alerts(*(np.concatenate(column) for column in zip(*parts)))

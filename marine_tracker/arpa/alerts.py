@@ -1,0 +1,172 @@
+"""The life of alerts: raised, acknowledged, rectified, normal again.
+
+States and transitions are those of bridge alert management (IEC 62923-1):
+
+    normal                  -- cause --> active unacknowledged
+    active unacknowledged   -- acknowledged --> active acknowledged, -- cause gone --> rectified
+    active acknowledged     -- cause gone --> normal
+    rectified               -- acknowledged --> normal, -- cause back --> active unacknowledged
+
+A cause must hold for a time before it raises and be gone for a time before it ends, and its level
+knows a middle that neither raises nor ends, nor interrupts what holds: hysteresis in time and in
+value. Cautions need no
+acknowledgement: they are raised as acknowledged. An alert on something momentary (a loss) has no
+cause that could end: it stays active until acknowledged. What nobody acknowledges, as in a tracker
+without an operator, lapses some time after its cause, or alerts would pile up for ever.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..types import Array, append, take
+from .rows import row_of
+
+NORMAL, ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED = range(4)
+STATES = ('normal', 'active unacknowledged', 'active acknowledged', 'rectified unacknowledged')
+VALUES = 5                          # numbers that an alert tells
+OFF, KEEP, ON = range(3)            # levels of a cause: gone, not enough to raise, there
+
+
+class Alerts(NamedTuple):
+    """All alerts that are not normal, and causes that have not held long enough; one row each.
+
+    kind      [A]     what it is about, index of alarms.NAMES
+    zone      [A]     key of the zone (zones.Zones.key), 0 for none
+    id        [A]     of the track, 0 for none
+    number    [A]     of the target, 0 for none
+    state     [A]     index into STATES; a cause that still has to hold stands here as NORMAL
+    since     [A]     s, when the state began
+    turn      [A]     s, since when the cause has called for a change of state; nan: it does not
+    position  [A, 2]  m, of the target when the state began; nan for none
+    values    [A, 5]  what the text tells, at that time; see alarms.py
+    """
+
+    kind: NDArray[np.int8]
+    zone: NDArray[np.int64]
+    id: NDArray[np.int64]
+    number: NDArray[np.int64]
+    state: NDArray[np.int8]
+    since: Array
+    turn: Array
+    position: Array
+    values: Array
+
+
+class Causes(NamedTuple):
+    """What may raise alerts of one kind: one row a subject; a subject not there has gone away.
+
+    id, number  [S]     as in Alerts
+    level       [S]     OFF, KEEP or ON
+    position    [S, 2]  m
+    values      [S, 5]
+    """
+
+    id: NDArray[np.int64]
+    number: NDArray[np.int64]
+    level: NDArray[np.int8]
+    position: Array
+    values: Array
+
+
+class Rule(NamedTuple):
+    """How a kind of alert behaves: raised and ended after its cause held or was gone for so long.
+
+    raise_after, end_after, lapse_after  s
+    caution    needs no acknowledgement
+    momentary  active until acknowledged
+    """
+
+    raise_after: float = 0.0
+    end_after: float = 0.0
+    lapse_after: float = 1800.0
+    caution: bool = False
+    momentary: bool = False
+
+
+def begin() -> Alerts:
+    """All normal."""
+    ids, times, kinds = np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int8)
+    return Alerts(kinds, ids, ids, ids, kinds, times, times, np.zeros((0, 2)),
+                  np.zeros((0, VALUES)))
+
+
+def advance(alerts: Alerts, kind: int, zone: int, causes: Causes, rule: Rule,
+            now: float) -> tuple[Alerts, Alerts]:
+    """The alerts, all of this kind and zone, after a look at their causes; and those changed.
+
+    A change to NORMAL is among the changed rows only.
+    """
+    row = row_of(causes.id, alerts.id)
+    level = np.append(causes.level, OFF)[row]           # -1, gone away: the last
+    gone = row < 0
+    active = ((alerts.state == ACTIVE_UNACKNOWLEDGED) | (alerts.state == ACTIVE_ACKNOWLEDGED))
+    calls = np.where(active, (level == OFF) & (not rule.momentary), level == ON)
+    holds = calls | (~active & (level == KEEP))
+    turn = np.where(calls & np.isnan(alerts.turn), now, np.where(holds, alerts.turn, np.nan))
+    wait = np.where(active, np.where(gone, 0.0, rule.end_after), rule.raise_after)
+    due = calls & (now - turn >= wait)
+    raised = ACTIVE_ACKNOWLEDGED if rule.caution else ACTIVE_UNACKNOWLEDGED
+    ended = np.where(alerts.state == ACTIVE_UNACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED, NORMAL)
+    idle = (alerts.state == RECTIFIED_UNACKNOWLEDGED) | (active & rule.momentary)
+    state = np.where(due, np.where(active, ended, raised), np.where(
+        idle & (now - alerts.since > rule.lapse_after), NORMAL, alerts.state)).astype(np.int8)
+    changed = state != alerts.state
+    told = alerts._replace(state=state, since=np.where(changed, now, alerts.since),
+                           turn=np.where(changed, np.nan, turn))
+    fresh = (changed & ~gone).nonzero()[0]
+    if len(fresh):
+        position, values = told.position.copy(), told.values.copy()
+        position[fresh], values[fresh] = causes.position[row[fresh]], causes.values[row[fresh]]
+        told = told._replace(position=position, values=values)
+
+    new = ((causes.level == ON) & (row_of(alerts.id, causes.id) < 0)).nonzero()[0]
+    at_once = rule.raise_after <= 0
+    count = len(new)
+    begun = Alerts(np.full(count, kind, np.int8), np.full(count, zone), causes.id[new],
+                   causes.number[new], np.full(count, raised if at_once else NORMAL, np.int8),
+                   np.full(count, now), np.full(count, np.nan if at_once else now),
+                   causes.position[new], causes.values[new])
+    everything = append(told, begun)
+    return (take(everything, _alive(everything)),
+            take(everything, np.append(changed, np.full(count, at_once))))
+
+
+def acknowledge(alerts: Alerts, now: float, momentary: NDArray[np.bool_], kind: int | None = None,
+                number: int | None = None) -> tuple[Alerts, Alerts]:
+    """The operator has seen the alerts of this kind and target number; None stands for all.
+
+    momentary [kinds]: which kinds have no cause that lasts. Returns the alerts and those changed;
+    what was acknowledged already stays as it is. ValueError where kind or number are given and
+    there is no such alert.
+    """
+    chosen = alerts.state != NORMAL
+    for value, column in ((kind, alerts.kind), (number, alerts.number)):
+        if value is not None:
+            chosen &= column == value
+    if not chosen.any() and (kind is not None or number is not None):
+        raise ValueError(f'there is no alert of kind {kind} and target {number} to acknowledge')
+    active = chosen & (alerts.state == ACTIVE_UNACKNOWLEDGED)
+    ends = (chosen & (alerts.state == RECTIFIED_UNACKNOWLEDGED)) | (active & momentary[alerts.kind])
+    return _change(alerts, np.where(ends, NORMAL, np.where(active, ACTIVE_ACKNOWLEDGED,
+                                                           alerts.state)), now)
+
+
+def dismiss(alerts: Alerts, ids, now: float) -> tuple[Alerts, Alerts]:
+    """All alerts of these tracks are normal: the operator has cancelled them. As `acknowledge`."""
+    chosen = np.isin(alerts.id, ids) & (alerts.id > 0)
+    return _change(alerts._replace(turn=np.where(chosen, np.nan, alerts.turn)),
+                   np.where(chosen, NORMAL, alerts.state), now)
+
+
+def _change(alerts: Alerts, state, now: float) -> tuple[Alerts, Alerts]:
+    changed = state != alerts.state
+    alerts = alerts._replace(state=state.astype(np.int8),
+                             since=np.where(changed, now, alerts.since))
+    return take(alerts, _alive(alerts)), take(alerts, changed)
+
+
+def _alive(alerts: Alerts):
+    """Mask of the rows worth keeping: not normal, or about to be raised."""
+    return (alerts.state != NORMAL) | np.isfinite(alerts.turn)

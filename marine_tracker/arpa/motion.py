@@ -1,0 +1,209 @@
+"""Course, speed and position of every track, from a memory of its own: what vectors and CPA use.
+
+The tracker's estimator extrapolates and associates; the motion shown comes from the same plots
+through `plot_noise` and `legs`, whatever the estimator is.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..estimators import linear_modes
+from ..estimators.linear import invert_2x2, squared_distance
+from ..tracking.tracker import Report
+from ..types import Array, Plots, put, take
+from . import legs, plot_noise
+
+STEADY, MANOEUVRING = 0, 1
+MEMORY_NAMES = ('steady', 'manoeuvring')
+SURE = 0.5                  # m/s: a steady target's velocity is known as well as this
+
+
+class Settings(NamedTuple):
+    """What is expected of targets and their plots.
+
+    glint_sigma  m, deviation of the point that echoes from the middle of the target, each axis
+    speed_sigma  m/s, deviation of each component of a new target's velocity
+    habits       how targets move
+    rest_speed   m/s, below which a target may count as stationary ...
+    rest_time    s, ... once its velocity has not differed from 0 for so long
+    """
+
+    glint_sigma: float = 20.0
+    speed_sigma: float = 12.5
+    habits: legs.Habits = legs.Habits(hold=6000.0, manoeuvre=20.0, noise=0.2)
+    rest_speed: float = 0.5
+    rest_time: float = 60.0
+
+
+PRESETS = {
+    'ship': Settings(),
+    'small_craft': Settings(glint_sigma=0.0, habits=legs.Habits(600.0, 10.0, 4.0)),
+}
+
+
+class Memory(NamedTuple):
+    """What is remembered of each track, one row a track, by ascending id.
+
+    id          [N]
+    first       [N]      s, of the first plot; nan before it
+    time        [N]      s, of the last plot
+    scatter              rows of `plot_noise.Scatter`
+    legs                 rows of `legs.Legs`
+    shown       [N, 14]  mean and covariance at `time` of what is likely, as in `linear_modes`
+    noise       [N]      m^2/s^3, density of acceleration that is to be expected from then on
+    memory      [N]      STEADY or MANOEUVRING
+    since       [N]      s, when that began: see Motion
+    still       [N]      s, since when the velocity has not differed from 0; nan: it does
+    stationary  [N]      whether the target counts as at rest
+    """
+
+    id: NDArray[np.int64]
+    first: Array
+    time: Array
+    scatter: plot_noise.Scatter
+    legs: legs.Legs
+    shown: Array
+    noise: Array
+    memory: NDArray[np.int64]
+    since: Array
+    still: Array
+    stationary: NDArray[np.bool_]
+
+
+class Motion(NamedTuple):
+    """Where N tracks are and how they move; nan where a track had no plot yet.
+
+    position    [N, 2]     m, east and north
+    velocity    [N, 2]     m/s over ground; 0 where the target is stationary
+    covariance  [N, 4, 4]  of [position, velocity]
+    memory      [N]        STEADY: the target is on a leg that has lasted; MANOEUVRING: it is not
+    since       [N]        s: the leg's likeliest beginning; when the manoeuvre first showed
+    steady      [N]        whether the target holds course and speed, and these are well known
+    stationary  [N]        whether the target is at rest
+    """
+
+    position: Array
+    velocity: Array
+    covariance: Array
+    memory: NDArray[np.int64]
+    since: Array
+    steady: NDArray[np.bool_]
+    stationary: NDArray[np.bool_]
+
+
+def begin() -> Memory:
+    """No track yet."""
+    return _blank(np.zeros(0, np.int64))
+
+
+def step(memory: Memory, report: Report, plots: Plots, settings: Settings) -> Memory:
+    """The memory after one scan; its rows are those of `report.tracks`.
+
+    plots  the scan's plots as `geometry.locate` gives them, to which `report.plot` refers
+    """
+    memory = _follow(memory, report.tracks.id)
+    first = np.arange(len(memory.id) - len(report.begun.time), len(memory.id))
+    memory = _first_plots(memory, first, report.begun, settings)
+    rows = np.flatnonzero(report.plot >= 0)
+    plots = take(plots, report.plot[rows])
+    blank = np.isnan(memory.time[rows])
+    memory = _first_plots(memory, rows[blank], take(plots, blank), settings)
+    return _next_plots(memory, rows[~blank], take(plots, ~blank), settings)
+
+
+def at(memory: Memory, time) -> Motion:
+    """The motion of every row at `time`, s: [N] or one for all. `types.take` chooses rows first."""
+    bank = linear_modes.Bank(memory.noise, np.zeros_like(memory.noise), ())
+    mean, covariance = linear_modes.unpack(
+        linear_modes.move(bank, memory.shown.T, time - memory.time).T)
+    position, velocity = mean[:, :2].copy(), mean[:, 2:].copy()
+    position[memory.stationary] = memory.shown[memory.stationary, :2]
+    velocity[memory.stationary] = 0.0
+    known = np.trace(covariance[:, 2:, 2:], axis1=1, axis2=2) < SURE ** 2
+    return Motion(position, velocity, covariance, memory.memory, memory.since,
+                  (memory.memory == STEADY) & known, memory.stationary)
+
+
+def _blank(id_) -> Memory:
+    """Rows of tracks that had no plot yet."""
+    count = len(id_)
+    nothing = np.full(count, np.nan)
+    return Memory(id_, nothing, nothing, plot_noise.begin(count),
+                  legs.begin(np.full((count, 2), np.nan), np.full((count, 2, 2), np.nan),
+                             nothing, 1.0),
+                  np.full((count, 14), np.nan), nothing, np.full(count, STEADY), nothing, nothing,
+                  np.zeros(count, bool))
+
+
+def _follow(memory: Memory, id_) -> Memory:
+    """The rows of the tracks `id_` [N], ascending; those not known yet are blank."""
+    if np.array_equal(memory.id, id_):
+        return memory
+    known = np.flatnonzero(np.isin(id_, memory.id, assume_unique=True))
+    return put(_blank(id_), known, take(memory, memory.id.searchsorted(id_[known])))
+
+
+def _first_plots(memory: Memory, rows, plots: Plots, settings: Settings) -> Memory:
+    """The rows [K] begin with one plot each."""
+    count = len(rows)
+    if not count:
+        return memory
+    scatter, covariance, _ = plot_noise.observe(plot_noise.begin(count), plots,
+                                                settings.glint_sigma)
+    hypotheses = legs.begin(plots.position, covariance, plots.time, settings.speed_sigma)
+    return put(memory, rows, Memory(
+        memory.id[rows], plots.time, plots.time, scatter, hypotheses, hypotheses.rows[:, 0],
+        np.full(count, settings.habits.noise), np.full(count, STEADY), plots.time,
+        np.full(count, np.nan), np.zeros(count, bool)))
+
+
+def _next_plots(memory: Memory, rows, plots: Plots, settings: Settings) -> Memory:
+    """The rows [K] take one more plot each."""
+    if not len(rows):
+        return memory
+    before = take(memory, rows)
+    scatter, covariance, stretch = plot_noise.observe(before.scatter, plots, settings.glint_sigma)
+    hypotheses, shown = legs.update(
+        before.legs, plots.time, plots.time - before.time, plots.position, covariance, stretch,
+        plot_noise.FREEDOM * scatter.plots, settings.habits)
+    noise = hypotheses.weight[:, 0] * settings.habits.noise
+    return put(memory, rows, Memory(
+        before.id, before.first, plots.time, scatter, hypotheses, shown, noise,
+        *_manoeuvre(before, hypotheses, plots.time, 2 * settings.habits.manoeuvre),
+        *_rest(before, shown, plots.time, settings)))
+
+
+def _manoeuvre(before: Memory, hypotheses: legs.Legs, time, lasting: float):
+    """STEADY or MANOEUVRING [N], and since when [N] s, after the times [N] s.
+
+    In a turn every moment may be the beginning of a new leg, so one that is younger than `lasting`
+    s counts for nothing yet; but a new target is not taken to turn for that.
+    """
+    likeliest = hypotheses.weight.argmax(1)
+    begun = hypotheses.begun[np.arange(len(time)), likeliest - 1]
+    young = (likeliest == 0) | (time - begun < lasting)
+    turns = young & (time - before.first > lasting)
+    since = np.where(before.memory == MANOEUVRING, before.since, time)
+    begun = np.where(likeliest == 0, before.first, begun)
+    return np.where(turns, MANOEUVRING, STEADY), np.where(turns, since, begun)
+
+
+def _rest(before: Memory, shown, time, settings: Settings):
+    """Since when [N] tracks are still, and whether they count as stationary, after the times [N].
+
+    A target comes to rest when its velocity is within 2.4 deviations of 0, and surely slow, for a
+    time; it gets under way when it is beyond 3 and half the speed: so it does not flicker.
+    """
+    mean, covariance = linear_modes.unpack(shown)
+    velocity, spread = mean[:, 2:], covariance[:, 2:, 2:]
+    inverse, _ = invert_2x2(spread)
+    distance = squared_distance(velocity, inverse)
+    speed = np.hypot(*velocity.T)
+    surely_below = speed + 2 * np.sqrt(np.trace(spread, axis1=1, axis2=2))
+    still = (distance < 6.0) & (surely_below < settings.rest_speed)
+    since = np.where(still, np.where(np.isnan(before.still), time, before.still), np.nan)
+    moves = (distance > 9.0) & (speed > 0.5 * settings.rest_speed)
+    rests = still & (time - since >= settings.rest_time)
+    return since, (before.stationary & ~moves) | rests

@@ -1,0 +1,62 @@
+"""Own ship's smoothed motion, and sea or ground stabilisation of all motion."""
+
+import numpy as np
+
+from ..geometry import own_ship_at, unit_vector
+from ..types import Array, OwnShip
+from .cpa import OwnMotion
+from .motion import Motion
+
+WINDOW = 10.0               # s of samples that own ship's velocity is smoothed over
+LEAST_SIGMA = 0.01          # m/s, of own velocity: few samples may agree by chance
+
+
+def own_motion(samples: OwnShip, time: float, heading: float, window: float = WINDOW
+               ) -> OwnMotion:
+    """Own ship over ground at `time`, s, from the samples of the `window` s before.
+
+    Velocity is a straight-line fit in time, so a steady turn does not lag; its covariance is that
+    of the fit to the samples' scatter. The position is that from which plots are placed, hence
+    without error of its own. heading rad, true. ValueError where there is no sample.
+    """
+    if not len(samples.time):
+        raise ValueError('own ship has no sample; at least one is needed')
+    position, velocity = own_ship_at(samples, time)
+    near = (samples.time > time - window) & (samples.time <= time)
+    covariance = np.zeros((4, 4))
+    covariance[2:, 2:] = LEAST_SIGMA ** 2 * np.eye(2)
+    if near.sum() >= 4:
+        ahead = samples.time[near] - time
+        design = np.stack([np.ones_like(ahead), ahead], 1)
+        inverse = np.linalg.pinv(design.T @ design)
+        fit = inverse @ design.T @ samples.velocity[near]
+        rest = samples.velocity[near] - design @ fit
+        velocity = fit[0]
+        covariance[2:, 2:] += inverse[0, 0] * rest.T @ rest / (len(ahead) - 2)
+    return OwnMotion(position, velocity, heading, covariance)
+
+
+def drift_of(over_ground: Array, heading: float, log_speed: float) -> Array:
+    """Set and drift [2] m/s, east and north: what moves own ship besides her way through the water.
+
+    over_ground [2] m/s; heading rad; log_speed m/s through the water, ahead.
+    """
+    return over_ground - log_speed * unit_vector(heading)
+
+
+def sea_stabilised(motion: Motion, own: OwnMotion, drift: Array) -> tuple[Motion, OwnMotion]:
+    """Motion of targets and own ship through water that itself moves with `drift` [2] m/s.
+
+    What is relative (CPA, TCPA, bow crossing) stays; courses and speeds are then those of the
+    ships' way through the water, from which aspect and the rules of the road are judged.
+    """
+    return (motion._replace(velocity=motion.velocity - drift),
+            own._replace(velocity=own.velocity - drift))
+
+
+def vectors(motion: Motion, own: OwnMotion, duration: float, relative: bool) -> Array:
+    """Ends [N, 2] m of the targets' vectors: where they will be in `duration` s.
+
+    relative  as seen from own ship, who stays where she is; else true
+    """
+    return motion.position + duration * (motion.velocity - own.velocity * relative)

@@ -1,0 +1,78 @@
+"""Where the targets were, at equal intervals of time: their past positions, true and relative."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..types import Array
+from .rows import row_of
+
+
+class PastPositions(NamedTuple):
+    """The last K moments, newest first, the same for all tracks: whole multiples of `interval`.
+
+    interval  s
+    time      [K]        s
+    own       [K, 2]     m, own ship's true positions
+    id        [N]        the tracks
+    position  [N, K, 2]  m, true (ground-stabilised) positions; nan before the track's first plot
+    """
+
+    interval: float
+    time: Array
+    own: Array
+    id: NDArray[np.int64]
+    position: Array
+
+
+def begin(count: int, interval: float) -> PastPositions:
+    """None yet. count: how many to keep; interval s between them. ValueError for less than 1, 0 s.
+
+    The standards want at least 4.
+    """
+    if count < 1:
+        raise ValueError(f'the number of past positions is {count}; it must be at least 1')
+    if not 0 < interval < np.inf:
+        raise ValueError(f'the interval of past positions is {interval:g} s; it must be finite '
+                         'and above 0')
+    unknown = np.full((count, 2), np.nan)
+    return PastPositions(interval, unknown[:, 0], unknown, np.zeros(0, np.int64),
+                         np.zeros((0, count, 2)))
+
+
+def step(past: PastPositions, id, first_time, position, velocity, own_position, own_velocity,
+         now: float) -> PastPositions:
+    """Follow the tracks id [N] to `now` s; the rows of the result are theirs.
+
+    first_time [N] s, of the tracks' first plots; position [N, 2] m and velocity [N, 2] m/s of the
+    tracks, own_position [2] and own_velocity [2] of own ship, all at `now`.
+
+    Positions at a moment that came up since the last step are those of `now` brought back along
+    the velocity, at most a scan's way. Moments that came up while nothing was heard for longer
+    than all of them span are not invented: the past begins anew. So it does when time goes back.
+    """
+    count, interval = len(past.time), past.interval
+    time, own = past.time, past.own
+    positions = np.full((len(id), count, 2), np.nan)
+    row = row_of(past.id, id)
+    positions[row >= 0] = past.position[row[row >= 0]]
+    latest = np.floor(now / interval) * interval
+    due = round((latest - time[0]) / interval) if np.isfinite(time[0]) else 1
+    if not 0 <= due <= count:
+        due, time, own = 1, np.full_like(time, np.nan), np.full_like(own, np.nan)
+        positions[:] = np.nan
+    if due:
+        moments = latest - interval * np.arange(due)
+        back = moments - now
+        was = position[:, None] + back[:, None] * velocity[:, None]
+        was[moments < first_time[:, None]] = np.nan
+        time = np.concatenate([moments, time])[:count]
+        own = np.concatenate([own_position + back[:, None] * own_velocity, own])[:count]
+        positions = np.concatenate([was, positions], 1)[:, :count]
+    return PastPositions(interval, time, own, np.array(id), positions)
+
+
+def relative(past: PastPositions) -> Array:
+    """Offsets [N, K, 2] m of the tracks from where own ship was at the same moments."""
+    return past.position - past.own
