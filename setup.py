@@ -35,6 +35,7 @@ setup(
         'numpy>=1.26.4',
         'PyWavelets>=1.4',
         'PyYAML>=6.0',
+        'pynmea2>=1.19',
         'rich>=13.3',
         'scipy>=1.11.4',
     ],
@@ -56,6 +57,7 @@ setup(
     entry_points={
         'console_scripts': [
             'marine_tracker = marine_tracker.cli:main',
+            'nmea_output = marine_tracker.nodes.nmea_output:main',
             'radar_simulator = marine_tracker.nodes.radar_simulator:main',
             'recording_player = marine_tracker.nodes.recording_player:main',
             'tracker = marine_tracker.nodes.tracker:main',

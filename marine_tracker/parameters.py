@@ -104,6 +104,10 @@ class TrackerParameters:
     bearing_sigma_deg: float = parameter(
         0.5, 'Standard deviation of a measured bearing.', unit='deg', low=0.01, high=10.0,
         live=True)
+    glint_sigma_m: float = parameter(
+        0.0, 'Standard deviation of the point of a target that echoes, about its middle, along '
+        'each axis: some 0.15 of the length of large ships.', unit='m', low=0.0, high=100.0,
+        live=True)
     max_target_speed_mps: float = parameter(
         25.0, 'Fastest target over ground that initiation accepts.', unit='m/s', low=0.5,
         high=100.0, live=True)
@@ -159,6 +163,66 @@ class TrackerParameters:
 
 
 @dataclass(frozen=True)
+class ArpaParameters:
+    """What the tracker node makes of the tracks: targets, their approach, alarms."""
+
+    cpa_limit_nm: float = parameter(
+        0.5, 'A target is dangerous when its CPA is below this ...', unit='NM', low=0.01,
+        high=20.0, live=True)
+    tcpa_limit_min: float = parameter(
+        12.0, '... and comes within this time. The same for all targets.', unit='min', low=0.1,
+        high=120.0, live=True)
+    acquisition: str = parameter(
+        'everywhere', 'Where confirmed tracks become targets by themselves: everywhere, in guard '
+        'zones, or nowhere (then by `acquire` only).', choices=('everywhere', 'zones', 'nowhere'),
+        live=True)
+    zones: str = parameter(
+        '', 'Guard and exclusion zones: a list in YAML, see doc/arpa.md; empty: none.', live=True)
+    max_targets: int = parameter(
+        200, 'Most targets; the near and dangerous ones come first.', low=1, high=10000, live=True)
+    click_radius_m: float = parameter(
+        500.0, 'How far from a clicked point its track may be.', unit='m', low=1.0, high=20000.0,
+        live=True)
+    click_wait_s: float = parameter(
+        20.0, 'How long a click waits for a track to appear there.', unit='s', low=0.0,
+        high=600.0, live=True)
+    past_positions: int = parameter(
+        8, 'Past positions of each target that are shown.', low=4, high=100)
+    past_interval_s: float = parameter(
+        30.0, 'Time between two past positions.', unit='s', low=1.0, high=3600.0)
+    vector_time_min: float = parameter(
+        6.0, 'Length of the vectors on `markers`.', unit='min', low=0.1, high=120.0, live=True)
+    vectors: str = parameter(
+        'true', 'Vectors and past positions on `markers`: true or relative to own ship.',
+        choices=('true', 'relative'), live=True)
+    current_set_deg: float = parameter(
+        0.0, 'Where the current sets, true; with a drift above 0 courses and speeds are through '
+        'the water (sea stabilised), else over ground.', unit='deg', low=0.0, high=360.0, live=True)
+    current_drift_kn: float = parameter(
+        0.0, 'Speed of the current.', unit='kn', low=0.0, high=20.0, live=True)
+    trial_course_deg: float = parameter(
+        0.0, 'Trial manoeuvre: course of own ship, over ground.', unit='deg', low=0.0, high=360.0,
+        live=True)
+    trial_speed_kn: float = parameter(
+        10.0, 'Trial manoeuvre: speed of own ship, over ground.', unit='kn', low=0.0, high=100.0,
+        live=True)
+    trial_delay_min: float = parameter(
+        0.0, 'Trial manoeuvre: time until it begins.', unit='min', low=0.0, high=60.0, live=True)
+    trial_turn_rate_deg_min: float = parameter(
+        30.0, 'Trial manoeuvre: how fast own ship turns.', unit='deg/min', low=1.0, high=3600.0,
+        live=True)
+    trial_acceleration_mps2: float = parameter(
+        0.02, 'Trial manoeuvre: how fast own ship gains or loses speed.', unit='m/s^2', low=0.001,
+        high=10.0, live=True)
+    sensor_timeout_s: float = parameter(
+        10.0, 'An alarm tells when heading, position or plots are missing for so long.', unit='s',
+        low=0.5, high=600.0, live=True)
+
+    def __post_init__(self):
+        check(self)
+
+
+@dataclass(frozen=True)
 class RadarSimulatorParameters:
     """The radar simulator node's parameters; what the radar is stands in the scenario file."""
 
@@ -188,8 +252,38 @@ class RecordingPlayerParameters:
         check(self)
 
 
+@dataclass(frozen=True)
+class NmeaOutputParameters:
+    """The NMEA output node's parameters."""
+
+    sentences: str = parameter(
+        'RMC HDT OSD TTM', 'Sentences to send, of RMC, HDT, OSD, RSD, TTM, TLL. OpenCPN wants no '
+        'TLL beside TTM: it would reckon course and speed anew from it.')
+    udp: str = parameter(
+        '127.0.0.1:10110', 'Where each sentence is sent as a datagram: host:port, several '
+        'separated by blanks, broadcast addresses too. Empty: nowhere.')
+    tcp: str = parameter(
+        '', 'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks. Empty: no server.')
+    signalk_udp: str = parameter(
+        '', 'Where Signal K deltas are sent as datagrams, as for udp. Empty: nowhere.')
+    talker: str = parameter('RA', 'Talker of OSD, RSD, TTM and TLL.')
+    own_ship_talker: str = parameter('II', 'Talker of RMC and HDT.')
+    own_ship_period_s: float = parameter(
+        1.0, 'RMC and HDT come with every scan, and at least this often.', unit='s', low=0.1,
+        high=60.0)
+    range_scale_nm: float = parameter(
+        6.0, 'Range scale that RSD tells.', unit='NM', low=0.125, high=120.0)
+    origin: str = parameter(
+        '', 'Latitude and longitude in degrees of the origin of `map`, as "54.1 10.9". Empty: own '
+        'ship is where own_ship/fix says.')
+
+    def __post_init__(self):
+        check(self)
+
+
 NODES: dict[str, tuple[type, ...]] = {
-    'tracker': (TrackerParameters,),
+    'tracker': (TrackerParameters, ArpaParameters),
     'radar_simulator': (RadarSimulatorParameters,),
     'recording_player': (RecordingPlayerParameters,),
+    'nmea_output': (NmeaOutputParameters,),
 }

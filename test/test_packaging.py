@@ -23,6 +23,7 @@ ROSDEP_KEY = {
     'hypothesis': 'python3-hypothesis',
     'numpy': 'python3-numpy',
     'psutil': 'python3-psutil',
+    'pynmea2': 'python3-pynmea2',
     'pytest': 'python3-pytest',
     'pytest-timeout': 'python3-pytest-timeout',
     'PyWavelets': 'python3-pywavelets',
@@ -135,7 +136,7 @@ def test_package_is_in_the_ament_index(installed):
 
 def test_executables_stand_where_ros2_run_looks(installed, distribution):
     folder = installed / 'lib' / 'marine_tracker'
-    names = {'marine_tracker', 'radar_simulator', 'recording_player', 'tracker'}
+    names = {'marine_tracker', 'nmea_output', 'radar_simulator', 'recording_player', 'tracker'}
     assert {entry.name for entry in distribution.entry_points} == names
     assert {file.name for file in folder.iterdir() if os.access(file, os.X_OK)} == names
 

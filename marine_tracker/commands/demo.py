@@ -28,8 +28,12 @@ HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
 
 COLUMNS = (('target', 'name'), ('status', 'status'), ('range NM', 'range_nm'),
            ('bearing', 'bearing_deg'), ('course', 'course_deg'), ('speed kn', 'speed_kn'),
-           ('hits in 10', 'hits_in_10'), ('estimator', 'estimator'))
-STYLES = {'COASTING': 'yellow', 'LOST': 'red'}
+           ('CPA NM', 'cpa_nm'), ('TCPA min', 'tcpa_min'), ('hits in 10', 'hits_in_10'),
+           ('estimator', 'estimator'))
+TO_THE_LEFT = ('name', 'status', 'estimator')
+STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
+DANGEROUS = 'bold red'
+MOST_ALARMS = 8             # that are listed below the table on a terminal
 PLAIN_EVERY_S = 2.0         # between two tables where there is no terminal
 STOP_S = 5.0                # for a process to end by itself after SIGINT, then after SIGTERM
 
@@ -212,23 +216,31 @@ def _plain():
         last.update(scans=picture.scans, at=now)
         lines = [f'{_clock(picture)}  {title}  {_facts(picture)}',
                  '  '.join(f'{head:>10}' for head, _ in COLUMNS)]
-        lines += ['  '.join(f'{target[key]:>10}' for _, key in COLUMNS)
+        lines += ['  '.join([*(f'{target[key]:>10}' for _, key in COLUMNS), target['danger']])
                   for target in picture.targets]
-        print('\n'.join(lines), flush=True)
+        print('\n'.join([*lines, *picture.alarms]), flush=True)
     return show
 
 
 def _rich_table(picture, title: str, height: int):
     from rich.table import Table
-    table = Table(title=f'{title}   {_clock(picture)}', title_justify='left',
-                  caption='\n'.join((_facts(picture), *picture.warnings, 'Ctrl-C ends')),
+    from rich.text import Text
+    below = picture.alarms[:MOST_ALARMS]
+    if len(picture.alarms) > MOST_ALARMS:
+        below += (f'and {len(picture.alarms) - MOST_ALARMS} more alarms',)
+    caption = Text('\n').join([*(Text(line, DANGEROUS) for line in below), Text(_facts(picture)),
+                               *map(Text, picture.warnings), Text('Ctrl-C ends')])
+    table = Table(title=f'{title}   {_clock(picture)}', title_justify='left', caption=caption,
                   caption_justify='left')
     for head, key in COLUMNS:
-        table.add_column(head, justify='left' if key in ('name', 'status', 'estimator')
-                         else 'right')
-    room = max(height - 8 - len(picture.warnings), 1)
-    for target in picture.targets[:room]:
-        table.add_row(*(target[key] for _, key in COLUMNS), style=STYLES.get(target['status']))
+        table.add_column(head, justify='left' if key in TO_THE_LEFT else 'right')
+    room = max(height - 8 - len(below) - len(picture.warnings), 1)
+    # Where not all find room, the dangerous ones do.
+    shown = picture.targets if len(picture.targets) <= room else sorted(
+        picture.targets, key=lambda target: not target['danger'])[:room]
+    for target in shown:
+        table.add_row(*(target[key] for _, key in COLUMNS),
+                      style=DANGEROUS if target['danger'] else STYLES.get(target['status']))
     if len(picture.targets) > room:
         table.add_row(f'and {len(picture.targets) - room} more')
     return table

@@ -23,13 +23,13 @@ PYTHON = (3, 11)
 START_S = 20.0      # for a middleware to start and stop, on a slow machine
 # Names to import, and the packages they come in.
 REQUIRED = {'numpy': 'numpy', 'scipy': 'scipy', 'pywt': 'PyWavelets', 'yaml': 'PyYAML',
-            'rich': 'rich'}
+            'rich': 'rich', 'pynmea2': 'pynmea2'}
 OPTIONAL = {'matplotlib': ('matplotlib', 'to draw plots'),
             'stonesoup': ('stonesoup', 'bench compares with it')}
 SHIPPED = ('tracker.yaml', 'scenarios', 'fastdds_local.xml')
 PROFILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
 MESSAGES = ('builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs', 'nav_msgs', 'rosgraph_msgs',
-            'sensor_msgs', 'std_msgs', 'visualization_msgs')
+            'sensor_msgs', 'std_msgs', 'std_srvs', 'visualization_msgs')
 INSTALL_ROS = ("in the source folder: pip install '.[ros]'; or where ROS 2 is installed: source "
                '/opt/ros/jazzy/setup.bash (only demo and the nodes need it)')
 # Who to start where nobody publishes a topic, by the end of its name.

@@ -1,5 +1,7 @@
 """How the node fares, for /diagnostics: counters with names, and statuses from them."""
 
+import functools
+import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -11,6 +13,7 @@ from .convert import header
 
 OK, WARN, ERROR, STALE = (DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR,
                           DiagnosticStatus.STALE)
+FAILED = 'callbacks failed'
 FRESH_S = 10.0      # a fault counts as present for so long after it was last seen
 
 
@@ -35,6 +38,34 @@ class Tally:
     def fresh(self, wall: float) -> list[str]:
         """The reasons seen lately."""
         return [reason for reason, last in self._last.items() if wall - last < FRESH_S]
+
+
+def guarded(callback):
+    """A method as callback: no exception leaves it; it is counted in `self.failures`, and told
+    once for each kind."""
+    @functools.wraps(callback)
+    def run_guarded(self, *arguments):
+        try:
+            callback(self, *arguments)
+        except Exception as error:
+            self.failures.add(f'{FAILED}: {type(error).__name__} in {callback.__name__}',
+                              time.monotonic(), detail=str(error))
+    return run_guarded
+
+
+def answered(callback):
+    """A method that returns what to answer, as callback of a service: `guarded` likewise."""
+    @functools.wraps(callback)
+    def run_answered(self, request, response):
+        try:
+            response.message = callback(self, request)
+            response.success = True
+        except Exception as error:
+            self.failures.add(f'{FAILED}: {type(error).__name__} in {callback.__name__}',
+                              time.monotonic(), detail=str(error))
+            response.success, response.message = False, str(error)
+        return response
+    return run_answered
 
 
 class Durations:

@@ -4,63 +4,74 @@ A few LINE_LIST and POINTS markers hold all targets: thousands of single markers
 than the tracking. Only the labels are one marker each; a lost target's label is deleted.
 """
 
-from collections import deque
-
 import numpy as np
 from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
+from ..arpa import past_positions
+from ..arpa.arpa import Picture
+from ..arpa.own_motion import vectors
+from ..arpa.rows import row_of
+from ..arpa.zone_outlines import outlines
+from ..arpa.zones import Zones
+from ..parameters import ArpaParameters
 from ..tracking.lifecycle import LOST
 from .convert import header
-from .view import View, names
+from .view import View
 
 SYMBOL_M = 60.0             # radius of a target's circle
-VECTOR_S = 360.0            # 6 minutes ahead
-PAST_DOTS, PAST_EVERY_S = 8, 30.0
 ELLIPSE_SIGMA = 2.0
 CORNERS = np.linspace(0, 2 * np.pi, 17)
-GREEN, GREY, WHITE = (0.2, 0.9, 0.3), (0.5, 0.6, 0.5), (0.9, 0.9, 0.9)
+GREEN, RED, GREY, WHITE = (0.2, 0.9, 0.3), (1.0, 0.2, 0.2), (0.5, 0.6, 0.5), (0.9, 0.9, 0.9)
+AMBER, MAGENTA = (1.0, 0.7, 0.1), (0.8, 0.3, 0.8)
 
 
 class MarkersWriter:
-    """Builds the message; remembers past positions and which labels are shown."""
+    """Builds the message; remembers which labels are shown."""
 
     def __init__(self):
-        self._past: deque[tuple[float, np.ndarray, np.ndarray]] = deque(maxlen=PAST_DOTS)
         self._labelled: set[int] = set()
 
-    def remember(self, seen: View, time: float) -> None:
-        """Keep the positions for the past-position dots, equal in time; time in s."""
-        if not self._past or abs(time - self._past[-1][0]) >= PAST_EVERY_S:
-            self._past.append((time, seen.number, seen.estimate.position))
-
-    def message(self, seen: View, time_ns: int) -> MarkerArray:
-        """All targets of a view."""
-        alive = seen.status != LOST
-        number, position = seen.number[alive], seen.estimate.position[alive]
-        velocity = seen.estimate.velocity[alive]
-        covariance = seen.estimate.covariance[alive, :2, :2]
+    def message(self, seen: View, picture: Picture, zones: Zones, parameters: ArpaParameters,
+                time_ns: int) -> MarkerArray:
+        """All targets of a view: dangerous ones red, acquired ones that have no number yet grey."""
+        alive = (seen.status != LOST) & np.isfinite(seen.motion.position).all(1)
+        ids, position = seen.id[alive], seen.motion.position[alive]
+        covariance = seen.motion.covariance[alive, :2, :2]
+        relative = parameters.vectors == 'relative'
+        ends = vectors(seen.motion, picture.own, 60 * parameters.vector_time_min, relative)[alive]
+        arrows = np.stack([position, ends], 1)
         circle = np.stack([np.cos(CORNERS), np.sin(CORNERS)], -1)
+        symbols = _outline(position[:, None] + SYMBOL_M * circle)
         # A covariance's Cholesky factor turns the unit circle into its ellipse.
         ellipse = ELLIPSE_SIGMA * np.einsum('nij,cj->nci', np.linalg.cholesky(covariance), circle)
-        past = [of[np.isin(numbers, number)] for _, numbers, of in self._past]
+        past = picture.past
+        dots = (past_positions.relative(past) + picture.own.position if relative
+                else past.position)[row_of(past.id, ids)].reshape(-1, 2)
+        red, number = seen.dangerous[alive], seen.number[alive]
         markers = [
-            _marker('symbols', Marker.LINE_LIST, 6.0, GREEN,
-                    _outline(position[:, None] + SYMBOL_M * circle)),
-            _marker('vectors', Marker.LINE_LIST, 6.0, GREEN,
-                    np.stack([position, position + VECTOR_S * velocity], 1)),
-            _marker('past_positions', Marker.POINTS, 25.0, GREY,
-                    np.concatenate(past) if past else np.empty((0, 2))),
+            _marker('symbols', Marker.LINE_LIST, 6.0, GREEN, symbols[~red]),
+            _marker('dangerous', Marker.LINE_LIST, 10.0, RED,
+                    np.concatenate([symbols[red].reshape(-1, 2), arrows[red].reshape(-1, 2)])),
+            _marker('vectors', Marker.LINE_LIST, 6.0, GREEN, arrows[~red]),
+            _marker('past_positions', Marker.POINTS, 25.0, GREY, dots[np.isfinite(dots[:, 0])]),
             _marker('ellipses', Marker.LINE_LIST, 3.0, GREY,
                     _outline(position[:, None] + ellipse)),
         ]
-        for n, name, (x, y) in zip(number.tolist(), names(number), position.tolist()):
-            label = _marker('labels', Marker.TEXT_VIEW_FACING, 120.0, WHITE, np.empty((0, 2)), n)
-            label.text = name
-            label.pose.position.x, label.pose.position.y = x + 2 * SYMBOL_M, y + 2 * SYMBOL_M
-            markers.append(label)
-        shown = set(number.tolist())
+        for guard, color in ((True, AMBER), (False, MAGENTA)):
+            markers.append(_marker(
+                'guard_zones' if guard else 'exclusion_zones', Marker.LINE_LIST, 5.0, color,
+                outlines(zones, guard, picture.own.position, picture.own.heading)))
+        names = [name for name, lives in zip(seen.name, alive.tolist()) if lives]
+        for n, name, red_, (x, y) in zip(number.tolist(), names, red.tolist(), position.tolist()):
+            if n:
+                label = _marker('labels', Marker.TEXT_VIEW_FACING, 120.0, RED if red_ else WHITE,
+                                np.empty((0, 2)), n)
+                label.text = name
+                label.pose.position.x, label.pose.position.y = x + 2 * SYMBOL_M, y + 2 * SYMBOL_M
+                markers.append(label)
+        shown = set(number.tolist()) - {0}
         markers += [Marker(ns='labels', id=n, action=Marker.DELETE)
                     for n in sorted(self._labelled - shown)]
         self._labelled = shown
@@ -71,8 +82,9 @@ class MarkersWriter:
 
 
 def _outline(corners):
-    """Line-list points [N * 2 (C - 1), 2] of polygons with corners [N, C, 2]."""
-    return np.stack([corners[:, :-1], corners[:, 1:]], 2).reshape(-1, 2)
+    """Line-list points [N, 2 (C - 1), 2] of polygons with corners [N, C, 2]."""
+    count, corner, _ = corners.shape
+    return np.stack([corners[:, :-1], corners[:, 1:]], 2).reshape(count, 2 * (corner - 1), 2)
 
 
 def _marker(namespace: str, kind: int, size: float, color, points, number: int = 0) -> Marker:

@@ -5,17 +5,30 @@ import math
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from ..arpa.motion import MEMORY_NAMES
+from ..arpa.targets import LETTERS
 from ..geometry import KNOT, NAUTICAL_MILE
-from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, REASONS
+from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, REASONS, TENTATIVE
 from .convert import time_message
-from .diagnostics import OK, STALE, WARN
-from .view import View, names
+from .diagnostics import ERROR, OK, STALE, WARN
+from .view import View
 
-COLUMNS = ('range_nm', 'bearing_deg', 'course_deg', 'speed_kn', 'position_sd_m', 'course_sd_deg',
-           'speed_sd_kn', 'estimator', 'estimator_state', 'rho', 'j', 'j_fallback',
-           'fallback_reason', 'hits_in_10', 'age_min', 'reason')
-LEVEL = {CONFIRMED: OK, COASTING: WARN, LOST: STALE}
-MESSAGE = {CONFIRMED: 'TRACKING', COASTING: 'COASTING', LOST: 'LOST'}
+# Values with a standard deviation: key, field of arpa.cpa.Approach, unit, digits.
+DEGREE = math.radians(1)
+MEASURED = (
+    ('range', 'nm', 'range', NAUTICAL_MILE, 3), ('bearing', 'deg', 'bearing', DEGREE, 1),
+    ('course', 'deg', 'course', DEGREE, 1), ('speed', 'kn', 'speed', KNOT, 1),
+    ('relative_course', 'deg', 'relative_course', DEGREE, 1),
+    ('relative_speed', 'kn', 'relative_speed', KNOT, 1),
+    ('cpa', 'nm', 'cpa', NAUTICAL_MILE, 3), ('tcpa', 'min', 'tcpa', 60.0, 1),
+    ('bow_range', 'nm', 'bow_range', NAUTICAL_MILE, 2), ('bow_time', 'min', 'bow_time', 60.0, 1))
+COLUMNS = (*(f'{key}_{unit}' for key, unit, *_ in MEASURED), 'danger_probability', 'motion',
+           'motion_since_min', 'acquired', 'swap_risk', 'stabilised', 'position_sd_m',
+           *(f'{key}_sd_{unit}' for key, unit, *_ in MEASURED),
+           'estimator', 'estimator_state', 'rho', 'j', 'j_fallback', 'fallback_reason',
+           'hits_in_10', 'age_min', 'reason')
+LEVEL = {TENTATIVE: OK, CONFIRMED: OK, COASTING: WARN, LOST: STALE}
+MESSAGE = {TENTATIVE: 'ACQUIRING', CONFIRMED: 'TRACKING', COASTING: 'COASTING', LOST: 'LOST'}
 
 
 class TargetsWriter:
@@ -25,17 +38,22 @@ class TargetsWriter:
         self._hardware_id = hardware_id
         self._entries: list[DiagnosticStatus] = []
 
-    def message(self, seen: View, estimator: str, time_ns: int) -> DiagnosticArray:
-        """The targets of a view; valid until the next call."""
-        rows = table(seen, estimator)
+    def message(self, seen: View, estimator: str, stabilised: str, time: float, time_ns: int
+                ) -> DiagnosticArray:
+        """The targets of a view at `time` s, stamped time_ns; valid until the next call."""
+        rows = table(seen, estimator, stabilised, time)
         while len(self._entries) < len(rows):
             self._entries.append(DiagnosticStatus(
                 hardware_id=self._hardware_id, values=[KeyValue(key=key) for key in COLUMNS]))
-        for entry, name, status, fallen, row in zip(
-                self._entries, names(seen.number), seen.status.tolist(),
+        for entry, name, status, dangerous, fallen, row in zip(
+                self._entries, seen.name, seen.status.tolist(), seen.dangerous.tolist(),
                 seen.account.reason.tolist(), rows):
             entry.name, entry.message = name, MESSAGE[status]
-            entry.level = WARN if fallen and status == CONFIRMED else LEVEL[status]
+            entry.level = LEVEL[status]
+            if status != LOST and dangerous:
+                entry.level = ERROR
+            elif status == CONFIRMED and fallen:
+                entry.level = WARN
             for pair, text in zip(entry.values, row):
                 pair.value = text
         message = DiagnosticArray(status=self._entries[:len(rows)])
@@ -43,40 +61,51 @@ class TargetsWriter:
         return message
 
 
-def table(seen: View, estimator: str) -> list[tuple[str, ...]]:
+def table(seen: View, estimator: str, stabilised: str, time: float) -> list[tuple[str, ...]]:
     """One row of texts for each target, in the order of COLUMNS."""
-    covariance = seen.estimate.covariance
-    position_sd = np.sqrt(np.trace(covariance[:, :2, :2], axis1=1, axis2=2))
-    sin, cos = np.sin(seen.course), np.cos(seen.course)
-    xx, xy, yy = covariance[:, 2, 2], covariance[:, 2, 3], covariance[:, 3, 3]
-    along = xx * sin ** 2 + yy * cos ** 2 + 2 * xy * sin * cos
-    across = xx * cos ** 2 + yy * sin ** 2 - 2 * xy * sin * cos
-    course_sd = np.minimum(np.degrees(np.sqrt(across) / np.maximum(seen.speed, 1e-3)), 180.0)
-    numbers = np.column_stack([
-        seen.range / NAUTICAL_MILE, np.degrees(seen.bearing), np.degrees(seen.course),
-        seen.speed / KNOT, position_sd, course_sd, np.sqrt(along) / KNOT, seen.hits,
-        seen.age / 60, seen.misses, seen.status, seen.reason]).tolist()
-    account = seen.account
-    states, reasons = account.states, account.reasons
-    told = [(estimator, states[state], *map(_figure, judged), reasons[reason])
-            for state, reason, *judged in zip(
-                account.state.tolist(), account.reason.tolist(), account.rho.tolist(),
-                account.j.tolist(), account.j_fallback.tolist())]
-    return [(f'{range_nm:.2f}', degrees(bearing), degrees(course), f'{speed:.1f}', f'{sd:.0f}',
-             f'{course_sd:.0f}', f'{speed_sd:.1f}', *words, f'{hits:.0f}', f'{age:.1f}',
-             _reason(int(status), int(reason), int(misses)))
-            for words, (range_nm, bearing, course, speed, sd, course_sd, speed_sd, hits, age,
-                        misses, status, reason) in zip(told, numbers)]
+    motion, account = seen.motion, seen.account
+    # Who lies still has no course.
+    approach = seen.approach._replace(**{
+        name: np.where(seen.approach.speed == 0, np.nan, getattr(seen.approach, name))
+        for name in ('course', 'course_sigma')})
+    values, deviations = [], []
+    for _, unit, field, size, digits in MEASURED:
+        numbers = (getattr(approach, field) / size).tolist()
+        angle = unit == 'deg'
+        values.append([degrees(number) if angle else figure(number, digits)
+                       for number in numbers])
+        deviations.append([figure(number, digits) for number in (
+            getattr(approach, field + '_sigma') / size).tolist()])
+    rest = np.where(motion.stationary, 2, motion.memory).tolist()
+    words = (*MEMORY_NAMES, 'at rest')
+    position_sd = np.sqrt(np.trace(motion.covariance[:, :2, :2], axis1=1, axis2=2))
+    columns = [
+        *values, [figure(number, 2) for number in approach.danger_probability.tolist()],
+        [words[which] for which in rest],
+        [figure(number, 1) for number in ((time - motion.since) / 60).tolist()],
+        [LETTERS[how] for how in seen.acquired.tolist()],
+        ['yes' if risk else '' for risk in seen.swap_risk.tolist()],
+        [stabilised] * len(rest),
+        [figure(number, 0) for number in position_sd.tolist()], *deviations,
+        [estimator] * len(rest), [account.states[state] for state in account.state.tolist()],
+        *([figure(number, 2) for number in of.tolist()] for of in (
+            account.rho, account.j, account.j_fallback)),
+        [account.reasons[reason] for reason in account.reason.tolist()],
+        [str(count) for count in seen.hits.tolist()],
+        [figure(number, 1) for number in (seen.age / 60).tolist()],
+        [_reason(*row) for row in zip(seen.status.tolist(), seen.reason.tolist(),
+                                      seen.misses.tolist())]]
+    return list(zip(*columns))
 
 
 def degrees(angle: float) -> str:
-    """000.0 to 359.9, as seamen write it."""
-    return f'{round(angle, 1) % 360:05.1f}'
+    """000.0 to 359.9, as seamen write it; nothing where there is none."""
+    return f'{round(angle, 1) % 360:05.1f}' if math.isfinite(angle) else ''
 
 
-def _figure(value: float) -> str:
-    """Two decimals; nothing where there is no figure."""
-    return f'{value:.2f}' if math.isfinite(value) else ''
+def figure(value: float, digits: int) -> str:
+    """So many decimals; nothing where there is no figure."""
+    return f'{value:.{digits}f}' if math.isfinite(value) else ''
 
 
 def _reason(status: int, reason: int, misses: int) -> str:

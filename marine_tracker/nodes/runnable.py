@@ -1,8 +1,9 @@
 """What every node of this package is."""
 
-from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
+from rclpy.subscription import Subscription
 
 
 class RunnableNode(Node):
@@ -25,3 +26,9 @@ class RunnableNode(Node):
         return self.create_publisher(
             kind, topic, quality,
             event_callbacks=PublisherEventCallbacks(use_default_callbacks=False))
+
+    def subscription(self, kind, topic: str, callback, quality) -> Subscription:
+        """A subscription without event handlers, for the same reason."""
+        return self.create_subscription(
+            kind, topic, callback, quality,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False))

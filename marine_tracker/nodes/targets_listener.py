@@ -1,4 +1,4 @@
-"""Listens to `targets` for those who show them: what came last, as plain Python values."""
+"""Listens to `targets` and `alarms` for those who show them: what came last, as plain values."""
 
 import math
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from sensor_msgs.msg import PointCloud2
 from ..geometry import KNOT
 from . import topics
 from .convert import nanoseconds, odometry_to_own_ship
-from .diagnostics import OK
+from .diagnostics import ERROR, OK
 from .readable import degrees
 
 
@@ -23,7 +23,9 @@ class Picture(NamedTuple):
 
     scans     messages on `targets` so far
     time      s, stamp of the last one
-    targets   one mapping a target: name, status, and the values of `targets`
+    targets   one mapping a target: name, status, danger (DANGER or nothing), and the values of
+              `targets`
+    alarms    what is the matter and whether it is acknowledged, one line an alarm
     plots     plots in the last revolution
     own_ship  course and speed, in words
     warnings  what /diagnostics says is not in order
@@ -32,6 +34,7 @@ class Picture(NamedTuple):
     scans: int = 0
     time: float = 0.0
     targets: tuple[dict[str, str], ...] = ()
+    alarms: tuple[str, ...] = ()
     plots: int = 0
     own_ship: str = 'not heard'
     warnings: tuple[str, ...] = ()
@@ -49,6 +52,7 @@ class TargetsListener:
         self._executor.add_node(self._node)
         for kind, topic, callback, quality in (
                 (DiagnosticArray, topics.TARGETS, self._on_targets, topics.latched()),
+                (DiagnosticArray, topics.ALARMS, self._on_alarms, topics.latched()),
                 (PointCloud2, topics.PLOTS, self._on_plots, topics.best_effort(1)),
                 (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort(1)),
                 (DiagnosticArray, topics.DIAGNOSTICS, self._on_diagnostics, topics.reliable())):
@@ -67,10 +71,17 @@ class TargetsListener:
     def _on_targets(self, message: DiagnosticArray) -> None:
         targets = tuple(
             {'name': entry.name, 'status': entry.message,
+             'danger': 'DANGER' if entry.level == ERROR else '',
              **{pair.key: pair.value for pair in entry.values}} for entry in message.status)
         self.picture = self.picture._replace(
             scans=self.picture.scans + 1, time=nanoseconds(message.header.stamp) * 1e-9,
             targets=targets)
+
+    def _on_alarms(self, message: DiagnosticArray) -> None:
+        about = [(entry.name, next(pair.value for pair in entry.values if pair.key == 'state'))
+                 for entry in message.status if entry.level != OK]
+        self.picture = self.picture._replace(
+            alarms=tuple(f'{name}, {state}' for name, state in about))
 
     def _on_plots(self, message: PointCloud2) -> None:
         self.picture = self.picture._replace(plots=message.width * message.height)

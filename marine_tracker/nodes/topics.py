@@ -15,7 +15,18 @@ EXTRAPOLATIONS = 'extrapolations'
 TRACKS_CLOUD = 'tracks_cloud'
 TARGETS = 'targets'
 MARKERS = 'markers'
+NMEA = 'nmea'
+ALARMS = 'alarms'
+TRIAL = 'trial'
+ACQUIRE = 'acquire'
+CLICKED_POINT = 'clicked_point'
+CANCEL = 'cancel'
+ACKNOWLEDGE_TARGET = 'acknowledge_target'
 DIAGNOSTICS = '/diagnostics'
+
+CANCEL_ALL = 'cancel_all'               # services
+ACKNOWLEDGE = 'acknowledge'
+TRIAL_MANOEUVRE = 'trial_manoeuvre'
 
 BURST = 400                     # messages published at once, one for each track or target
 

@@ -4,12 +4,11 @@ What comes in is screened (tracking/intake.py): what is bad is rejected, counted
 on /diagnostics and logged once; the tracks live on. See there for how jumps of the clock and of
 own ship are taken. No exception leaves a callback.
 
-`tracks`, `extrapolations`, `targets` and `markers` show confirmed and coasting targets; a lost one
-stands once more in `targets`, as STALE. `tracks_cloud` has all tracks with their status. In
-`tracks` each target is stamped with the time the beam passed it.
+`tracks` and `extrapolations` show confirmed and coasting tracks, `tracks_cloud` all with their
+status. In `tracks` each is stamped with the time the beam passed it. `targets` and `markers` show
+those that were acquired (arpa_desk.py); a lost one stands once more in `targets`, as STALE.
 """
 
-import functools
 import time
 from collections import deque
 
@@ -21,36 +20,25 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import MarkerArray
 
-from ..geometry import own_ship_at, wrap_bearing
-from ..parameters import TrackerParameters
+from ..arpa.arpa import Arpa
+from ..geometry import wrap_bearing
+from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking import intake
 from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, TENTATIVE
 from ..tracking.tracker import Report, Tracker
 from ..types import Extrapolation, Scan, take
 from . import convert, diagnostics, topics
+from .arpa_desk import ArpaDesk
 from .convert import ConversionError, OdometryPool
 from .declare import declare, follow
-from .diagnostics import OK, WARN, Durations, Tally
+from .diagnostics import FAILED, OK, WARN, Durations, Tally, guarded
 from .markers import MarkersWriter
 from .readable import TargetsWriter
 from .runnable import RunnableNode
 from .view import Standing, standing, view
 
 MISSED = 'revolutions missed'
-FAILED = 'callbacks failed'
 SILENT_S = 5.0              # s of the wall, and three scans, without plots: the radar is silent
-
-
-def guarded(callback):
-    """No exception leaves the callback: it is counted, and told once for each kind."""
-    @functools.wraps(callback)
-    def run_guarded(self, *arguments):
-        try:
-            callback(self, *arguments)
-        except Exception as error:
-            self.failures.add(f'{FAILED}: {type(error).__name__} in {callback.__name__}',
-                              time.monotonic(), detail=str(error))
-    return run_guarded
 
 
 class TrackerNode(RunnableNode):
@@ -58,8 +46,7 @@ class TrackerNode(RunnableNode):
 
     def __init__(self, **node_arguments):
         super().__init__('tracker', **node_arguments)
-        parameters, = declare(self, TrackerParameters)
-        follow(self, TrackerParameters, Tracker, self._change)
+        parameters, arpa_parameters = declare(self, TrackerParameters, ArpaParameters)
         self._tracker = Tracker(parameters)
         self._memory = self._tracker.start()
         self._base_ns: int | None = None            # stamps are seconds after this
@@ -72,7 +59,7 @@ class TrackerNode(RunnableNode):
         self._heard: float | None = None            # wall time of the last plots
         self._taken = self._samples = self._plots_in_scan = 0
         self._status_count = np.zeros(4, int)
-        self._standing = Standing({}, 0, '')
+        self._standing = Standing({}, 0, '', np.zeros(0, bool))
         self._processing, self._lateness = Durations(), Durations()
         self.bad_input = Tally((*convert.CLOUD_REASONS, *intake.PLOT_REASONS,
                                 *intake.SCAN_REASONS, MISSED), self._tell)
@@ -82,6 +69,10 @@ class TrackerNode(RunnableNode):
         where = self.get_namespace().strip('/')
         self._label = f'{where}/{self.get_name()}' if where else self.get_name()
         self._hardware_id = f'{where}/radar' if where else 'radar'
+        self._desk = ArpaDesk(self, arpa_parameters, parameters, self._hardware_id, self.failures)
+        follow(self, TrackerParameters, Tracker, self._change)
+        follow(self, ArpaParameters, lambda p: Arpa(p, self._tracker.parameters),
+               lambda arpa: self._desk.change(arpa.parameters, self._tracker.parameters))
         burst = topics.reliable(topics.BURST)
         self._to_tracks = self.publisher(Odometry, topics.TRACKS, burst)
         self._to_extrapolations = self.publisher(Odometry, topics.EXTRAPOLATIONS, burst)
@@ -126,6 +117,10 @@ class TrackerNode(RunnableNode):
         self._samples += 1
         if reason:
             self.bad_own_ship.add(reason, time.monotonic(), detail=f'at {position}')
+        # A message without an orientation has a position, though no velocity that could be used.
+        placed = bool(np.isfinite(position).all()) and reason in (
+            '', intake.OWN_NOT_FINITE, intake.OWN_REBASED)
+        self._desk.hear_own_ship(placed, np.pi / 2 - convert.yaw_of(message.pose.pose.orientation))
 
     @guarded
     def _on_plots(self, message: PointCloud2) -> None:
@@ -176,6 +171,7 @@ class TrackerNode(RunnableNode):
         """Live parameters were changed: another tracker takes the tracks over."""
         self._memory = tracker.adopt(self._memory, self._tracker)
         self._tracker = tracker
+        self._desk.change(self._desk.arpa.parameters, tracker.parameters)
         self.get_logger().info(f'parameters changed; estimator {tracker.parameters.estimator}')
 
     @property
@@ -205,26 +201,24 @@ class TrackerNode(RunnableNode):
         estimate = tracker.extrapolate(tracks, report.time)
         if listeners[2]:            # one message, so first
             self._to_cloud.publish(self._cloud(scan, report, estimate))
-        targets = np.flatnonzero(tracks.number > 0)
-        targets = targets[np.argsort(tracks.number[targets])]
-        alive = targets[tracks.status[targets] != LOST]
+        numbered = np.flatnonzero(tracks.number > 0)
+        numbered = numbered[np.argsort(tracks.number[numbered])]
+        alive = numbered[tracks.status[numbered] != LOST]
         frames = [f'track_{n:02d}' for n in tracks.number[alive].tolist()]
         if listeners[0]:
             self._publish_each(self._to_tracks, frames, take(estimate, alive))
         if listeners[1]:
             self._publish_each(self._to_extrapolations, frames, tracker.extrapolate(
                 take(tracks, alive), report.time[alive] + self.period))
-        own_position, _ = own_ship_at(scan.own_ship, scan.end)
-        shown = take(tracks, targets)
-        seen = view(shown, report.reason[targets], tracker.extrapolate(shown, scan.end),
-                    own_position, tracker.parameters.estimator)
-        self._standing = standing(seen)
-        end_ns = int(self._stamps(scan.end))
-        self._to_targets.publish(
-            self._targets.message(seen, tracker.parameters.estimator, end_ns))
-        self._markers.remember(seen, scan.end)
+        end_ns, name = int(self._stamps(scan.end)), tracker.parameters.estimator
+        self._standing = standing(report, name)
+        picture = self._desk.step(scan, report, self._standing.fallen_at, end_ns)
+        seen, arpa = view(picture, report, name), self._desk.arpa
+        self._to_targets.publish(self._targets.message(
+            seen, name, arpa.stabilised, scan.end, end_ns))
         if listeners[3]:
-            self._to_markers.publish(self._markers.message(seen, end_ns))
+            self._to_markers.publish(self._markers.message(
+                seen, picture, arpa.zones, arpa.parameters, end_ns))
 
     def _publish_each(self, publisher, frames, estimate: Extrapolation) -> None:
         for message in self._pool.fill(self._stamps(estimate.time), frames, estimate.position,
@@ -262,6 +256,7 @@ class TrackerNode(RunnableNode):
             self._mismatched.discard(topic)
             self.get_logger().info(f'{topic} is published best effort: taken so')
         wall, now = time.monotonic(), self.get_clock().now().nanoseconds
+        self._desk.watch()
         self._to_diagnostics.publish(diagnostics.array(
             now, [self._input_status(wall, now), self._tracking_status(wall),
                   self._own_ship_status(wall)]))
@@ -289,7 +284,7 @@ class TrackerNode(RunnableNode):
             worries.append(f'a scan takes up to {slow:.2f} s of {self.period:.2f} s')
         elif self._lateness.percentile(50) > self.period:
             worries.append('plots come more than a revolution late')
-        confirmed, (states, fallen, reason) = self._status_count[CONFIRMED], self._standing
+        confirmed, (states, fallen, reason, _) = self._status_count[CONFIRMED], self._standing
         if fallen > 0.5 * confirmed:
             worries.append(f'{fallen} of {confirmed} targets have fallen back: {reason}')
         if worries:
@@ -309,6 +304,7 @@ class TrackerNode(RunnableNode):
             'processing_p99_ms': f'{1e3 * slow:.1f}',
             'lateness_p50_ms': f'{1e3 * self._lateness.percentile(50):.1f}',
             'lateness_p99_ms': f'{1e3 * self._lateness.percentile(99):.1f}',
+            **self._desk.refused.counts,
             FAILED: sum(self.failures.counts.values()), **self.failures.counts}
         return self._status('tracking', level, message, values)
 

@@ -52,6 +52,16 @@ def test_targets_show_and_ctrl_c_ends_it_all(demo, node_helpers):
     assert 'Traceback' not in process.said
 
 
+def test_dangers_are_marked_and_listed_below(demo):
+    process = demo('--scenario', 'encounters', '--rate', '25')
+    assert process.says('TT02: danger, active unacknowledged'), process.said
+    process.stop(signal.SIGINT)
+    lines = process.said.splitlines()
+    heads = next(line for line in lines if line.split()[:1] == ['target'])
+    assert 'CPA NM    TCPA min' in heads
+    assert [line for line in lines if line.split()[:1] == ['TT02'] and line.endswith('DANGER')]
+
+
 def test_a_recording_is_shown_with_the_parameters_of_its_radar(demo, node_helpers, recordings):
     wait, _ = node_helpers
     process = demo('--recording', str(recordings / 'autosea_joyride'), '--rate', '25',

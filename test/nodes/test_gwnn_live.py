@@ -1,6 +1,8 @@
 """The estimator `gwnn` in a running tracker, over DDS: what it says of itself, and weights that
 go bad and good again."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -36,7 +38,8 @@ class Watch:
     def __init__(self, graph, launch, node_helpers, scans, **parameters):
         self.wait, listener = node_helpers
         self.scans = iter(scans)
-        given = {**scenario.load('clean').tracker_parameters(), **parameters}
+        # Dangers have a level of their own, which would hide that of a fallback.
+        given = {**scenario.load('clean').tracker_parameters(), 'cpa_limit_nm': 0.01, **parameters}
         self.process = launch('nodes.tracker', '--ros-args', *(
             word for name, value in given.items()
             for word in ('-p', f'{name}:={float(value) if type(value) is int else value}')))
@@ -50,6 +53,7 @@ class Watch:
             (PointCloud2, topics.TRACKS_CLOUD, topics.reliable()),
             (DiagnosticArray, topics.TARGETS, topics.latched(50)),
             (MarkerArray, topics.MARKERS, topics.reliable()),
+            (DiagnosticArray, topics.ALARMS, topics.latched(10)),
             (DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()))}
         self.targets = self.ears[topics.TARGETS]
         self.wait(lambda: self.plots.get_subscription_count()
@@ -85,6 +89,14 @@ class Watch:
                          if entry.name == 'tracker: tracking')
             values = {pair.key: pair.value for pair in entry.values}
             return (entry, values) if values.get(key) == value else None
+        return self.wait(said)
+
+    def fallback_alarm(self, state):
+        """The entry `fallback` of `alarms`, once it is in this state."""
+        def said():
+            entries = self.ears[topics.ALARMS][-1].status if len(self.ears[topics.ALARMS]) else ()
+            return next((entry for entry in entries if entry.name == 'fallback' and state in (
+                pair.value for pair in entry.values)), None)
         return self.wait(said)
 
     def check_numbers(self):
@@ -175,6 +187,9 @@ def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(
     assert entry.level == DiagnosticStatus.WARN
     assert values['fallback reason'] in gwnn.REASONS[1:]
     assert f'targets have fallen back: {values["fallback reason"]}' in entry.message
+    alarm = here.fallback_alarm('active acknowledged')          # a caution
+    assert alarm.level == DiagnosticStatus.WARN
+    assert re.fullmatch(r'[3-6] of [3-6] targets have fallen back from their filter', alarm.message)
 
     assert here.set('gwnn_weights', '').successful
     again = here.play(50)
@@ -182,6 +197,7 @@ def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(
     assert states(again[-1]) == ['GWNN'] * 6
     assert {values['level'] for values in again[-1].values()} == {DiagnosticStatus.OK}
     assert here.tracking('confirmed in GWNN', '6')[1]['fallback reason'] == ''
+    here.fallback_alarm('normal')
     here.check_numbers()
     here.end()
 

@@ -1,0 +1,182 @@
+"""NMEA 0183 out: `targets` and own ship as sentences on the topic `nmea`, over UDP and TCP.
+
+Each message on `targets` gives own ship's sentences first, then one TTM a target, all for the
+moment of its stamp; between scans own ship's come by themselves. A target that was lost or has
+gone gets one last TTM as lost. Nobody who listens slowly holds anything up.
+"""
+
+import time
+import uuid
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+from rclpy.clock import Clock, ClockType
+from sensor_msgs.msg import NavSatFix
+from std_msgs.msg import String
+
+from ..arpa import nmea, signalk
+from ..arpa.nmea_targets import nothing_told, word
+from ..geometry import NAUTICAL_MILE, unit_vector
+from ..parameters import NmeaOutputParameters
+from . import diagnostics, topics
+from .convert import nanoseconds
+from .declare import declare
+from .diagnostics import OK, WARN
+from .nmea_output_input import OwnShipInput, read_origin, read_targets
+from .nmea_output_links import Clients, Datagrams
+from .runnable import RunnableNode
+
+SENTENCES = ('RMC', 'HDT', 'OSD', 'RSD', 'TTM', 'TLL')
+SILENT_S = 10.0             # s of the wall without own ship or targets: they count as missing
+SERVE_S = 0.2               # s between two looks for new TCP clients
+BAD_ODOMETRY, BAD_FIX = 'own-ship messages not finite', 'fixes without a position'
+NOT_SENT = 'datagrams not sent'
+
+
+class NmeaOutputNode(RunnableNode):
+    """See the module. ValueError where the parameters are wrong or a port is taken."""
+
+    def __init__(self, **node_arguments):
+        super().__init__('nmea_output', **node_arguments)
+        p, = declare(self, NmeaOutputParameters)
+        self._settings = p
+        self._wanted = p.sentences.split()
+        for kind in self._wanted:
+            if kind not in SENTENCES:
+                raise ValueError(f'parameter sentences has {kind!r}; it must be of '
+                                 f'{", ".join(SENTENCES)}')
+        for talker in (p.talker, p.own_ship_talker):
+            nmea.sentence(talker, 'HDT', ())            # ValueError for a wrong one
+        self._own = OwnShipInput(read_origin(p.origin))
+        self._udp, self._signalk = Datagrams('udp', p.udp), Datagrams('signalk_udp', p.signalk_udp)
+        self._tcp = Clients('tcp', p.tcp)
+        self._told = nothing_told()
+        self._heard = {topics.ODOMETRY: -np.inf, topics.TARGETS: -np.inf}       # s of the wall
+        self._said_own = -np.inf
+        self._last_ns: int | None = None                # stamp of the last `targets`
+        self._count = {'targets': 0, 'targets waiting for a number': 0, 'sentences': 0}
+        self._bad = diagnostics.Tally((BAD_ODOMETRY, BAD_FIX, NOT_SENT), self._tell)
+        # Targets of two radars, or of two runs of different nodes, are different vessels.
+        self._vessels = uuid.uuid5(uuid.NAMESPACE_OID, self.get_fully_qualified_name())
+
+        self._topic = self.publisher(String, topics.NMEA, topics.reliable(topics.BURST))
+        self._diagnostics = self.publisher(
+            DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
+        for kind, topic, callback, quality in (
+                (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
+                (NavSatFix, topics.FIX, self._on_fix, topics.best_effort()),
+                (DiagnosticArray, topics.TARGETS, self._on_targets, topics.latched())):
+            self.create_subscription(kind, topic, callback, quality)
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(1.0, self._on_second, clock=steady)
+        if p.tcp:
+            self.create_timer(SERVE_S, self._tcp.serve, clock=steady)
+        self.get_logger().info(f'{p.sentences} to {p.udp or "no"} UDP, {p.tcp or "no"} TCP')
+
+    def close(self) -> None:
+        """A last word on /diagnostics; the clients are let go."""
+        self._on_second()
+        for link in (self._udp, self._signalk, self._tcp):
+            link.close()
+
+    # -- in ------------------------------------------------------------------------------------
+
+    def _on_odometry(self, message: Odometry) -> None:
+        wall = time.monotonic()
+        if not self._own.hear_odometry(message):
+            self._bad.add(BAD_ODOMETRY, wall)
+            return
+        self._heard[topics.ODOMETRY] = wall
+        if wall - self._said_own >= self._settings.own_ship_period_s:
+            self._send(self._own_ship(nanoseconds(message.header.stamp)))
+
+    def _on_fix(self, message: NavSatFix) -> None:
+        if not self._own.hear_fix(message):
+            self._bad.add(BAD_FIX, time.monotonic())
+
+    def _on_targets(self, message: DiagnosticArray) -> None:
+        time_ns = nanoseconds(message.header.stamp)
+        if time_ns == self._last_ns:                    # the same once more
+            return
+        self._last_ns = time_ns
+        self._heard[topics.TARGETS] = time.monotonic()
+        self._told, now = word(self._told, read_targets(message))
+        self._count['targets'] = len(self._told.numbers)
+        self._count['targets waiting for a number'] = now.waiting
+        p, seconds = self._settings, time_ns * 1e-9
+        lines = self._own_ship(time_ns)
+        if 'OSD' in self._wanted:
+            lines.append(nmea.osd(self._own_data(time_ns), p.talker))
+        if 'RSD' in self._wanted:
+            lines.append(nmea.rsd(p.range_scale_nm * NAUTICAL_MILE, talker=p.talker))
+        if 'TTM' in self._wanted:
+            lines += nmea.ttm(now.targets, seconds, p.talker)
+        latitude, longitude = self._own.place(
+            self._own.position(time_ns)
+            + now.targets.range[:, None] * unit_vector(now.targets.bearing))
+        if 'TLL' in self._wanted:
+            lines += nmea.tll(now.targets, latitude, longitude, seconds, p.talker)
+        self._send(lines)
+        if self._signalk.destinations:
+            self._send_datagrams(self._signalk, [delta.encode() for delta in signalk.deltas(
+                now.targets, now.numbers.tolist(), latitude, longitude, seconds, self._vessels)])
+
+    # -- out -----------------------------------------------------------------------------------
+
+    def _own_data(self, time_ns: int) -> nmea.OwnShipData:
+        """Own ship at a time; nothing of her when she was not heard for long."""
+        if time.monotonic() - self._heard[topics.ODOMETRY] > SILENT_S:
+            return nmea.OwnShipData()
+        return self._own.at(time_ns)
+
+    def _own_ship(self, time_ns: int) -> list[str]:
+        """RMC and HDT; a void RMC tells that there is no position, HDT is left out then."""
+        self._said_own = time.monotonic()
+        own, talker = self._own_data(time_ns), self._settings.own_ship_talker
+        lines = []
+        if 'RMC' in self._wanted:
+            lines.append(nmea.rmc(own, time_ns * 1e-9, talker))
+        if 'HDT' in self._wanted and np.isfinite(own.heading):
+            lines.append(nmea.hdt(own, talker))
+        return lines
+
+    def _send(self, lines: list[str]) -> None:
+        self._count['sentences'] += len(lines)
+        for line in lines:
+            self._topic.publish(String(data=line))
+        data = [f'{line}\r\n'.encode('ascii') for line in lines]
+        self._send_datagrams(self._udp, data)
+        self._tcp.send(data)
+
+    def _send_datagrams(self, link: Datagrams, data: list[bytes]) -> None:
+        failed = link.send(data)
+        if failed:
+            self._bad.add(NOT_SENT, time.monotonic(), failed, link.error)
+
+    # -- how it fares --------------------------------------------------------------------------
+
+    def _tell(self, reason: str, detail: str) -> None:
+        self.get_logger().warning(f'{reason}{": " + detail if detail else ""} '
+                                  '(told once; counted on /diagnostics)')
+
+    def _on_second(self) -> None:
+        wall = time.monotonic()
+        worries = [f'nothing on {topic}: {then}' for topic, then in (
+            (topics.ODOMETRY, 'RMC void, no HDT'), (topics.TARGETS, 'no TTM'))
+            if wall - self._heard[topic] > SILENT_S]
+        if not worries and self._own.anchor is None:
+            worries.append(f'nothing on {topics.FIX} and no parameter origin: RMC void, no TLL')
+        worries += [f'lately: {reason}' for reason in self._bad.fresh(wall)]
+        if self._count['targets waiting for a number']:
+            worries.append('more than 99 targets: some are not told')
+        values = {**self._count, 'datagrams': self._udp.sent,
+                  'Signal K datagrams': self._signalk.sent, 'TCP clients': len(self._tcp),
+                  'TCP clients dropped as too slow': self._tcp.dropped, **self._bad.counts}
+        where = self.get_namespace().strip('/')
+        label = f'{where}/{self.get_name()}' if where else self.get_name()
+        self._diagnostics.publish(diagnostics.array(
+            self.get_clock().now().nanoseconds, [diagnostics.status(
+                f'{label}: output', f'{where}/radar' if where else 'radar',
+                WARN if worries else OK, '; '.join(worries) or f'{self._count["targets"]} targets',
+                values)]))

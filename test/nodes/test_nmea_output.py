@@ -1,0 +1,395 @@
+"""The NMEA output over real DDS, UDP and TCP."""
+
+import contextlib
+import json
+import signal
+import socket
+import time
+
+import numpy as np
+import pynmea2
+import pytest
+
+pytest.importorskip('rclpy')
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import NavSatFix
+from std_msgs.msg import String
+
+from marine_tracker.geometry import KNOT, unit_vector
+from marine_tracker.nodes import convert, topics
+from marine_tracker.nodes.nmea_output_links import PENDING, Clients, Datagrams, endpoints
+from marine_tracker.nodes.nmea_output_node import NmeaOutputNode
+
+OUTPUT = 'nodes.nmea_output'
+SECOND = 1_000_000_000
+NOON = 1_700_049_600 * SECOND           # 2023-11-15 12:00 UTC
+LOOPBACK = '127.0.0.1'
+
+
+def entry(title, message='TRACKING', **values):
+    shown = {'range_nm': '2.00', 'bearing_deg': '045.0', 'course_deg': '225.0', 'speed_kn': '10.0',
+             'cpa_nm': '0.10', 'tcpa_min': '12.0', 'acquired': 'A', **values}
+    return DiagnosticStatus(name=title, message=message, values=[
+        KeyValue(key=key, value=value) for key, value in shown.items()])
+
+
+class Ear:
+    """A UDP socket that hears at most so long."""
+
+    def __init__(self, patience=10.0, host=LOOPBACK):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
+        self.socket.bind((host, 0))
+        self.socket.settimeout(patience)
+        self.port = self.socket.getsockname()[1]
+
+    def hear(self, count):
+        return [self.socket.recv(4096).decode() for _ in range(count)]
+
+
+@pytest.fixture
+def ears():
+    with contextlib.ExitStack() as stack:
+        def make(**arguments):
+            ear = Ear(**arguments)
+            stack.callback(ear.socket.close)
+            return ear
+        yield make
+
+
+@pytest.fixture
+def free_port():
+    with socket.socket() as one:
+        one.bind((LOOPBACK, 0))
+        return one.getsockname()[1]
+
+
+class Rig:
+    """The node, and someone who publishes what it hears and hears what it publishes."""
+
+    def __init__(self, graph, node_helpers, **parameters):
+        self.wait, listener = node_helpers
+        self.node = graph.make(NmeaOutputNode, **{'udp': '', **parameters})
+        self.other = graph.bystander()
+        self.nmea = listener(self.other, String, topics.NMEA, topics.reliable(topics.BURST))
+        self.diagnostics = listener(self.other, DiagnosticArray, topics.DIAGNOSTICS)
+        self.targets, self.odometry, self.fix = (
+            self.other.create_publisher(kind, topic, topics.reliable(50)) for kind, topic in (
+                (Odometry, topics.ODOMETRY), (Odometry, topics.ODOMETRY), (NavSatFix, topics.FIX)))
+        self.targets = self.other.create_publisher(
+            DiagnosticArray, topics.TARGETS, topics.latched())
+        self.wait(lambda: self.targets.get_subscription_count()
+                  and self.odometry.get_subscription_count()
+                  and self.fix.get_subscription_count()
+                  and self.nmea.connected and self.node.count_subscribers(topics.NMEA))
+        self.scans = 0
+
+    def send_own_ship(self, seconds=0.0, position=(0.0, 0.0), speed=10 * KNOT, course_deg=90.0,
+                      fix=(54.5, 10.25)):
+        stamp = NOON + round(seconds * SECOND)
+        velocity = speed * unit_vector(np.radians(course_deg))
+        self.odometry.publish(convert.own_ship_to_odometry(stamp, position, velocity))
+        self.wait(lambda: self.node._own.time_ns == stamp)
+        if fix:
+            self.fix.publish(convert.fix_message(stamp, *fix))
+            self.wait(lambda: self.node._own.anchor is not None)
+
+    def scan(self, *entries, seconds=None):
+        """Publish targets; the sentences of this scan."""
+        self.scans += 1
+        seconds = self.scans if seconds is None else seconds
+        before = len(self.nmea)
+        message = DiagnosticArray(status=list(entries))
+        message.header.stamp = convert.time_message(NOON + round(seconds * SECOND))
+        sent = self.node._count['sentences']
+        self.targets.publish(message)
+        self.wait(lambda: self.node._count['sentences'] > sent)
+        self.wait(lambda: len(self.nmea) == self.node._count['sentences'])
+        return [one.data for one in self.nmea[before:]]
+
+    def output(self):
+        """The last word on /diagnostics."""
+        for message in reversed(self.diagnostics.messages):
+            return message.status[0]
+        return None
+
+
+@pytest.fixture
+def rig(graph, node_helpers):
+    return lambda **parameters: Rig(graph, node_helpers, **parameters)
+
+
+def kinds(lines):
+    return [line[3:6] for line in lines]
+
+
+def test_a_scan_gives_own_ship_and_one_ttm_a_target_alike_on_topic_udp_and_tcp(
+        rig, ears, free_port):
+    ear = ears()
+    here = rig(udp=f'{LOOPBACK}:{ear.port}', tcp=f'{LOOPBACK}:{free_port}',
+               own_ship_period_s=60.0)
+    with socket.create_connection((LOOPBACK, free_port), 10) as client:
+        here.wait(lambda: len(here.node._tcp) == 1)
+        here.send_own_ship()
+        said = here.scan(entry('TT01'), entry('TT02', range_nm='0.50', tcpa_min='-3.0',
+                                              acquired='M', name='BUOY'), seconds=2.0)
+        first = [one.data for one in here.nmea.messages]        # with those of the odometry
+        heard = ear.hear(len(first))
+        with client.makefile(newline='') as stream:
+            served = [stream.readline() for _ in first]
+    assert kinds(said) == ['RMC', 'HDT', 'OSD', 'TTM', 'TTM']
+    assert heard == served == [f'{line}\r\n' for line in first]
+    assert said[3].startswith(
+        '$RATTM,01,2.000,045.0,T,10.00,225.0,T,0.100,12.0,N,TT01,T,,120002.00,A*')
+    assert said[4].startswith(
+        '$RATTM,02,0.500,045.0,T,10.00,225.0,T,0.100,-3.0,N,BUOY,T,,120002.00,M*')
+    assert said[2].startswith('$RAOSD,090.0,A,090.0,P,10.00,P,,,N*')
+    rmc = pynmea2.parse(said[0], check=True)
+    # Two seconds on at 10 knots from where the fix was.
+    east = np.radians(rmc.longitude - 10.25) * 6371008.8 * np.cos(np.radians(54.5))
+    assert rmc.is_valid and east == pytest.approx(20 * KNOT, abs=0.5)
+    assert rmc.latitude == pytest.approx(54.5, abs=1e-6)
+
+
+def test_lost_and_cancelled_targets_get_one_last_word_and_then_no_more(rig):
+    here = rig()
+
+    def status(lines):
+        return {line.split(',')[1]: line.split(',')[12] for line in lines if 'TTM' in line}
+    assert status(here.scan(*map(entry, ('TT01', 'TT02', 'TT03')))) == {
+        '01': 'T', '02': 'T', '03': 'T'}
+    assert status(here.scan(entry('TT01'), entry('TT02', 'LOST'))) == {
+        '01': 'T', '02': 'L', '03': 'L'}
+    assert status(here.scan(entry('TT01'))) == {'01': 'T'}
+    assert status(here.scan()) == {'01': 'L'}
+    assert status(here.scan()) == {}
+
+
+def test_what_targets_does_not_tell_is_left_empty_and_what_is_no_target_passed_over(rig):
+    here = rig(sentences='TTM')
+    plain = DiagnosticStatus(name='TT05', message='COASTING', values=[
+        KeyValue(key=key, value=value) for key, value in (
+            ('range_nm', '1.50'), ('bearing_deg', '359.9'), ('course_deg', ''),
+            ('speed_kn', 'fast'))])
+    said = here.scan(plain, entry('Q123', 'ACQUIRING', acquired='M'), entry('radar'),
+                     entry('TTxx'), entry('TT07', range_nm='nan'))
+    assert [line.rpartition('*')[0] for line in said] == [
+        '$RATTM,05,1.500,359.9,T,,,T,,,N,TT05,T,,120001.00,A',
+        '$RATTM,99,2.000,045.0,T,,,T,0.100,,N,Q123,Q,,120001.00,M']
+
+
+def test_the_same_message_twice_is_one_scan(rig):
+    here = rig(sentences='TTM')
+    assert len(here.scan(entry('TT01'), seconds=5.0)) == 1
+    message = DiagnosticArray(status=[entry('TT01')])
+    message.header.stamp = convert.time_message(NOON + 5 * SECOND)
+    here.targets.publish(message)
+    assert len(here.scan(entry('TT01'), seconds=6.0)) == 1
+
+
+def test_all_sentences_and_talkers_as_chosen(rig):
+    here = rig(sentences='TLL RSD TTM OSD HDT RMC', talker='II', own_ship_talker='GP',
+               origin='54.0 10.0', range_scale_nm=12.0, own_ship_period_s=60.0)
+    here.send_own_ship(seconds=1.0, position=(0.0, 1852.0), fix=None)
+    said = here.scan(entry('TT01', range_nm='1.00', bearing_deg='000.0'), seconds=1.0)
+    assert [line[1:6] for line in said] == ['GPRMC', 'GPHDT', 'IIOSD', 'IIRSD', 'IITTM', 'IITLL']
+    rmc, tll = (pynmea2.parse(said[k], check=True) for k in (0, 5))
+    mile = np.degrees(1852 / 6371008.8)
+    assert rmc.latitude == pytest.approx(54 + mile, abs=2e-6)
+    assert tll.latitude == pytest.approx(54 + 2 * mile, abs=2e-6)
+    assert tll.longitude == pytest.approx(10.0, abs=2e-6)
+    assert ',12.000,N,N*' in said[3]
+
+
+def test_own_ship_is_told_between_scans_as_often_as_asked(rig):
+    here = rig(own_ship_period_s=0.3)
+    began = time.monotonic()
+    for k in range(20):
+        here.send_own_ship(seconds=0.1 * k)
+        time.sleep(0.05)
+    passed = time.monotonic() - began
+    here.wait(lambda: len(here.nmea) == here.node._count['sentences'])
+    told = kinds(one.data for one in here.nmea.messages).count('RMC')
+    assert 2 <= told <= passed / 0.3 + 1
+
+
+def test_without_own_ship_rmc_is_void_and_diagnostics_say_why(rig):
+    here = rig()
+    said = here.scan(entry('TT01'))
+    assert kinds(said) == ['RMC', 'OSD', 'TTM']                 # no heading: no HDT
+    assert ',V,,,,,,,' in said[0] and said[1].startswith('$RAOSD,,V,')
+    here.wait(lambda: here.output() and here.output().message
+              == 'nothing on own_ship/odometry: RMC void, no HDT')
+    assert here.output().level == DiagnosticStatus.WARN
+    assert here.output().name == 'nmea_output: output'
+    # With odometry, but no place on earth.
+    here.send_own_ship(fix=None)
+    assert ',V,,,,,10.00,090.0,' in here.scan(entry('TT01'))[0]
+    here.wait(lambda: 'nothing on own_ship/fix' in here.output().message)
+    here.send_own_ship()
+    here.wait(lambda: here.output().level == DiagnosticStatus.OK)
+    assert here.output().message == '1 targets'
+
+
+def test_broken_input_is_counted_and_the_last_good_one_kept(rig):
+    here = rig(own_ship_period_s=60.0)
+    here.send_own_ship()
+    broken = convert.own_ship_to_odometry(NOON, (np.nan, 0.0), (1.0, 1.0))
+    here.odometry.publish(broken)
+    no_fix = convert.fix_message(NOON, 0.0, 0.0)
+    no_fix.status.status = -1
+    here.fix.publish(no_fix)
+    here.fix.publish(convert.fix_message(NOON, np.nan, 10.0))
+    counts = here.node._bad.counts
+    here.wait(lambda: (counts['own-ship messages not finite'],
+                       counts['fixes without a position']) == (1, 2))
+    assert pynmea2.parse(here.scan(entry('TT01'))[0]).latitude == pytest.approx(54.5, abs=1e-6)
+
+
+def test_signalk_deltas_go_out_as_datagrams(rig, ears):
+    ear = ears()
+    here = rig(signalk_udp=f'{LOOPBACK}:{ear.port}')
+    here.send_own_ship(seconds=1.0)
+    here.scan(entry('TT01'), entry('TT02'), seconds=1.0)
+    first, second = map(json.loads, ear.hear(2))
+    assert first['context'] != second['context']
+    values = {one['path']: one['value'] for one in first['updates'][0]['values']}
+    assert values['navigation.closestApproach'] == {
+        'distance': pytest.approx(185.2), 'timeTo': 720.0}
+    assert values['navigation.position']['latitude'] == pytest.approx(54.5 + 1.4142 / 60, abs=1e-4)
+    here.scan(entry('TT02'), seconds=2.0)
+    gone = [delta for delta in map(json.loads, ear.hear(2))
+            if delta['context'] == first['context']]
+    assert all(one['value'] is None for one in gone[0]['updates'][0]['values'] if one['path'])
+
+
+def test_a_broadcast_reaches_who_listens_to_it(ears):
+    ear = ears(host='127.255.255.255')
+    link = Datagrams('udp', f'127.255.255.255:{ear.port} {LOOPBACK}:{ear.port}')
+    assert link.send([b'one', b'two']) == 0
+    assert ear.hear(2) == ['one', 'two'] and link.sent == 4     # the second goes nowhere, unheard
+    link.close()
+
+
+def test_a_datagram_that_cannot_be_sent_is_counted_with_its_reason():
+    link = Datagrams('udp', '127.0.0.1:9')
+    assert link.send([b'x' * 70_000, b'short']) == 1
+    assert link.error == '127.0.0.1:9: Message too long' and link.sent == 1
+    link.close()
+
+
+def connect(server, port, patience=10.0):
+    client = socket.create_connection((LOOPBACK, port), patience)
+    count, until = len(server), time.monotonic() + patience
+    while len(server) == count and time.monotonic() < until:
+        server.serve()
+    return client
+
+
+def test_a_slow_tcp_client_is_dropped_and_never_blocks_the_others(free_port):
+    server = Clients('tcp', f'{LOOPBACK}:{free_port}')
+    slow, quick = connect(server, free_port), connect(server, free_port)
+    line, count, heard = b'x' * 1022 + b'\r\n', 0, 0
+    quick.setblocking(False)
+    while not server.dropped:
+        server.send([line] * 16)
+        count += 16
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                heard += len(quick.recv(1 << 20))
+        assert count < 100_000
+    assert len(server) == 1 and count * 1024 > PENDING
+    quick.settimeout(10)
+    while heard < count * 1024:
+        server.serve()
+        heard += len(quick.recv(1 << 20))
+    assert heard == count * 1024
+    slow.close()
+    quick.close()
+    server.close()
+
+
+def test_tcp_clients_come_and_go(free_port):
+    server = Clients('tcp', f'{LOOPBACK}:{free_port}')
+    server.send([b'to nobody\r\n'])
+    first, second = connect(server, free_port), connect(server, free_port)
+    server.send([b'a\r\n'])
+    assert first.recv(100) == second.recv(100) == b'a\r\n'
+    first.close()
+    until = time.monotonic() + 10
+    while len(server) == 2 and time.monotonic() < until:        # the first one only tells it
+        server.send([b'b\r\n'])
+    assert len(server) == 1
+    assert second.recv(3) == b'b\r\n'
+    server.close()
+    while second.recv(1000):                                    # the rest, then the end
+        pass
+    second.close()
+    Clients('tcp', f'{LOOPBACK}:{free_port}').close()           # the port is free again at once
+
+
+def test_no_server_where_none_is_asked_for():
+    server = Clients('tcp', '')
+    server.send([b'nothing'])
+    assert len(server) == 0
+    server.close()
+
+
+@pytest.mark.parametrize('text', ['localhost', ':10110', 'host:', '127.0.0.1:0', '127.0.0.1:70000',
+                                  '127.0.0.1:x', '127.0.0.1:10110 other'])
+def test_what_is_no_host_and_port_is_refused(text):
+    with pytest.raises(ValueError, match="parameter udp has '.*'; it must be host:port"):
+        endpoints('udp', text)
+
+
+def test_addresses_of_version_6_stand_in_brackets():
+    (found,) = endpoints('udp', '[::1]:10110')
+    assert found.family == socket.AF_INET6 and found.address[:2] == ('::1', 10110)
+
+
+def p(**parameters):
+    """Command-line parameters."""
+    assignments = [('-p', f'{name}:={value}') for name, value in parameters.items()]
+    return ['--ros-args', *(word for pair in assignments for word in pair)]
+
+
+@pytest.mark.parametrize(('parameters', 'said'), [
+    ({'sentences': 'TTM GGA'}, "parameter sentences has 'GGA'; it must be of RMC, HDT, OSD"),
+    ({'udp': 'nowhere'}, "parameter udp has 'nowhere'; it must be host:port"),
+    ({'talker': 'radar'}, "talker is 'radar'; it must be two capital letters"),
+    ({'origin': '"91 10"'}, "parameter origin is '91 10'; it must be latitude and longitude"),
+])
+def test_a_wrong_parameter_stops_the_start_in_one_line(launch, parameters, said):
+    process = launch(OUTPUT, *p(**parameters))
+    assert process.ends() == 1
+    assert process.said.startswith(f'nmea_output: {said}'), process.said
+    assert len(process.said.splitlines()) == 1
+
+
+def test_a_port_in_use_stops_the_start_in_one_line(launch, free_port):
+    with socket.create_server((LOOPBACK, free_port)):
+        process = launch(OUTPUT, *p(tcp=f'{LOOPBACK}:{free_port}'))
+        assert process.ends() == 1
+    assert 'cannot listen there: Address already in use' in process.said
+
+
+def test_simulator_tracker_and_output_as_processes_tell_every_target_once_a_scan(launch, ears):
+    ear = ears(patience=60.0)
+    output = launch(OUTPUT, *p(udp=f'{LOOPBACK}:{ear.port}', use_sim_time='true',
+                               own_ship_period_s=60.0))
+    tracker = launch('nodes.tracker', *p(use_sim_time='true', range_sigma_m=15.0,
+                                         bearing_sigma_deg=0.4, max_range_m=22224.0))
+    simulator = launch('nodes.radar_simulator', *p(scenario='encounters', rate=20.0))
+    told = {}                           # scans in which each target was told
+    while len(told) < 3 or sorted(map(len, told.values()))[-3] < 20:
+        line, = ear.hear(1)
+        parsed = pynmea2.parse(line.strip(), check=True)
+        if parsed.sentence_type == 'TTM':
+            assert parsed.status in ('Q', 'T', 'L') and parsed.brg_ref == 'T'
+            scans = told.setdefault(parsed.target_number, [])
+            assert parsed.timestamp not in scans
+            scans.append(parsed.timestamp)
+    simulator.stop()
+    tracker.stop()
+    output.stop(signal.SIGTERM)
