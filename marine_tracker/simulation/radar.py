@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..geometry import to_range_bearing, wrap_bearing
+from ..geometry import to_range_bearing, wrap_angle, wrap_bearing
 from ..types import PolarPlots, Scan, Truth, append, take
 from . import beam, clutter, sensor_errors
 from .scenario import Radar, Scenario
@@ -128,5 +128,8 @@ def _imo(scenario, imo, passages, random, shape):
     time[row], velocity[row] = passages.time, passages.velocity
     length = np.concatenate([[0.0], scenario.fleet.length])
     glint = sensor_errors.glint(velocity, np.broadcast_to(length, shape), random)[row]
-    errors = sensor_errors.measurement_errors(imo, time, relative, random)
-    return passages._replace(offset=passages.offset + glint), np.stack(errors, -1)
+    errors = np.stack(sensor_errors.measurement_errors(imo, time, relative, random), -1)
+    moved = passages.offset + glint
+    errors[*row, 1] += wrap_angle(to_range_bearing(moved)[1]
+                                  - to_range_bearing(passages.offset)[1])
+    return passages._replace(offset=moved), errors

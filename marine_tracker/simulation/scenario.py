@@ -43,6 +43,7 @@ from ..parameters import VESSEL_CLASSES, read_yaml_mapping
 from ..types import OwnShip, Truth
 from . import motion, sensor_errors, ships
 from .fields import Section
+from .standard_scenarios import STANDARD
 
 MAX_RANGE = 200_000.0                     # m
 
@@ -145,13 +146,17 @@ class Scenario:
     def tracker_parameters(self) -> dict[str, Any]:
         """What a tracker is told of this radar and its waters: fields of TrackerParameters.
 
-        The sigmas are the radar's, but not below the smallest that a tracker takes.
+        The sigmas are the radar's, but not below the smallest that a tracker takes; with the
+        sensor errors of the IMO the glint is that of the largest target.
         """
         range_sigma, bearing_sigma = self.radar.range_sigma, self.radar.bearing_sigma
+        glint = 0.0
         if self.radar.sensor_errors == 'imo':
             range_sigma, bearing_sigma = sensor_errors.IMO_SIGMAS
+            glint = sensor_errors.GLINT_ALONG * float(self.fleet.length.max())
         return {'range_sigma_m': max(range_sigma, 0.1),
                 'bearing_sigma_deg': max(math.degrees(bearing_sigma), 0.01),
+                'glint_sigma_m': glint,
                 'min_range_m': self.radar.blind_range,
                 'max_range_m': self.radar.max_range,
                 'scan_period_s': self.radar.scan_period,
@@ -166,8 +171,8 @@ def detectable(scenario: Scenario, truth: Truth) -> NDArray[np.bool_]:
 
 
 def shipped() -> list[str]:
-    """The names of the scenarios that come with the package."""
-    return sorted(file.stem for file in config.path('scenarios').glob('*.yaml'))
+    """The names of the scenarios that come with the package: files, and the standard ones."""
+    return sorted([file.stem for file in config.path('scenarios').glob('*.yaml')] + [*STANDARD])
 
 
 def load(name_or_path) -> Scenario:
@@ -183,24 +188,33 @@ def load(name_or_path) -> Scenario:
             raise ValueError(f'no scenario {path.name}'
                              + (f'; did you mean {near[0]}?' if near else '')
                              + f' Shipped: {", ".join(names)}; or name a .yaml file')
+        if path.name in STANDARD:
+            return build(STANDARD[path.name](), path.name)
         path = config.path('scenarios', f'{path.name}.yaml')
     try:
-        values = read_yaml_mapping(path)
-        top = Section(values, '', TOP_KEYS)
-        duration = top.number('duration_s', 1.0, ships.MAX_DURATION)
-        radar = _radar(top.section('radar', RADAR_KEYS))
-        if duration < radar.scan_period:
-            raise ValueError(f'duration_s is {duration:g}; it must not be less than a revolution, '
-                             f'{radar.scan_period:.3g} s')
-        return Scenario(path.stem, top.text('description', ''), duration, radar,
-                        _clutter(top.section('clutter', CLUTTER_KEYS), radar),
-                        ships.read(top, path.parent, duration),
-                        _stated(top.section('tracker', TRACKER_KEYS)))
+        return build(read_yaml_mapping(path), path.stem, path.parent)
     except OSError as error:
         raise ValueError(f'scenario {path} cannot be read: {error.strerror}') from error
     except ValueError as error:
         text = str(error)
         raise ValueError(text if text.startswith(str(path)) else f'{path}: {text}') from error
+
+
+def build(values: dict[str, Any], name: str, folder=Path()) -> Scenario:
+    """The scenario of a mapping as a file would hold it; its AIS file is looked for in `folder`.
+
+    Raises ValueError, naming place, value and limit, for anything that is wrong in it.
+    """
+    top = Section(values, '', TOP_KEYS)
+    duration = top.number('duration_s', 1.0, ships.MAX_DURATION)
+    radar = _radar(top.section('radar', RADAR_KEYS))
+    if duration < radar.scan_period:
+        raise ValueError(f'duration_s is {duration:g}; it must not be less than a revolution, '
+                         f'{radar.scan_period:.3g} s')
+    return Scenario(name, top.text('description', ''), duration, radar,
+                    _clutter(top.section('clutter', CLUTTER_KEYS), radar),
+                    ships.read(top, folder, duration),
+                    _stated(top.section('tracker', TRACKER_KEYS)))
 
 
 def _radar(section):

@@ -22,11 +22,12 @@ GYRO = np.radians(0.12)                   # sigma
 LOG_BIAS = 0.5 * KNOT                     # of either sign, drawn for each run
 LOG = 0.2 * KNOT / 3                      # sigma
 
-# What a tracker may be told: the random part of range (m) and bearing (rad), without glint.
+# What a tracker may be told: the part of range (m) and bearing (rad) that changes from scan to
+# scan, without glint; of rolling the mean over all bearings.
 IMO_SIGMAS = (
     float(np.sqrt(PULSE_SHAPE ** 2 + RANGE_STEP ** 2 / 3)),
     float(np.sqrt(BEAM_SHAPE ** 2 + BACKLASH ** 2 / 3 + ENCODER ** 2 + BEARING_STEP ** 2 / 3
-                  + GYRO ** 2)))
+                  + GYRO ** 2 + ROLL_BEARING ** 2 / 4)))
 
 
 class ImoErrors(NamedTuple):

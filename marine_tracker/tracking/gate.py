@@ -97,13 +97,15 @@ def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origi
     if near.any():
         along, across = np.where(near, radius, along), np.where(near, radius, across)
     half_width = _half_width(distance, along, across)
-    if sweep.period:
+    if sweep.period and len(origin):
         # The plot's time may differ from the track's: by little, but where the revolution
         # begins by a whole one.
         turned = np.mod(bearing - sweep.bearing0, TURN)
         seam = (turned < half_width) | (turned > TURN - half_width)
         share = np.where(seam | (half_width > np.pi / 4), 1.0, half_width / TURN)
-        slack = np.hypot(*velocity.T) * sweep.period * share
+        # Own ship moves on meanwhile, too, and ranges count from her.
+        moved = np.hypot(*np.ptp(np.concatenate([origin, plots.origin]), axis=0))
+        slack = (np.hypot(*velocity.T) * sweep.period + moved) * share
         along, across = along + slack, across + slack
         half_width = _half_width(distance, along, across)
     # Sideways offsets lie farther out than the arc, the more the nearer the track is.

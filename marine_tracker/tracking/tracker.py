@@ -73,6 +73,7 @@ class Tracker:
         self.parameters = parameters
         self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
         self.bearing_sigma = float(np.radians(parameters.bearing_sigma_deg))
+        self.glint = parameters.glint_sigma_m ** 2 * np.eye(2)
         self.gate_size = gate_size(parameters.gate_probability)
 
     def start(self) -> Memory:
@@ -100,10 +101,12 @@ class Tracker:
         time, position, velocity, covariance = (np.concatenate(pair) for pair in (
             (ahead.time, lone.time), (ahead.position, lone.position),
             (ahead.velocity, np.zeros_like(lone.position)),
-            (ahead.covariance[:, :2, :2], reach(lone, scan.end, p.max_target_speed_mps))))
+            (ahead.covariance[:, :2, :2] + self.glint,
+             reach(lone, scan.end, p.max_target_speed_mps) + self.glint)))
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
                                          p.range_sigma_m, self.bearing_sigma, self.gate_size)
+        plots = plots._replace(covariance=plots.covariance + self.glint)
         seam = track.searchsorted(count)
         first, second = track[seam:] - count, plot[seam:]
         track, plot, nis, log_det = track[:seam], plot[:seam], nis[:seam], log_det[:seam]
@@ -145,7 +148,8 @@ class Tracker:
             ahead.position.take(missed, 0) - origin.take(missed, 0))
         drift[missed] = np.sqrt(
             (ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])[missed]
-            / (p.range_sigma_m ** 2 + (distance[missed] * self.bearing_sigma) ** 2))
+            / (p.range_sigma_m ** 2 + (distance[missed] * self.bearing_sigma) ** 2
+               + 2 * p.glint_sigma_m ** 2))
         density = clutter_map.density(memory.clutter, chosen.range, chosen.bearing)
         own = (plot_of[track] == plot).nonzero()[0]                # pairs, as held_rows ascends
         held = len(held_rows)
@@ -175,7 +179,8 @@ class Tracker:
             tracks if alive.all() else take(tracks, alive), take(plots, free), clutter,
             scan.own_ship.position[-1],
             memory.next_id + len(second), memory.next_number + len(newly),
-        ), Report(time, tracks, predicted, plot_of, reason, begun)
+        ), Report(time, tracks, predicted, plot_of, reason,
+                  begun._replace(covariance=begun.covariance - self.glint))
 
     def adopt(self, memory: Memory, previous: 'Tracker') -> Memory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.
