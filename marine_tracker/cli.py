@@ -6,7 +6,7 @@ import os
 import sys
 from importlib import metadata
 
-COMMANDS = ('demo', 'replay', 'score', 'bench', 'experiments', 'train', 'tune', 'scenario',
+COMMANDS = ('demo', 'replay', 'score', 'bench', 'experiments', 'train', 'tune', 'scenario', 'imo',
             'doctor')
 
 DESCRIPTION = """\

@@ -1,10 +1,11 @@
 """Run an experiment again and print its figures beside what is claimed for them."""
 
 import sys
-from pathlib import Path
 
 from ..evaluation import report
 from ..evaluation.experiments import EXPERIMENTS
+from ..evaluation.experiments.result import draw
+from .progress_bar import progress_bar
 
 HELP = 'reproduce published figures'
 
@@ -17,26 +18,32 @@ def add_arguments(parser) -> None:
         sub.add_argument('--runs', type=int, default=experiment.RUNS, metavar='N',
                          help=f'Monte Carlo runs (default {experiment.RUNS})')
         sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
-        if hasattr(experiment, 'pictures'):
-            sub.add_argument('--out', metavar='FOLDER',
-                             help='also draw pictures into this folder (needs matplotlib)')
-        if hasattr(experiment, 'DATA'):
-            sub.add_argument('--data', metavar='FOLDER', help=experiment.DATA)
+        for option, about in _options(experiment).items():
+            sub.add_argument(f'--{option}', **about)
+        sub.add_argument('--pictures', metavar='FOLDER',
+                         help='also draw its pictures, if it has any, into this folder '
+                              '(needs matplotlib)')
         report.add_arguments(sub)
         sub.set_defaults(experiment=name)
+
+
+def _options(experiment):
+    return getattr(experiment, 'OPTIONS', {})
 
 
 def run(args) -> int:
     """Print the table; 1 where a figure misses its limit."""
     if args.runs < 1:
         raise ValueError(f'--runs is {args.runs}; it must be at least 1')
+    if args.seed < 0:
+        raise ValueError(f'--seed is {args.seed}; it must not be negative')
     experiment = EXPERIMENTS[args.experiment]
-    data = {'data': Path(args.data)} if getattr(args, 'data', None) else {}
-    figures = experiment.run(args.runs, args.seed, **data)
-    claims = experiment.claims(args.runs, args.seed) if hasattr(experiment, 'claims') else ()
-    if getattr(args, 'out', None):
-        for file in experiment.pictures(args.out, args.runs, args.seed):
+    options = {name: getattr(args, name) for name in _options(experiment)}
+    with progress_bar(args.experiment) as progress:
+        found = experiment.run(args.runs, args.seed, progress=progress, **options)
+    if args.pictures:
+        for file in draw(args.pictures, found.pictures):
             print(f'drawn: {file}', file=sys.stderr)
     title = f'{args.experiment}: {args.runs} runs, seed {args.seed}'
-    return report.publish(title, figures, args.json, {
-        'experiment': args.experiment, 'runs': args.runs, 'seed': args.seed}, claims)
+    return report.publish(title, found.figures, args.json, {
+        'experiment': args.experiment, 'runs': args.runs, 'seed': args.seed}, found.claims)

@@ -2,16 +2,23 @@
 
 The training draws its own tracks, and takes some minutes of one processor. It may be stopped at
 any time: the same command goes on from the checkpoint beside the file (FILE.part). Use the result
-with the tracker's parameter `gwnn_weights`. A .json file beside it tells how it came about.
+with the tracker's parameters `gwnn_weights` and, where it is not `ship`, `vessel_class`. A .json
+file beside it tells how it came about.
+
+With --scenario the radar is the scenario's, and the tracks of its targets are learned besides;
+with --kinds the vessels move as a file of your own says (its form stands in
+marine_tracker/evaluation/own_waters.py).
 """
 
 import json
 import sys
 from pathlib import Path
 
-from ..evaluation import gwnn_training, report
+from ..evaluation import gwnn_fusion_training, gwnn_samples, gwnn_training, own_waters, report
 from ..heap import keep_freed_memory
-from ..networks import gwnn_weights
+from ..networks import gwnn_weights, wavelet_network
+from ..parameters import VESSEL_CLASSES
+from ..simulation import scenario
 
 HELP = 'train the weights of an estimator anew'
 
@@ -20,14 +27,23 @@ def add_arguments(parser) -> None:
     """The command line of `train`."""
     names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
     sub = names.add_parser('gwnn', help='the wavelet network of `gwnn`', description=__doc__)
+    sub.add_argument('--vessel-class', choices=VESSEL_CLASSES, default='ship',
+                     help='whose filters are weighed, and whose motion (default %(default)s)')
+    sub.add_argument('--kinds', metavar='FILE', type=Path,
+                     help='how the vessels move, instead of as the class does')
+    sub.add_argument('--scenario', metavar='NAME|FILE',
+                     help='whose radar it is for, and whose targets to learn besides')
     sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
     sub.add_argument('--out', default='gwnn.npz', metavar='FILE',
                      help='where the weights go (default gwnn.npz)')
-    sub.add_argument('--tracks', type=int, default=gwnn_training.CHUNKS * gwnn_training.CHUNK,
+    sub.add_argument('--tracks', type=int, default=gwnn_training.CHUNKS * gwnn_samples.CHUNK,
                      metavar='N', help='tracks to learn from, rounded up to full lots of '
-                     f'{gwnn_training.CHUNK} (default %(default)s)')
+                     f'{gwnn_samples.CHUNK} (default %(default)s)')
     sub.add_argument('--steps', type=int, default=gwnn_training.STEPS, metavar='N',
                      help='steps of the training (default %(default)s)')
+    sub.add_argument('--units', choices=(wavelet_network.WAVELET, wavelet_network.TANH),
+                     default=wavelet_network.WAVELET,
+                     help='hidden units; plain ones are for comparison (default %(default)s)')
     report.add_arguments(sub)
 
 
@@ -43,18 +59,30 @@ def run(args) -> int:
         raise ValueError(f'--out is {out}; there is no folder {out.parent}')
     if out.suffix == '.json':
         raise ValueError(f'--out is {out}; that name is for the description beside the weights')
+    plan = _plan(args)
     keep_freed_memory()
     checkpoint = out.with_name(out.name + '.part')
-    chunks = -(-args.tracks // gwnn_training.CHUNK)
     with _Bar() as bar:
-        weights = gwnn_training.run(args.seed, chunks, args.steps, checkpoint, bar.show)
+        weights = gwnn_training.run(plan, checkpoint, bar.show)
     manifest = gwnn_weights.save(out, weights)
     out.with_suffix('.json').write_text(json.dumps(manifest, indent=1) + '\n')
     checkpoint.unlink(missing_ok=True)
-    figures = [report.Figure(f'{cell}: position ratio', ratio, '', None, None, 'IMM')
+    figures = [report.Figure(f'{cell}: position ratio', ratio, '', None, None, "the bank's IMM")
                for cell, ratio in manifest['ratios'].items()]
-    return report.publish(f'{out}: {manifest["tracks"]} tracks, {args.steps} steps, seed '
-                          f'{args.seed}', figures, args.json, manifest)
+    return report.publish(f'{out}: {args.vessel_class}, {manifest["tracks"]} tracks, '
+                          f'{args.steps} steps, seed {args.seed}', figures, args.json, manifest)
+
+
+def _plan(args) -> gwnn_training.Plan:
+    plan = gwnn_training.plan(
+        args.vessel_class, args.seed, chunks=-(-args.tracks // gwnn_samples.CHUNK),
+        steps=args.steps, layout=gwnn_fusion_training.LAYOUT._replace(units=args.units))
+    waters = plan.waters
+    if args.kinds is not None:
+        waters = waters._replace(kinds=own_waters.read_kinds(args.kinds))
+    if args.scenario is not None:
+        waters = own_waters.from_scenario(waters, scenario.load(args.scenario))
+    return plan._replace(waters=waters)
 
 
 class _Bar:

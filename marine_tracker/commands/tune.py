@@ -10,13 +10,12 @@ import sys
 from ..estimators import bank
 from ..evaluation import imm_tuning, report
 from ..heap import keep_freed_memory
+from ..parameters import VESSEL_CLASSES
 
 HELP = 'search the best settings of an IMM'
 EVALUATIONS, TRACKS = 600, 280
 FRESH = 10                      # times the tracks of the search
 CLEAR = 0.995                   # ratio of errors that settings better than the shipped ones have
-SHIPPED = {'training': ('TUNED_ON_ALL', bank.TUNED_ON_ALL),
-           'manoeuvre': ('TUNED_FOR_MANOEUVRE', bank.TUNED_FOR_MANOEUVRE)}
 
 
 def add_arguments(parser) -> None:
@@ -27,6 +26,8 @@ def add_arguments(parser) -> None:
     sub.add_argument('--for', dest='target', choices=list(imm_tuning.STRAIGHT_WEIGHT),
                      default='training', help='what it is to be best at: every kind of motion and '
                      'phase alike, or manoeuvres only (default %(default)s)')
+    sub.add_argument('--vessel-class', choices=VESSEL_CLASSES, default='ship',
+                     help='whose motion (default %(default)s)')
     sub.add_argument('--evaluations', type=int, default=EVALUATIONS, metavar='N',
                      help='settings to try (default %(default)s)')
     sub.add_argument('--tracks', type=int, default=TRACKS, metavar='N',
@@ -42,23 +43,26 @@ def run(args) -> int:
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
     keep_freed_memory()
+    shipped = {f'shipped for {target}': modes
+               for target, modes in bank.STRONGEST[args.vessel_class].items()}
+    rival = f'shipped for {args.target}'
     with _Bar() as bar:
         found, seen = imm_tuning.tune(args.target, args.tracks, args.evaluations, args.seed,
-                                      bar.show)
-    verdict = imm_tuning.judge(found.modes, dict(SHIPPED.values()), SHIPPED[args.target][0],
-                               args.target, seen, imm_tuning.fresh(FRESH * args.tracks, args.seed),
-                               args.seed)
+                                      bar.show, args.vessel_class)
+    fresh = imm_tuning.fresh(FRESH * args.tracks, args.seed, args.vessel_class)
+    verdict = imm_tuning.judge(found.modes, shipped, rival, args.target, seen, fresh, args.seed)
     settings = imm_tuning.as_text(found.modes)
     better = verdict.ratio.high < 1 and verdict.ratio.value < CLEAR
     claim = report.Claim(
-        SHIPPED[args.target][0], 'tuned as well as can be', settings,
+        rival, 'tuned as well as can be', settings,
         'NO: on fresh tracks the settings found are clearly better; use them' if better
         else 'nothing clearly better was found')
     return report.publish(
-        f'IMM for {args.target}: {args.evaluations} evaluations on {len(seen.kind)} tracks, seed '
-        f'{args.seed}', verdict.figures, args.json,
-        {'target': args.target, 'evaluations': args.evaluations, 'tracks': len(seen.kind),
-         'seed': args.seed, 'settings': found.modes._asdict(), 'best': found.best}, [claim])
+        f'IMM of {args.vessel_class} for {args.target}: {args.evaluations} evaluations on '
+        f'{len(seen.kind)} tracks, seed {args.seed}', verdict.figures, args.json,
+        {'vessel_class': args.vessel_class, 'target': args.target,
+         'evaluations': args.evaluations, 'tracks': len(seen.kind), 'seed': args.seed,
+         'settings': found.modes._asdict(), 'best': found.best}, [claim])
 
 
 class _Bar:

@@ -17,8 +17,9 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
     'cs_kalman': lambda p: cs_kalman.cs_kalman(cs_kalman.PRESETS[p.vessel_class],
                                                 p.max_target_speed_mps),
     'imm': lambda p: imm.imm(imm.PRESETS[p.vessel_class], p.max_target_speed_mps),
-    'gwnn': lambda p: gwnn.gwnn(gwnn.weights(p.gwnn_weights), p.max_target_speed_mps,
-                                p.scan_period_s, learning=p.gwnn_learning),
+    'gwnn': lambda p: gwnn.gwnn(gwnn.weights(p.gwnn_weights, p.vessel_class),
+                                p.max_target_speed_mps, p.scan_period_s, learning=p.gwnn_learning,
+                                vessel_class=p.vessel_class),
     'gwnn_paper': lambda p: gwnn_paper.gwnn_paper(
         cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
 }

@@ -152,47 +152,56 @@ def flaw(output):
     return np.where(~np.isfinite(output).all(1), 2.0, np.where(alone > MOST, 3.0, 0.0))
 
 
-def advance(bank: filters.BankState, memory: gwnn_inputs.Memory, plots):
-    """Filters and memories of N rows after one plot each; and what the filters had expected.
+def advance(bank: filters.Filters, state: filters.BankState, memory: gwnn_inputs.Memory, plots):
+    """States and memories of N rows after one plot each; and what the filters had expected.
 
     A plot far off a settled track is refused by all filters alike, up to REFUSALS times in a
     row.
     """
-    expected = filters.expect(bank, plots)
+    expected = filters.expect(bank, state, plots)
     used = ~((expected.nis > GATE) & (memory.refused < REFUSALS) & (memory.plots >= SETTLED))
-    after = filters.correct(expected, plots)
+    after = filters.correct(bank, expected, plots)
     if not used.all():
-        after = where(used, after, bank)
-    memory = gwnn_inputs.remember(memory, expected, plots, plots.time - bank.time, used)
+        after = where(used, after, state)
+    memory = gwnn_inputs.remember(memory, expected, plots, plots.time - state.time, used)
     return after, memory, expected
 
 
-def weights(path: str = '') -> gwnn_weights.Weights:
+def weights(path: str = '', vessel_class: str = 'ship') -> gwnn_weights.Weights:
     """Trained weights from a file, or those shipped; ValueError where the file is not fit."""
-    found = gwnn_weights.load(path or gwnn_weights.SHIPPED, gwnn_inputs.COUNT,
-                              {'fusion': OUTPUTS, 'spread': SPREADS})
-    if found.manifest.get('filters') != filters.settings():
-        raise ValueError(f'GWNN weights {path or gwnn_weights.SHIPPED} were trained over filters '
-                         'with other settings; train anew')
+    file = path or gwnn_weights.shipped(vessel_class)
+    found = gwnn_weights.load(file, gwnn_inputs.COUNT, {'fusion': OUTPUTS, 'spread': SPREADS})
+    theirs = found.manifest.get('vessel_class', 'unknown'), found.manifest.get('filters', 'unknown')
+    ours = vessel_class, filters.BANKS[vessel_class].mark
+    if theirs[1] != ours[1]:
+        raise ValueError(
+            f'GWNN weights {file} were trained over the filters of vessel class {theirs[0]} '
+            f'(settings {theirs[1]}), not those of {ours[0]} (settings {ours[1]}): train anew '
+            f'with --vessel-class {vessel_class}')
     return found
 
 
 def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
-         fall: float = FALL, learning: bool = False) -> Estimator:
+         fall: float = FALL, learning: bool = False, vessel_class: str = 'ship') -> Estimator:
     """The estimator.
 
-    max_speed  m/s, of the targets: the velocity variance before the second plot
-    period     s, of the radar
-    fall       J of the network over J of CS-Kalman that it falls back at
-    learning   whether tracks add to the output weights what their plots tell (`gwnn_adaptation`)
+    max_speed     m/s, of the targets: the velocity variance before the second plot
+    period        s, of the radar
+    fall          J of the network over J of CS-Kalman that it falls back at
+    learning      whether tracks add to the output weights what their plots tell
+                  (`gwnn_adaptation`)
+    vessel_class  whose filters the weights weigh
     """
+    bank = filters.BANKS[vessel_class]
+
     def speak(state, memory):
         """What the network says [N, 27] of rows, and the units that learn; 0 while warming up."""
         out = np.zeros((len(state.time), OUTPUTS + SPREADS))
         units = gwnn_adaptation.begin(len(state.time), weights.fusion, learning).units
         warm = np.flatnonzero(memory.plots >= WARM)
         if len(warm):
-            seen = gwnn_inputs.inputs(_chosen(state, warm), _chosen(memory, warm), period)
+            seen = gwnn_inputs.inputs(bank, _chosen(state, warm), _chosen(memory, warm), period
+                                      ).astype(np.float32)      # as the weights: half the time
             out[warm, :OUTPUTS] = forward(weights.fusion, seen)
             out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
             if learning:
@@ -204,21 +213,21 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
         zero = np.zeros(count)
         monitor = Monitor(zero, zero + EXPECTED, zero + EXPECTED, np.full((count, 2), EXPECTED),
                           zero.copy(), zero.copy())
-        return GwnnState(filters.begin(plots, max_speed, velocity), gwnn_inputs.begin(plots),
+        return GwnnState(filters.begin(bank, plots, max_speed, velocity), gwnn_inputs.begin(plots),
                          monitor, np.zeros((count, OUTPUTS + SPREADS)),
                          gwnn_adaptation.begin(count, weights.fusion, learning))
 
     def extrapolate(state, time):
         begun, frame = state.bank.time, state.memory.frame
         near = np.clip(time, begun, begun + FADE * period)
-        columns = filters.base(state.bank, time)
+        columns = filters.base(bank, state.bank, time)
         mean, covariance = linear_modes.unpack(columns.T)
         mean = mean.copy()
         heard = np.flatnonzero(state.monitor.status == GWNN)
         if len(heard):
             rows = _chosen(state, heard)
             at = look(rows.bank, frame[heard],
-                      filters.look(rows.bank, (near - begun)[heard]), near[heard])
+                      filters.look(bank, rows.bank, (near - begun)[heard]), near[heard])
             shift, ratio = correct(rows, at), rows.output[:, OUTPUTS:]
             # Were a large correction wrong, no plot would come near enough to tell.
             size = np.hypot(*shift[:2])
@@ -234,17 +243,17 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
         if len(fallen):
             rows = take(state.bank, fallen)
             mean[fallen], covariance[fallen] = cs_kalman.predict(
-                rows.cs_mean, rows.cs_covariance, (time - begun)[fallen], filters.MANOEUVRE,
-                cs_kalman.SHOWN)
+                rows.cs_mean, rows.cs_covariance, (time - begun)[fallen],
+                bank.settings.manoeuvre, cs_kalman.SHOWN)
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state, plots, rows):
         before = take(state, rows)
         frame = before.memory.frame
-        bank, memory, expected = advance(before.bank, before.memory, plots)
+        after, memory, expected = advance(bank, before.bank, before.memory, plots)
         at = look(before.bank, frame, expected.ahead, plots.time)
         shift = gwnn_inputs.from_sigma(frame, correct(before, at))
-        output, units = speak(bank, memory)
+        output, units = speak(after, memory)
         wrong = flaw(output)
         sound = wrong == 0
         adapted = before.adapted
@@ -255,7 +264,7 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
                                             np.where(sound[:, None, None], units, 0.0))
         monitor = judge(before.monitor, plots, expected.ahead, shift, memory, wrong,
                         fall)
-        return put(state, rows, GwnnState(bank, memory, monitor,
+        return put(state, rows, GwnnState(after, memory, monitor,
                                           np.where(sound[:, None], output, 0.0), adapted))
 
     return Estimator(init, extrapolate, update)
@@ -288,7 +297,7 @@ def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, wrong,
     shift [4, N]: the network's correction of the base, m; wrong [N]: the flaw of its new
     output; memory: after the plots; fall: J over J at which it falls back.
     """
-    sigma = memory.frame[:, 2:].T
+    sigma = gwnn_inputs.frame_of(plots)[:, 2:].T
 
     def residual(position):
         off = gwnn_inputs.turn(memory.frame, plots.position.T - position) / sigma

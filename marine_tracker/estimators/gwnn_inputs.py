@@ -17,13 +17,17 @@ SCAN = filters.PERIOD           # s: the unit of time of every input, whatever t
 VELOCITY = 4 * SCAN             # s
 VAGUER = 1.5                    # times; sigma grows by no more from plot to plot: a plot shared
                                 # by several targets may be as vague as it likes
+TELLS = 100.0                   # times; a plot still vaguer is no plot to count
 FARTHEST = 25.0                 # sigma: experts farther from the base are drawn in to this
 MEMORIES = (2.0, 5.0, 12.0)     # plots over which the base's innovations are averaged
 SLOW_KEEP = (0.6, 0.85)         # part kept of the slow filters' mean innovations, a plot
 NIS_KEEP = (0.8, 0.95)
+WORST = 25.0                    # squared residual that counts at most
 DETAIL_KEEP = 0.96
 DETAIL_SCALE = float(np.sqrt(np.pi / 2))    # makes the mean size of a unit normal 1
 TRENDS = len(MEMORIES) + len(SLOW_KEEP) * 4
+# Experts whose residuals are remembered beside the base's.
+JUDGED = (4, filters.CS, filters.SECOND_IMM)
 LONE = (0, 1, 4, 7, 8, 9, 10, 11, 12)       # experts without a mirror image
 
 # How each block of inputs changes with the axes: vector; vector that also changes sign when the
@@ -31,7 +35,8 @@ LONE = (0, 1, 4, 7, 8, 9, 10, 11, 12)       # experts without a mirror image
 V, PV, E, S, P = 'vector', 'pseudovector', 'even pair', 'scalar', 'pseudoscalar'
 KINDS = ((V,) * 2 * len(LONE) + (V, PV) * 4
          + (S, S, S, P) + (S, S, S) + (S, P) * 3 + (S, S, S, P)
-         + (E,) * 3 + (V,) * TRENDS + (S, S) + (E,) + (V, E, V) + (S,) * 3)
+         + (E,) * 3 + (V,) * TRENDS + (S, S) + (S,) * 2 * (1 + len(JUDGED)) + (E,)
+         + (V, E, V) + (S,) * 3)
 COUNT = sum(1 if kind in (S, P) else 2 for kind in KINDS)
 _KEEP = np.array([1 - 1 / m for m in MEMORIES] + [keep for keep in SLOW_KEEP for _ in range(4)])
 
@@ -42,18 +47,20 @@ class Memory(NamedTuple):
     frame     [N, 4]      unit vector east and north to the last plot; its sigma along, across, m
     trend     [N, 11, 2]  averaged innovations, sigma: the base's, then the slow filters'
     nis       [N, 2]      averaged squared distances of the plots from the base
+    fit       [N, 2, 4]   averaged squared residuals, sigma^2, of the base and the experts JUDGED
     detail    [N, 2]      deviation of the plots as their own differences tell it, over the
                           stated one: level 1 of a Haar decomposition of the innovations
     last      [N, 2]      innovation of the last plot, sigma
     used      [N]         1 where the filters took the last plot, 0 where they refused it
     refused   [N]         plots refused in a row
     step      [N]         s, from the last plot taken to the one before
-    plots     [N]         plots so far
+    plots     [N]         plots so far that told something
     """
 
     frame: Array
     trend: Array
     nis: Array
+    fit: Array
     detail: Array
     last: Array
     used: Array
@@ -66,7 +73,8 @@ def begin(plots: Plots) -> Memory:
     """Memories of one plot each."""
     count = len(plots.time)
     zero, pair = np.zeros(count), np.zeros((count, 2))
-    return Memory(frame_of(plots), np.zeros((count, TRENDS, 2)), pair, pair + 1, pair.copy(),
+    return Memory(frame_of(plots), np.zeros((count, TRENDS, 2)), pair,
+                  np.full((count, 2, 1 + len(JUDGED)), 2.0), pair + 1, pair.copy(),
                   zero, zero.copy(), zero + SCAN, zero + 1)
 
 
@@ -117,6 +125,7 @@ def variances(frame, covariance):
 def remember(memory: Memory, expected: filters.Expected, plots: Plots, step, used) -> Memory:
     """Memories after one plot each, which the filters took where `used` [N] holds."""
     frame = frame_of(plots)
+    tells = (frame[:, 2:] < TELLS * memory.frame[:, 2:]).all(1)
     frame[:, 2:] = np.minimum(frame[:, 2:], VAGUER * memory.frame[:, 2:])
     sigma = frame[:, 2:].T
     off = turn(frame, plots.position.T - expected.ahead.mean[:2]) / sigma          # [2, N]
@@ -126,23 +135,28 @@ def remember(memory: Memory, expected: filters.Expected, plots: Plots, step, use
                          + [slow] * len(SLOW_KEEP), 1).transpose(2, 1, 0)
     keep = _KEEP[:, None]
     trend = keep * memory.trend + (1 - keep) * np.minimum(np.maximum(new, -8.0), 8.0)
+    judged = turn(frame, plots.position.T[:, None] - expected.ahead.experts[:2, JUDGED]
+                  ) / sigma[:, None]                                                # [2, 3, N]
+    square = np.concatenate([(off * off).sum(0)[None], (judged * judged).sum(0)]).T[:, None]
+    keep = np.array(NIS_KEEP)[:, None]
+    fit = keep * memory.fit + (1 - keep) * np.minimum(square, WORST)
     off = off.T
     nis = np.array(NIS_KEEP) * memory.nis + (1 - np.array(NIS_KEEP)) * np.minimum(
-        expected.nis, 25.0)[:, None]
+        expected.nis, WORST)[:, None]
     differ = DETAIL_SCALE * np.minimum(np.abs(off - memory.last) / np.sqrt(2), 4.0)
     both = (used & (memory.used > 0))[:, None]
     detail = np.where(both, DETAIL_KEEP * memory.detail + (1 - DETAIL_KEEP) * differ,
                       memory.detail)
     taken = used[:, None]
-    return Memory(frame, np.where(taken[..., None], trend, memory.trend), nis, detail,
+    return Memory(frame, np.where(taken[..., None], trend, memory.trend), nis, fit, detail,
                   np.where(taken, off, memory.last), used.astype(float),
-                  np.where(used, 0.0, memory.refused + 1), step, memory.plots + 1)
+                  np.where(used, 0.0, memory.refused + 1), step, memory.plots + tells)
 
 
-def inputs(state: filters.BankState, memory: Memory, period):
+def inputs(bank: filters.Filters, state: filters.BankState, memory: Memory, period):
     """The network's inputs [N, COUNT] after a plot; period s of the radar (or [N])."""
     frame, sigma = memory.frame, memory.frame[:, 2:].T
-    ahead = filters.look(state, np.atleast_1d(np.asarray(period, float)))
+    ahead = filters.look(bank, state, np.atleast_1d(np.asarray(period, float)))
     off, weight = apart(frame, ahead), ahead.weight
     blocks = [np.arcsinh(off[:, LONE]).transpose(1, 0, 2).reshape(4 * len(LONE), -1)]
     for right, left in filters.TURNS:
@@ -151,7 +165,7 @@ def inputs(state: filters.BankState, memory: Memory, period):
         blocks += [both[:2], differ[:2], both[2:], differ[2:]]
     blocks.append(_modes(weight[filters.BASE], 2))
     blocks.append(_modes(weight[filters.RICH], 3))
-    blocks.append(_modes(weight[filters.TUNED], 2))
+    blocks.append(_modes(weight[filters.SECOND], 2))
 
     columns = linear_modes.columns_of(state.rows[:, :filters.RICH.stop])
     posterior = state.weight.T
@@ -162,6 +176,9 @@ def inputs(state: filters.BankState, memory: Memory, period):
         blocks.append(0.5 * np.log(_along_across(frame, spread) / (unit * unit) + 1e-6))
     blocks.append(np.arcsinh(memory.trend).transpose(1, 2, 0).reshape(2 * TRENDS, -1))
     blocks.append(np.log(memory.nis + 0.1).T)
+    fit = np.log(memory.fit + 0.1)
+    fit[..., 1:] -= fit[..., :1]                # better or worse than the base
+    blocks.append(fit.reshape(len(fit), -1).T)
     blocks.append(np.log(memory.detail + 0.05).T)
     blocks.append(np.arcsinh(turn(frame, ahead.mean[2:]) * (SCAN / sigma)))
     blocks.append(np.log(sigma / 25))

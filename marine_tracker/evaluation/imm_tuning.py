@@ -1,7 +1,8 @@
 """The best settings of the four-mode IMM that a search finds: rivals of `gwnn` as strong as can be.
 
-Tracks are those that the weights of `gwnn` are trained on, drawn with a seed apart, but for those
-of close-range radars: the comparison has none, and an IMM tuned for them too were a weaker rival.
+Tracks are those that the weights of `gwnn` are trained on, drawn with a seed apart, but of the
+first sort of radars only (for ships: none at close range): the comparison has no others, and an
+IMM tuned for them too were a weaker rival.
 Every candidate sees the same plots (common random numbers), one scan ahead, with the gate of the
 comparison. What counts is the geometric mean, over kinds of motion and phases, of the RMS
 position error in the plots' true deviations: each kind and phase counts alike.
@@ -16,13 +17,13 @@ from scipy import optimize
 
 from ..estimators import imm
 from ..types import take
-from . import gwnn_training, ship_tracks, track_trials
+from . import gwnn_samples, ship_tracks, track_trials, training_tracks
 from .report import Figure
 
 # Weight of a cell where ships keep course and speed, by what the IMM is tuned for.
 STRAIGHT_WEIGHT = {'training': 1.0, 'manoeuvre': 0.0}
 PERIOD = 60 / 22                # s, to which the settings refer
-LEAST_TRACKS = 10 * len(ship_tracks.KINDS)
+LEAST_TRACKS = 10 * len(ship_tracks.KINDS)          # every vessel class has as many kinds
 DRAWN = 2                       # times as many tracks are drawn: close ones are left out
 GLOBAL_SHARE = 2 / 3            # of the evaluations, all over the bounds; the rest go downhill
 POPULATION = 4                  # times the number of settings searched, rounded up to 2^n
@@ -34,7 +35,7 @@ BOUNDS = {
     'quiet_noise': (1e-4, 0.1),
     'loud_noise': (0.03, 5.0),
     'turn_noise': (1e-4, 1.0),
-    'turn_rate': (0.003, 0.3),  # rad/s
+    'turn_rate': (0.003, 0.45), # rad/s
     'leave_quiet': (1e-4, 0.3),
     'leave_loud': (0.01, 0.45),
     'leave_turn': (0.01, 0.45),
@@ -65,18 +66,17 @@ class Found(NamedTuple):
     best: list[float]
 
 
-def course(tracks: int, rng) -> Course:
+def course(tracks: int, rng, vessel_class: str = 'ship') -> Course:
     """About so many tracks, as many of each kind."""
-    each = tracks // len(ship_tracks.KINDS)
-    names = list(ship_tracks.KINDS)
-    kind = np.repeat(np.arange(len(names)), DRAWN * each)
-    radar, steps, ranges, fastest, close = gwnn_training.conditions(len(kind), rng)
-    ships = ship_tracks.sail([names[i] for i in kind], ranges, steps, rng, fastest)
-    nearest = np.hypot(*np.moveaxis(ships.position, -1, 0)).min(1)
-    fit = ~close & (nearest > gwnn_training.NEAREST)
-    keep = np.concatenate([np.flatnonzero(fit & (kind == i))[:each] for i in range(len(names))])
-    on = track_trials.trial(take(ships, keep), take(radar, keep), rng)
-    kind, cells, counts, straight = kind[keep], [], [], []
+    waters = training_tracks.WATERS[vessel_class]
+    names = list(waters.kinds)
+    each = tracks // len(names)
+    drawn = training_tracks.draw(waters._replace(radars=waters.radars[:1]),
+                                 np.repeat(np.arange(len(names)), DRAWN * each),
+                                 gwnn_samples.SCANS, rng)
+    keep = np.concatenate([np.flatnonzero(drawn.kind == i)[:each] for i in range(len(names))])
+    on = track_trials.trial(take(drawn.ships, keep), take(drawn.radar, keep), rng)
+    kind, cells, counts, straight = drawn.kind[keep], [], [], []
     for i, name in enumerate(names):
         for phase, within in (('straight', ~on.phase), ('manoeuvre', on.phase)):
             chosen = on.counts & within & (kind == i)[:, None]
@@ -89,7 +89,7 @@ def course(tracks: int, rng) -> Course:
 
 def errors(modes: imm.Modes, on: Course):
     """Squared errors [C, B] of an IMM summed over the scans of each cell, in true deviations."""
-    estimator = imm.imm(modes, gwnn_training.SPEED)
+    estimator = imm.imm(modes, training_tracks.SPEED)
     found = track_trials.run(estimator, on.trial, gated=True).position
     found = found / np.square(on.trial.radar.truly)[:, None]
     return np.einsum('bk,cbk->cb', found, on.counts)
@@ -200,16 +200,17 @@ class _SpentError(Exception):
 
 
 def tune(target: str, tracks: int, evaluations: int, seed: int,
-         progress: Progress = lambda done, whole: None) -> tuple[Found, Course]:
+         progress: Progress = lambda done, whole: None, vessel_class: str = 'ship'
+         ) -> tuple[Found, Course]:
     """The settings found for a target of STRAIGHT_WEIGHT, and the tracks they were found on."""
-    on = course(tracks, _tracks_rng(seed, 0))
+    on = course(tracks, _tracks_rng(seed, 0), vessel_class)
     return search(lambda modes: loss(errors(modes, on), on, target), evaluations, seed,
                   progress=progress), on
 
 
-def fresh(tracks: int, seed: int) -> Course:
+def fresh(tracks: int, seed: int, vessel_class: str = 'ship') -> Course:
     """Tracks that `tune` with this seed does not see."""
-    return course(tracks, _tracks_rng(seed, 1))
+    return course(tracks, _tracks_rng(seed, 1), vessel_class)
 
 
 def _tracks_rng(seed: int, part: int):

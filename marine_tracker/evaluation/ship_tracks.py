@@ -14,6 +14,9 @@ from ..types import Array, Plots
 
 SUB_STEPS = 4
 LONGEST_PHASE = 8               # scans: a manoeuvre's phase ends so many scans after it
+# Where on a hull the plot lies: a slow wander, and jumps to another part or what lies beside it.
+WANDER, WANDER_KEEP = 0.7, 0.85         # deviation, of the hull's; part kept a scan
+JUMP, FAR, BACK = 0.07, 2.5, 0.6        # chance a scan; deviation, of the hull's; chance to be home
 
 
 class Ships(NamedTuple):
@@ -32,23 +35,27 @@ class Ships(NamedTuple):
 
 
 class Kind(NamedTuple):
-    """How ships of a kind move.
+    """How ships of a kind move; pairs are least and most.
 
     begin    chance a scan that a manoeuvre begins
     turns    part of the manoeuvres that are turns; the others change speed
-    radius   m, least and most, of a turn
+    speed    m/s
+    radius   m, of a turn
     lateral  m/s^2, most in a turn
-    angle    rad, most, of a turn
-    weave    whether the course swings all the time
+    angle    deg, most, of a turn
+    thrust   m/s^2, of a change of speed
+    weave    s, periods in which the course swings all the time; None: it does not
     drift    part of the ships whose speed and course wander slowly
     """
 
     begin: float
     turns: float = 0.75
+    speed: tuple[float, float] = (2.0, 18.0)
     radius: tuple[float, float] = (150.0, 2000.0)
     lateral: float = 1.2
-    angle: float = float(np.radians(150))
-    weave: bool = False
+    angle: float = 150.0
+    thrust: tuple[float, float] = (0.03, 0.3)
+    weave: tuple[float, float] | None = None
     drift: float = 0.5
 
 
@@ -57,39 +64,58 @@ KINDS = {
     'mix': Kind(1 / 80),
     'frequent': Kind(1 / 35),
     'sharp': Kind(1 / 45, turns=0.95, radius=(150.0, 450.0)),
-    'weave': Kind(0.0, weave=True),
-    'agile': Kind(1 / 10, radius=(15.0, 150.0), lateral=4.0, angle=float(np.radians(240))),
+    'weave': Kind(0.0, weave=(60.0, 240.0)),
+    'agile': Kind(1 / 10, radius=(15.0, 150.0), lateral=4.0, angle=240.0, thrust=(0.12, 1.2)),
     'drift': Kind(0.0, drift=1.0),
+}
+# Boats: from one that hardly moves to one that is turned about for fun.
+SMALL_CRAFT = {
+    'idle': Kind(1 / 120, speed=(0.0, 1.0), radius=(3.0, 20.0), lateral=0.5, thrust=(0.02, 0.1)),
+    'steady': Kind(0.0, speed=(0.5, 12.0), drift=0.3),
+    'cruise': Kind(1 / 40, speed=(1.0, 15.0), radius=(30.0, 500.0), lateral=2.5,
+                   thrust=(0.05, 0.8)),
+    'ferry': Kind(1 / 25, turns=0.6, speed=(0.0, 6.0), radius=(5.0, 80.0), lateral=1.0,
+                  thrust=(0.05, 0.5)),
+    'weave': Kind(0.0, speed=(2.0, 12.0), lateral=3.0, weave=(12.0, 80.0)),
+    'sharp': Kind(1 / 30, turns=0.9, speed=(2.0, 12.0), radius=(15.0, 120.0), lateral=4.0,
+                  angle=200.0, thrust=(0.1, 1.5)),
+    'rib': Kind(1 / 8, turns=0.7, speed=(2.0, 20.0), radius=(12.0, 100.0), lateral=4.0,
+                angle=300.0, thrust=(0.3, 2.0)),
 }
 
 
-def sail(kinds, ranges, steps, rng, fastest=18.0) -> Ships:
-    """Ships of the kinds [B] (names) that begin at the ranges [B] m.
+def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
+    """Ships of kinds [B] (their names) that begin at the ranges [B] m.
 
-    steps [B, K] s: time from the scan before; fastest m/s, of all or of each [B].
+    steps [B, K] s: time from the scan before; fastest m/s, of all or of each [B]; kinds: what
+    the names mean.
     """
     count, scans = steps.shape
-    every = [KINDS[name] for name in kinds]
+    every = [kinds[name] for name in names]
     begin, turns, lateral, angle, drift = (
         np.array([getattr(kind, name) for kind in every])
         for name in ('begin', 'turns', 'lateral', 'angle', 'drift'))
-    weave = np.array([kind.weave for kind in every])
+    angle = np.radians(angle)
     tight, wide = np.log(np.array([kind.radius for kind in every])).T
-    agile = tight < np.log(100.0)
+    low, high = np.array([kind.speed for kind in every]).T
+    high = np.maximum(np.minimum(high, fastest), low)
+    gentle, hard = np.array([kind.thrust for kind in every]).T
+    short, long = np.array([kind.weave or (0.0, 0.0) for kind in every]).T
+    weave = long > 0
 
     position = ranges[:, None] * unit_vector(rng.uniform(0, 2 * np.pi, count))
-    course, speed = rng.uniform(0, 2 * np.pi, count), rng.uniform(1.0, fastest, count)
+    course, speed = rng.uniform(0, 2 * np.pi, count), rng.uniform(low, high)
     wander = rng.random(count) < drift
     speed_swing = wander * rng.uniform(0.2, 1.5, count)
     speed_rate = 2 * np.pi / rng.uniform(300, 1500, count)
     course_rate = 2 * np.pi / rng.uniform(200, 900, count)
     course_swing = wander * np.minimum(np.radians(rng.uniform(1, 8, count)),
-                                       0.03 / (speed * course_rate))
-    weave_rate = 2 * np.pi / rng.uniform(60, 240, count)
+                                       0.03 / (np.maximum(speed, 0.1) * course_rate))
+    weave_rate = 2 * np.pi / np.where(weave, rng.uniform(short, long), 1.0)
     weave_swing = weave * np.minimum(np.radians(rng.uniform(10, 45, count)),
-                                     1.2 / (speed * weave_rate))
+                                     lateral / (np.maximum(speed, 0.1) * weave_rate))
     phases = rng.uniform(0, 2 * np.pi, (3, count))
-    speed = np.maximum(speed, 2.0)
+    stop = np.minimum(low, 0.3)
 
     rate, left = np.zeros(count), np.zeros(count)                   # of turns: rad/s, rad to go
     push, goal = np.zeros(count), speed.copy()                      # m/s^2 and m/s
@@ -104,9 +130,8 @@ def sail(kinds, ranges, steps, rng, fastest=18.0) -> Ships:
         side = np.where(rng.random(count) < 0.5, -1.0, 1.0)
         rate = np.where(turning, side * speed / radius, rate)
         left = np.where(turning, rng.uniform(np.radians(15), angle), left)
-        goal = np.where(changing, rng.uniform(1, fastest, count), goal)
-        hard = rng.uniform(0.03, 0.3, count) * np.where(agile, 4.0, 1.0)
-        push = np.where(changing, np.sign(goal - speed) * hard, push)
+        goal = np.where(changing, rng.uniform(low, high), goal)
+        push = np.where(changing, np.sign(goal - speed) * rng.uniform(gentle, hard), push)
 
         positions[k], velocities[k] = position, speed[:, None] * unit_vector(course)
         manoeuvre[k] = (left > 0) | (push != 0) | weave
@@ -120,7 +145,7 @@ def sail(kinds, ranges, steps, rng, fastest=18.0) -> Ships:
             left = np.where(in_turn, left - np.abs(rate) * dt, 0.0)
             drifted = speed + dt * speed_swing * speed_rate * np.cos(
                 speed_rate * clock + phases[2])
-            pushed = np.maximum(drifted, 0.3) + push * dt
+            pushed = np.maximum(drifted, stop) + push * dt
             done = (push != 0) & ((pushed - goal) * np.sign(push) >= 0)
             speed, push = np.where(done, goal, pushed), np.where(done, 0.0, push)
             position = position + (dt * speed)[:, None] * unit_vector(course)
@@ -155,10 +180,11 @@ class Radar(NamedTuple):
     period: Array
 
 
-def observe(ships: Ships, radar: Radar, rng) -> tuple[list[Plots], NDArray[np.bool_]]:
+def observe(ships: Ships, radar: Radar, rng, hull=None) -> tuple[list[Plots], NDArray[np.bool_]]:
     """Plots of every ship, a list over the scans, and which were detected [B, K].
 
-    The first two scans always are.
+    The first two scans always are. hull [B] m: how far the plots wander and jump over the ship,
+    along and across the line of sight; not at all by default.
     """
     shape = ships.time.shape
     distance, bearing = to_range_bearing(ships.position)
@@ -167,6 +193,10 @@ def observe(ships: Ships, radar: Radar, rng) -> tuple[list[Plots], NDArray[np.bo
     def noise(sigma):
         wild = rng.standard_normal(shape) + rare * 5 * rng.standard_normal(shape)
         return (sigma * radar.truly)[:, None] * wild
+    if hull is not None:
+        along, across = hull[:, None] * _on_hull(shape, rng)
+        bearing = bearing + across / np.maximum(distance, 1.0)
+        distance = distance + along
     distance = np.maximum(distance + noise(radar.range_sigma), 1.0)
     bearing = bearing + noise(radar.bearing_sigma)
     position, covariance = polar_to_position(distance, bearing, radar.range_sigma[:, None],
@@ -177,3 +207,16 @@ def observe(ships: Ships, radar: Radar, rng) -> tuple[list[Plots], NDArray[np.bo
     seen = rng.random(shape) < radar.detection[:, None]
     seen[:, :2] = True
     return plots, seen
+
+
+def _on_hull(shape, rng):
+    """Where the plots [B, K] lie, [2, B, K], in units of the hull's size."""
+    wander = rng.standard_normal((2, *shape))
+    jumps = rng.random(shape) < JUMP
+    place = FAR * rng.standard_normal((2, *shape)) * (rng.random(shape) > BACK)
+    place[..., 0] = 0.0
+    for k in range(1, shape[1]):
+        wander[..., k] = (WANDER_KEEP * wander[..., k - 1]
+                          + np.sqrt(1 - WANDER_KEEP ** 2) * wander[..., k])
+        place[..., k] = np.where(jumps[:, k], place[..., k], place[..., k - 1])
+    return WANDER * wander + place

@@ -11,7 +11,7 @@ import numpy as np
 from .wavelet_network import Layout, Network, group_size
 
 FORMAT = 1
-SHIPPED = Path(__file__).parent / 'weights' / 'gwnn.npz'
+FOLDER = Path(__file__).parent / 'weights'
 ARRAYS = ('centre', 'scale', 'inner', 'outer', 'bias')
 NETWORKS = ('fusion', 'spread')
 
@@ -26,6 +26,11 @@ class Weights(NamedTuple):
     fusion: Network
     spread: Network
     manifest: dict[str, Any]
+
+
+def shipped(vessel_class: str) -> Path:
+    """The file of weights that comes with the package for a vessel class."""
+    return FOLDER / f'gwnn_{vessel_class}.npz'
 
 
 def _arrays(weights: Weights) -> dict[str, np.ndarray]:
@@ -85,7 +90,7 @@ def load(path, inputs: int, outputs: dict[str, int]) -> Weights:
 
 
 def _network(name, arrays, layout, inputs, outputs, what) -> Network:
-    form = Layout(int(layout[0]), int(layout[1]), float(layout[2]), int(layout[3]))
+    form = Layout(int(layout[0]), int(layout[1]), float(layout[2]), int(layout[3]), *layout[4:])
     group = group_size(form)
     shapes = {'centre': (inputs,), 'scale': (inputs,), 'inner': (inputs + 1, outputs * group),
               'outer': (outputs, group), 'bias': (outputs,)}

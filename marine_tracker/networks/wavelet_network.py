@@ -4,6 +4,8 @@ S(t) = tanh(t / 2q), phi(t) = S(t + 1) - S(t - 1), psi(t) = phi(t + 1) - phi(t -
 d = p = 1). Each linear output has a group of hidden units of its own (local connection): the
 scaling functions phi_{M,k} and the wavelets psi_{m,k}, m = 0..M, each over n translations k, so
 n (M + 2) units a group. The number of hidden units follows from M, n and the number of outputs.
+
+To tell what the wavelets are worth, a network may have as many plain units S(t) in their place.
 """
 
 from typing import NamedTuple
@@ -12,18 +14,28 @@ import numpy as np
 
 from ..types import Array
 from . import wavelets
-from .wavelets import Units, hidden, slope
 
 BLOCK = 128                     # rows at once: their hidden units fit the processor's cache
+WAVELET, TANH = 'wavelet', 'tanh'
 
 
 class Layout(NamedTuple):
-    """levels M; translations n, centred; q of the sigmoid; outputs O."""
+    """levels M; translations n, centred; q of the sigmoid; outputs O; units WAVELET or TANH."""
 
     levels: int
     translations: int
     q: float
     outputs: int
+    units: str = WAVELET
+
+
+class Sigmoids(NamedTuple):
+    """The form of plain units: S(t) = tanh(dilation t)."""
+
+    dilation: float
+
+
+Form = wavelets.Units | Sigmoids
 
 
 class Network(NamedTuple):
@@ -49,10 +61,29 @@ def group_size(layout: Layout) -> int:
     return layout.translations * (layout.levels + 2)
 
 
-def units(layout: Layout, dtype=np.float64) -> Units:
-    """The form of all H hidden units."""
+def units(layout: Layout, dtype=np.float64) -> Form:
+    """The form of all H hidden units; ValueError for units of no known kind."""
+    if layout.units == TANH:
+        return Sigmoids(0.5 / layout.q)
+    if layout.units != WAVELET:
+        raise ValueError(f'hidden units are {layout.units!r}; they must be {WAVELET!r} or {TANH!r}')
     return wavelets.units(layout.levels, layout.translations, layout.q, groups=layout.outputs,
                           dtype=dtype)
+
+
+def hidden(form: Form, net):
+    """Values [..., H] of the units at the net inputs [..., H], and their T [..., H]."""
+    if isinstance(form, Sigmoids):
+        tanh = np.tanh(form.dilation * net)
+        return tanh, tanh
+    return wavelets.hidden(form, net)
+
+
+def slope(form: Form, value, tanh):
+    """Derivatives [..., H] of the units by their net inputs, from what `hidden` gave."""
+    if isinstance(form, Sigmoids):
+        return form.dilation * (1 - tanh * tanh)
+    return wavelets.slope(form, value, tanh)
 
 
 def squash(network: Network, inputs):
@@ -83,7 +114,7 @@ def connect(outer):
     return matrix.reshape(-1, count)
 
 
-def backward(network: Network, form: Units, layer, value, tanh, gradient):
+def backward(network: Network, form: Form, layer, value, tanh, gradient):
     """Gradients of a loss by inner, outer and bias, from its gradient [N, O] by the outputs.
 
     layer, value, tanh: what `squash` and `hidden` gave on the way forward.

@@ -20,7 +20,7 @@ def test_a_short_search_gives_settings_and_judges_them_on_fresh_tracks(capsys, t
     figures = {figure['name']: figure for figure in found['figures']}
     seen = figures['tracks of the search: found']
     assert np.log(seen['value']) == pytest.approx(found['best'][-1])
-    rival = {'training': 'TUNED_ON_ALL', 'manoeuvre': 'TUNED_FOR_MANOEUVRE'}[target]
+    rival = f'shipped for {target}'
     ratio = figures[f'fresh tracks: found over {rival}']
     assert ratio['value'] == pytest.approx(figures['fresh tracks: found']['value']
                                            / figures[f'fresh tracks: {rival}']['value'])

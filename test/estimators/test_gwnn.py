@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators import bank, cs_kalman, gwnn, gwnn_inputs, imm, linear_modes
-from marine_tracker.evaluation import ship_tracks, track_trials
+from marine_tracker.evaluation import ship_tracks, track_trials, training_tracks
 from marine_tracker.geometry import polar_to_position, to_range_bearing
 from marine_tracker.networks import gwnn_weights
+from marine_tracker.parameters import VESSEL_CLASSES
 from marine_tracker.types import Plots, append, put, take
 
 PERIOD = 60 / 22
 SPEED = 25.0
+SHIP = bank.BANKS['ship']
 SHARE = 40                      # tracks of a short trial
 
 
@@ -62,23 +64,23 @@ class TestBank:
     def test_its_imms_and_cs_are_the_products_own(self):
         """The same plots through the estimators by themselves: the same expectations."""
         on = make_trial('sharp')
-        state = bank.begin(on.plots[0], SPEED)
+        state = bank.begin(SHIP, on.plots[0], SPEED)
         alone = {'base': imm.imm(bank.TUNED_ON_ALL, SPEED),
                  12: imm.imm(bank.TUNED_FOR_MANOEUVRE, SPEED),
-                 bank.CS: cs_kalman.cs_kalman(bank.MANOEUVRE, SPEED)}
+                 bank.CS: cs_kalman.cs_kalman(SHIP.settings.manoeuvre, SPEED)}
         states = {key: one.init(on.plots[0]) for key, one in alone.items()}
         for plots in on.plots[1:]:
-            state = bank.correct(bank.expect(state, plots), plots)
+            state = bank.correct(SHIP, bank.expect(SHIP, state, plots), plots)
             states = {key: alone[key].update(states[key], plots, np.arange(SHARE))
                       for key in alone}
         time = on.plots[-1].time + PERIOD
-        ahead = bank.look(state, np.array([PERIOD]))
+        ahead = bank.look(SHIP, state, np.array([PERIOD]))
         for key, one in alone.items():
             expected = one.extrapolate(states[key], time)
             mean = ahead.mean if key == 'base' else ahead.experts[:, key]
             np.testing.assert_allclose(mean[:2].T, expected.position, atol=1e-6)
             np.testing.assert_allclose(mean[2:].T, expected.velocity, atol=1e-7)
-        columns = bank.base(state, time)
+        columns = bank.base(SHIP, state, time)
         mean, covariance = linear_modes.unpack(columns.T)
         expected = alone['base'].extrapolate(states['base'], time)
         np.testing.assert_allclose(covariance, expected.covariance, rtol=1e-6, atol=1e-6)
@@ -86,11 +88,11 @@ class TestBank:
     def test_a_slow_filter_is_a_kalman_filter(self):
         on = make_trial('steady')
         state = drive_bank(on)
-        one = imm.imm(imm.Modes((PERIOD * bank.SLOW_ACCELERATION[2] ** 2,), (0,), (1,), PERIOD),
+        one = imm.imm(imm.Modes((PERIOD * SHIP.settings.slow[2] ** 2,), (0,), (1,), PERIOD),
                       SPEED)
         alone = drive(one, on)
         expected = one.extrapolate(alone, on.plots[-1].time)
-        np.testing.assert_allclose(bank.look(state, np.zeros(1)).experts[:2, 9].T,
+        np.testing.assert_allclose(bank.look(SHIP, state, np.zeros(1)).experts[:2, 9].T,
                                    expected.position, atol=1e-6)
 
     def test_left_and_right_turns_are_told_apart(self):
@@ -101,9 +103,9 @@ class TestBank:
         state = None
         for k, position in enumerate(path):
             plots = plots_of(position[None], k * PERIOD)
-            state = (bank.begin(plots, SPEED) if state is None
-                     else bank.correct(bank.expect(state, plots), plots))
-        ahead = bank.look(state, np.array([PERIOD]))
+            state = (bank.begin(SHIP, plots, SPEED) if state is None
+                     else bank.correct(SHIP, bank.expect(SHIP, state, plots), plots))
+        ahead = bank.look(SHIP, state, np.array([PERIOD]))
         right, left = (ahead.experts[:2, j, 0] for j in bank.TURNS[1])
         heading = ahead.mean[2:, 0]
         assert np.cross(np.append(heading, 0), np.append(right - left, 0))[2] < 0
@@ -111,9 +113,9 @@ class TestBank:
 
 
 def drive_bank(on):
-    state = bank.begin(on.plots[0], SPEED)
+    state = bank.begin(SHIP, on.plots[0], SPEED)
     for plots in on.plots[1:]:
-        state = bank.correct(bank.expect(state, plots), plots)
+        state = bank.correct(SHIP, bank.expect(SHIP, state, plots), plots)
     return state
 
 
@@ -129,9 +131,9 @@ class TestInputs:
     def test_there_is_one_for_every_kind(self):
         on = make_trial('mix', scans=12)
         state = drive(gwnn.gwnn(silent(gwnn.weights()), SPEED, PERIOD), on)
-        seen = gwnn_inputs.inputs(state.bank, state.memory, PERIOD)
+        seen = gwnn_inputs.inputs(SHIP, state.bank, state.memory, PERIOD)
         assert seen.shape == (SHARE, gwnn_inputs.COUNT) and np.isfinite(seen).all()
-        assert gwnn_inputs.COUNT == 110
+        assert gwnn_inputs.COUNT == 118
 
     def test_sigma_check_reads_the_true_deviation_of_the_plots(self):
         """True deviation over the stated one, within a sixth on the mean of 40 tracks."""
@@ -157,9 +159,13 @@ class TestFusion:
         assert track_trials.rms(own.position, on.counts) == pytest.approx(
             track_trials.rms(base.position, on.counts), rel=0.05)
 
-    def test_warming_up_a_track_is_the_imm(self, weights):
+    @pytest.mark.parametrize(('vessel_class', 'modes'), [
+        ('ship', bank.TUNED_ON_ALL), ('small_craft', imm.PRESETS['small_craft'])])
+    def test_warming_up_a_track_is_the_imm(self, vessel_class, modes):
         on = make_trial('mix', scans=gwnn.WARM - 1)
-        network, base = gwnn.gwnn(weights, SPEED, PERIOD), imm.imm(bank.TUNED_ON_ALL, SPEED)
+        network = gwnn.gwnn(gwnn.weights('', vessel_class), SPEED, PERIOD,
+                            vessel_class=vessel_class)
+        base = imm.imm(modes, SPEED)
         ours, theirs = drive(network, on), drive(base, on)
         assert (gwnn.account(ours).status == gwnn.WARMUP).all()
         time = on.plots[-1].time + 2.0
@@ -177,6 +183,22 @@ class TestFusion:
                                    np.random.default_rng(0))
         assert found.high < limit
 
+    @pytest.mark.parametrize('kind', ['idle', 'steady', 'ferry', 'weave', 'rib'])
+    def test_for_small_craft_it_beats_the_products_imm(self, kind):
+        """140 boats and their radars, fair and hard: the interval's upper end."""
+        rng = np.random.default_rng(79)
+        waters = training_tracks.WATERS['small_craft']
+        found = training_tracks.draw(waters._replace(kinds={kind: waters.kinds[kind]}),
+                                     np.zeros(140, int), 80, rng)
+        on = track_trials.trial(found.ships, found.radar, rng)
+        network = gwnn.gwnn(gwnn.weights('', 'small_craft'), SPEED, PERIOD,
+                            vessel_class='small_craft')
+        own = track_trials.run(network, on, False)
+        base = track_trials.run(imm.imm(imm.PRESETS['small_craft'], SPEED), on, True)
+        for one, other, limit in ((own.position, base.position, 1.0),
+                                  (own.velocity, base.velocity, 1.0)):
+            assert track_trials.ratio(one, other, on.counts, rng).high < limit
+
     def test_it_knows_how_far_off_it_is(self, weights):
         """Squared distance of plots from where they are expected, by its own covariance: 2."""
         on = make_trial('mix', seed=78, count=150, scans=80)
@@ -193,7 +215,7 @@ class TestFusion:
 
         def correction(scans):
             time = now + scans * PERIOD
-            mean = bank.base(state.bank, time)[:4].T
+            mean = bank.base(SHIP, state.bank, time)[:4].T
             ahead = network.extrapolate(state, time)
             return ahead.position - mean[:, :2], ahead.velocity - mean[:, 2:]
         near, velocity = correction(gwnn.FADE)
@@ -250,7 +272,7 @@ class TestMonitor:
         on = make_trial('steady', scans=50)
         network = gwnn.gwnn(off_by(weights, 30.0), SPEED, PERIOD)
         state = drive(network, on)
-        alone = cs_kalman.cs_kalman(bank.MANOEUVRE, SPEED)
+        alone = cs_kalman.cs_kalman(SHIP.settings.manoeuvre, SPEED)
         theirs = drive(alone, on)
         fallen = np.flatnonzero((state.monitor.status == gwnn.FALLBACK)
                                 & (state.bank.time == on.plots[-1].time))
@@ -311,11 +333,13 @@ class TestMonitor:
 
 
 class TestWeights:
-    def test_the_shipped_file_says_how_it_came_about(self, weights):
-        manifest = weights.manifest
+    @pytest.mark.parametrize('vessel_class', VESSEL_CLASSES)
+    def test_the_shipped_file_says_how_it_came_about(self, vessel_class):
+        manifest = gwnn.weights('', vessel_class).manifest
         assert {'seed', 'tracks', 'steps', 'kinds', 'ratios', 'checksum'} <= set(manifest)
         assert manifest['inputs'] == gwnn_inputs.COUNT
-        beside = gwnn_weights.SHIPPED.with_suffix('.json')
+        assert manifest['vessel_class'] == vessel_class
+        beside = gwnn_weights.shipped(vessel_class).with_suffix('.json')
         assert json.loads(beside.read_text()) == manifest
 
     def test_what_is_saved_is_loaded(self, weights, tmp_path):
@@ -366,13 +390,22 @@ class TestWeights:
         fusion = weights.fusion
         other = fusion._replace(centre=fusion.centre[:-1])
         gwnn_weights.save(tmp_path / 'w.npz', weights._replace(fusion=other))
-        with pytest.raises(ValueError, match=r'another network: fusion_centre has shape \(109,\)'):
+        with pytest.raises(ValueError, match=r'another network: fusion_centre has shape \(117,\)'):
             gwnn.weights(str(tmp_path / 'w.npz'))
+
+    def test_weights_of_another_vessel_class_are_refused(self):
+        file = gwnn_weights.shipped('ship')
+        marks = [bank.BANKS[name].mark for name in VESSEL_CLASSES]
+        assert len(set(marks)) == len(marks)
+        with pytest.raises(ValueError, match=(
+                f'of vessel class ship .settings {SHIP.mark}., not those of small_craft .settings '
+                f'{bank.BANKS["small_craft"].mark}.: train anew with --vessel-class small_craft')):
+            gwnn.weights(str(file), 'small_craft')
 
     def test_weights_trained_over_other_filters_are_refused(self, weights, tmp_path):
         other = weights._replace(manifest={**weights.manifest, 'filters': 'other'})
         gwnn_weights.save(tmp_path / 'w.npz', other)
-        with pytest.raises(ValueError, match='trained over filters with other settings'):
+        with pytest.raises(ValueError, match='settings other'):
             gwnn.weights(str(tmp_path / 'w.npz'))
 
     def test_weights_that_are_not_numbers_are_refused(self, weights, tmp_path):

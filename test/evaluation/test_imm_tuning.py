@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators import bank, imm
-from marine_tracker.evaluation import gwnn_training, imm_tuning, ship_tracks
+from marine_tracker.evaluation import imm_tuning, ship_tracks, training_tracks
 from marine_tracker.types import take
 
 # Restless: a CV mode of much noise, seldom left.
@@ -26,7 +26,8 @@ def bowl(modes):
 def test_tracks_are_of_every_kind_alike_and_none_close(few):
     assert np.bincount(few.kind).tolist() == [10] * len(ship_tracks.KINDS)
     place = few.trial.ships.position
-    assert np.hypot(place[..., 0], place[..., 1]).min() > gwnn_training.NEAREST
+    nearest = training_tracks.WATERS['ship'].radars[0].nearest
+    assert np.hypot(place[..., 0], place[..., 1]).min() > nearest
     assert few.trial.radar.range_sigma.min() >= 8
     assert 'weave, straight' not in few.cells and 'steady, manoeuvre' not in few.cells
     assert (few.counts.sum(0) <= 1).all() and few.counts[..., :20].sum() == 0
@@ -93,7 +94,7 @@ def test_one_evaluation_is_the_start_and_a_loss_that_is_no_number_is_told():
 def test_all_settings_tried_keep_to_the_bounds():
     low, high = imm_tuning.modes_at(np.zeros(7)), imm_tuning.modes_at(np.ones(7))
     assert low.noise[0] == pytest.approx(imm_tuning.PERIOD * 1e-4 ** 2)
-    assert high.turn_rate == pytest.approx((0, 0, 0.3, -0.3))
+    assert high.turn_rate == pytest.approx((0, 0, 0.45, -0.45))
     assert high.stay == pytest.approx((0.7, 0.55, 0.55, 0.55))
     tried = []
 
@@ -106,7 +107,7 @@ def test_all_settings_tried_keep_to_the_bounds():
             ends = np.sort([getattr(low, field), getattr(high, field)], 0)
             value = np.array(getattr(modes, field))
             assert (ends[0] * (1 - 1e-9) <= value).all() and (value <= ends[1] * (1 + 1e-9)).all()
-        assert 0.003 * (1 - 1e-9) <= modes.turn_rate[2] <= 0.3 * (1 + 1e-9)
+        assert 0.003 * (1 - 1e-9) <= modes.turn_rate[2] <= 0.45 * (1 + 1e-9)
     assert best.noise == pytest.approx(high.noise, rel=0.2)
     for corner in (low, high):              # every corner is a chain that exists
         imm.bank_of(corner)

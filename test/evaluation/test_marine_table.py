@@ -10,7 +10,7 @@ from marine_tracker.evaluation.experiments import EXPERIMENTS, marine_table
 @pytest.fixture(scope='module')
 def figures():
     """Ten runs: the RMS over 10 x 360 scans of correlated errors is known to a few per cent."""
-    return {figure.name: figure for figure in marine_table.run(10, 1)}
+    return {figure.name: figure for figure in marine_table.run(10, 1).figures}
 
 
 def test_the_figures_demanded_are_met(figures):

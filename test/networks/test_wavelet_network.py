@@ -10,11 +10,21 @@ LAYOUT = net.Layout(levels=2, translations=5, q=1.2, outputs=3)
 INPUTS = 4
 
 
+def made(layout):
+    rng = np.random.default_rng(3)
+    network = net.start(layout, rng.normal(size=INPUTS), rng.uniform(0.5, 2, INPUTS), rng, float)
+    return network._replace(bias=rng.normal(size=layout.outputs))
+
+
 @pytest.fixture
 def network():
-    rng = np.random.default_rng(3)
-    made = net.start(LAYOUT, rng.normal(size=INPUTS), rng.uniform(0.5, 2, INPUTS), rng, float)
-    return made._replace(bias=rng.normal(size=LAYOUT.outputs))
+    return made(LAYOUT)
+
+
+@pytest.fixture(params=[net.WAVELET, net.TANH])
+def either(request):
+    """A network of wavelets, and one of as many plain units."""
+    return made(LAYOUT._replace(units=request.param))
 
 
 @pytest.fixture
@@ -43,13 +53,27 @@ def test_hidden_units_are_the_scaling_functions_and_wavelets_of_the_paper():
                                    atol=1e-14)
 
 
-def test_outputs_see_their_own_units_only(network, inputs):
+def test_plain_units_are_the_sigmoid_of_the_input_layer(inputs):
+    plain = made(LAYOUT._replace(units=net.TANH))
+    assert plain.inner.shape == (INPUTS + 1, 60) and plain.outer.shape == (3, 20)
+    net_input = net.squash(plain, inputs) @ plain.inner
+    value = wavelets.sigmoid(net_input, 1.2).reshape(-1, 3, 20)
+    expected = (value * plain.outer).sum(2) + plain.bias
+    np.testing.assert_allclose(net.forward(plain, inputs), expected, rtol=1e-12)
+
+
+def test_units_of_no_known_kind_are_refused():
+    with pytest.raises(ValueError, match="are 'relu'; they must be 'wavelet' or 'tanh'"):
+        net.units(LAYOUT._replace(units='relu'))
+
+
+def test_outputs_see_their_own_units_only(either, inputs):
     """Local connection: changing one group's weights moves one output."""
-    before = net.forward(network, inputs)
-    inner, outer = network.inner.copy(), network.outer.copy()
+    before = net.forward(either, inputs)
+    inner, outer = either.inner.copy(), either.outer.copy()
     inner[:, 20:40] += 0.3
     outer[1] += 0.2
-    after = net.forward(network._replace(inner=inner, outer=outer), inputs)
+    after = net.forward(either._replace(inner=inner, outer=outer), inputs)
     np.testing.assert_array_equal(after[:, [0, 2]], before[:, [0, 2]])
     assert (after[:, 1] != before[:, 1]).all()
 
@@ -62,43 +86,43 @@ def test_output_is_that_of_the_definition_written_out(network, inputs):
     np.testing.assert_allclose(net.forward(network, inputs), expected, rtol=1e-12)
 
 
-def test_many_rows_give_what_each_gives_alone(network):
+def test_many_rows_give_what_each_gives_alone(either):
     inputs = np.random.default_rng(5).normal(0, 2, (3 * net.BLOCK + 5, INPUTS))
-    together = net.forward(network, inputs)
-    alone = np.concatenate([net.forward(network, row[None]) for row in inputs[::40]])
+    together = net.forward(either, inputs)
+    alone = np.concatenate([net.forward(either, row[None]) for row in inputs[::40]])
     np.testing.assert_allclose(together[::40], alone, rtol=1e-10, atol=1e-12)
 
 
-def test_jacobian_is_that_of_differences(network, inputs):
-    found = net.jacobian(network, inputs)
+def test_jacobian_is_that_of_differences(either, inputs):
+    found = net.jacobian(either, inputs)
     step = 1e-6
     for i in range(INPUTS):
         push = np.zeros(INPUTS)
         push[i] = step
-        slope = (net.forward(network, inputs + push) - net.forward(network, inputs - push)) / (
+        slope = (net.forward(either, inputs + push) - net.forward(either, inputs - push)) / (
             2 * step)
         np.testing.assert_allclose(found[:, :, i], slope, rtol=1e-6, atol=1e-8)
 
 
 @pytest.mark.parametrize('part', ['inner', 'outer', 'bias'])
-def test_gradients_are_those_of_differences(network, inputs, part):
+def test_gradients_are_those_of_differences(either, inputs, part):
     target = np.random.default_rng(6).normal(size=(len(inputs), LAYOUT.outputs))
 
     def loss(one):
         return 0.5 * np.square(net.forward(one, inputs) - target).sum()
-    form = net.units(LAYOUT)
-    layer = net.squash(network, inputs)
-    value, tanh = net.hidden(form, layer @ network.inner)
+    form = net.units(either.layout)
+    layer = net.squash(either, inputs)
+    value, tanh = net.hidden(form, layer @ either.inner)
     gradients = dict(zip(('inner', 'outer', 'bias'), net.backward(
-        network, form, layer, value, tanh, net.forward(network, inputs) - target)))
-    weights = getattr(network, part)
+        either, form, layer, value, tanh, net.forward(either, inputs) - target)))
+    weights = getattr(either, part)
     rng = np.random.default_rng(7)
     for _ in range(20):
         at = tuple(rng.integers(0, size) for size in weights.shape)
         push = np.zeros_like(weights)
         push[at] = 1e-6
-        slope = (loss(network._replace(**{part: weights + push}))
-                 - loss(network._replace(**{part: weights - push}))) / 2e-6
+        slope = (loss(either._replace(**{part: weights + push}))
+                 - loss(either._replace(**{part: weights - push}))) / 2e-6
         assert gradients[part][at] == pytest.approx(slope, rel=1e-5, abs=1e-7)
 
 

@@ -1,13 +1,12 @@
-"""Experiments by name: each module has HELP, RUNS and run(runs, seed) -> figures.
+"""Experiments by name: each module has HELP, RUNS and run(runs, seed, progress) -> Result.
 
-It may have claims(runs, seed) -> report.Claims, printed below the table, and pictures(folder,
-runs, seed) -> files drawn, for `--out`. One with DATA, a text, takes `--data FOLDER` and passes it
-to `run` as `data`.
+It may have OPTIONS, {name: how argparse is to read --name}: its `run` takes them as keywords.
 """
 
 from types import ModuleType
 
-from . import gwnn_monte_carlo, gwnn_paper, marine_table
+from . import gwnn, gwnn_monte_carlo, gwnn_paper, marine_table
 
 EXPERIMENTS: dict[str, ModuleType] = {
-    'marine_table': marine_table, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo}
+    'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo,
+    'marine_table': marine_table}

@@ -9,17 +9,23 @@ import numpy as np
 
 from ...networks.frame import estimated_bounds, measured_bounds, width_exponent
 from .. import report
-from .paper_network_study import FAR, NEAR, PERIOD, TURN_AT, WIDTH, Study, study
+from .paper_network_pictures import pictures
+from .paper_network_study import FAR, NEAR, PERIOD, WIDTH, Study, study
+from .result import BORNE_OUT, IN_PART, NOT_BORNE_OUT, Progress, Result, silent, verdict
 
 HELP = "the wavelet network's own paper: convergence, noise, sharp turn, robustness"
 RUNS = 40
-BORNE_OUT, NOT_BORNE_OUT, IN_PART = 'borne out', 'not borne out', 'borne out in part'
 LINE = 'line through two plots'
 
 
-def run(runs: int, seed: int) -> list[report.Figure]:
+def run(runs: int, seed: int, progress: Progress = silent) -> Result:
     """Figs 1 to 5, the robustness bound, the frame and eq 23."""
-    s = study(runs, seed)
+    s = study(runs, seed, progress)
+    return Result(figures_of(s), claims_of(s), pictures(s))
+
+
+def figures_of(s: Study) -> list[report.Figure]:
+    """All that was measured."""
     claimed = 'paper 000'
     figures = []
     for speed, along, bearing in zip(s.speeds, s.range_error, s.bearing_error):
@@ -81,9 +87,8 @@ def signal_band():
     return 2 * np.pi * PERIOD / 1000, 2 * np.pi * PERIOD / (2 * 19)
 
 
-def claims(runs: int, seed: int) -> list[report.Claim]:
+def claims_of(s: Study) -> list[report.Claim]:
     """What the paper says, what was found, and the verdict."""
-    s = study(runs, seed)
     return [*claims_of_learning(s), *claims_of_tracking(s), *claims_of_theory(s)]
 
 
@@ -151,14 +156,3 @@ def claims_of_theory(s: Study):
         + ', '.join(f'{high:.2f} rad at q = {q:g}' for q, (_, high) in s.bands.items())
         + f'. The track needs no more than {signal_band()[1]:.2f} rad a scan',
         verdict(upper == sorted(upper)))
-
-
-def verdict(holds, otherwise: str = NOT_BORNE_OUT) -> str:
-    """In words."""
-    return BORNE_OUT if holds else otherwise
-
-
-def pictures(folder, runs: int, seed: int) -> list:
-    """Draw all into the folder; returns the files. Needs matplotlib (the extra `plot`)."""
-    from .paper_network_pictures import draw
-    return draw(folder, study(runs, seed), TURN_AT)

@@ -15,6 +15,7 @@ from ...estimators.contract import Estimator
 from ...geometry import polar_to_position, to_range_bearing, unit_vector
 from ...types import Plots
 from .. import report
+from .result import Progress, Result, silent
 
 HELP = 'CV, IMM and CS-Kalman on a straight run, in turns and on a fast boat'
 RUNS = 100
@@ -89,11 +90,12 @@ def errors(estimator: Estimator, leg: Leg, runs: int, seed: int):
     return tuple(float(np.sqrt(np.mean(np.square([pair[i] for pair in off])))) for i in (0, 1))
 
 
-def run(runs: int, seed: int) -> list[report.Figure]:
+def run(runs: int, seed: int, progress: Progress = silent) -> Result:
     """Every filter on every track, then the figures demanded of `cs_kalman`."""
-    figures = []
+    figures: list[report.Figure] = []
     found = {}
-    for name, estimator in filters().items():
+    for done, (name, estimator) in enumerate(filters().items()):
+        progress(done, len(filters()))
         for track, leg in TRACKS.items():
             found[name, track] = errors(estimator, leg, runs, seed)
             for what, unit, value in zip(('position', 'velocity'), ('m', 'm/s'),
@@ -110,4 +112,5 @@ def run(runs: int, seed: int) -> list[report.Figure]:
     position, _ = errors(cs_kalman.cs_kalman(half, 30.0), leg, runs, seed)
     figures.append(report.at_most('cs_kalman, a_max half the truth: position', position, 50.0, 'm',
                                   'prototype; 5,388 m without the variance floor'))
-    return figures
+    progress(len(filters()), len(filters()))
+    return Result(figures)

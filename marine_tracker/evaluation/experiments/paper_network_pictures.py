@@ -1,37 +1,25 @@
 """Pictures of what `paper_network_study` finds: the paper's Figs 1 to 5 and eq 20-22 drawn anew."""
 
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 
-from .paper_network_study import FAR, NEAR, Study
+from .paper_network_study import FAR, NEAR, TURN_AT, Study
+from .result import Picture
 
 BP_COLOUR, GWNN_COLOUR, OTHER = '#c2571a', '#1f5fa8', '0.35'
 SHOWN = 160                     # plots of Fig 2 and 3
 
 
-def draw(folder, s: Study, turn_at: int) -> list[Path]:
-    """Draw five pictures as PNG; the folder is made. ValueError without matplotlib."""
-    try:
-        from matplotlib.figure import Figure
-    except ModuleNotFoundError as error:
-        raise ValueError('drawing needs matplotlib: pip install "marine_tracker[plot]"') from error
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    drawn = []
-    for name, size, paint in (('fig1_steady', (9, 3.6), steady),
-                              ('fig2_3_convergence', (9, 4.6), convergence),
-                              ('fig4_noise', (9, 6.4), noise),
-                              ('fig5_sharp_turn', (9, 4.6), sharp_turn),
-                              ('eq20_22_robustness', (7.5, 4.4), robustness)):
-        figure = Figure(figsize=size, layout='constrained')
-        paint(figure, s, turn_at)
-        drawn.append(folder / f'{name}.png')
-        figure.savefig(drawn[-1], dpi=110)
-    return drawn
+def pictures(s: Study) -> list[Picture]:
+    """All five."""
+    return [Picture(name, size, partial(paint, s=s)) for name, size, paint in (
+        ('fig1_steady', (9, 3.6), steady), ('fig2_3_convergence', (9, 4.6), convergence),
+        ('fig4_noise', (9, 6.4), noise), ('fig5_sharp_turn', (9, 4.6), sharp_turn),
+        ('eq20_22_robustness', (7.5, 4.4), robustness))]
 
 
-def steady(figure, s, _):
+def steady(figure, s):
     """Fig 1."""
     figure.suptitle('Steady error of the GWNN, no noise (Fig 1)')
     left, right = figure.subplots(1, 2)
@@ -47,7 +35,7 @@ def steady(figure, s, _):
         axes.grid(color='0.92')
 
 
-def convergence(figure, s, _):
+def convergence(figure, s):
     """Fig 2 and 3."""
     axes = figure.add_subplot(
         title='Learning to extrapolate, medians of the seeds (Fig 2 and 3)',
@@ -64,7 +52,7 @@ def convergence(figure, s, _):
     axes.legend()
 
 
-def noise(figure, s, _):
+def noise(figure, s):
     """Fig 4."""
     figure.suptitle('Error of the GWNN one scan ahead in noise N(0.5, 0.3) m,'
                     ' medians of the seeds (Fig 4)')
@@ -79,7 +67,7 @@ def noise(figure, s, _):
     axes.set_xlabel('scan')
 
 
-def sharp_turn(figure, s, turn_at):
+def sharp_turn(figure, s):
     """Fig 5."""
     axes = figure.add_subplot(
         title='Turn of 50 deg on a radius of 200 m at scan 500, no noise (Fig 5)',
@@ -89,13 +77,13 @@ def sharp_turn(figure, s, turn_at):
               'line through two plots': (OTHER, ':')}
     for name, (colour, line) in styles.items():
         error = s.turning[name]
-        axes.plot(turn_at - 10 + np.arange(len(error)), error, line, color=colour,
+        axes.plot(TURN_AT - 10 + np.arange(len(error)), error, line, color=colour,
                   label=f'{name}: peak {s.peak[name]:.1f} m')
-    band(axes, (turn_at - 10, 'left'))
+    band(axes, (TURN_AT - 10, 'left'))
     axes.legend(title='curves: median of the seeds; peaks: median of theirs', title_fontsize=8)
 
 
-def robustness(figure, s, _):
+def robustness(figure, s):
     """Eq 20 to 22."""
     axes = figure.add_subplot(
         title='Steepest wavelet against the steepest sigmoid (eq 20-22)', xlabel='1 / q',

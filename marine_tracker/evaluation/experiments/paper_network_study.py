@@ -8,7 +8,6 @@ the weights once, as the paper's figures count iterations; `LOOP` corrects until
 algorithm says, and only there the step changes by eq 10.
 """
 
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,6 +27,7 @@ from ...networks import wavelets
 from ...networks.frame import spectrum
 from ...simulation import motion
 from ...types import Array
+from .result import Progress, silent
 
 PERIOD = 60 / 22                                # s
 START = 4600 * np.array([np.sin(np.radians(30)), np.cos(np.radians(30))])
@@ -172,20 +172,26 @@ class Study(NamedTuple):
     bands: dict[float, tuple[float, float]]
 
 
-@lru_cache(maxsize=1)
-def study(runs: int, seed: int) -> Study:
+def study(runs: int, seed: int, progress: Progress = silent) -> Study:
     """Every experiment with `runs` seeds; about 10 s for 40."""
+    parts = 5
+    progress(0, parts)
     ratio = np.linspace(0.05, 1.5, 59)
     steep = np.array([wavelets.steepest(1 / r) * 2 / r for r in ratio])
     crossing = brentq(lambda r: wavelets.steepest(1 / r) * 2 / r - 1, 0.5, 1.5)
     rng = np.random.default_rng(seed)
     speeds, along, bearing = steady(runs, rng)
+    progress(1, parts)
     learnt, plots = learning(runs, rng)
+    progress(2, parts)
     noise, noise_rms, real_noise = under_noise(runs, rng)
+    progress(3, parts)
     turned, peak = turning(runs, rng)
+    progress(4, parts)
+    of_units = {r: broken(1 / r, rng) for r in (0.6, 0.8, 0.9)}
+    progress(5, parts)
     return Study(speeds, along, bearing, learnt, plots, noise, noise_rms, real_noise, turned, peak,
-                 ratio, steep, float(crossing),
-                 {r: broken(1 / r, rng) for r in (0.6, 0.8, 0.9)},
+                 ratio, steep, float(crossing), of_units,
                  {q: half_band(q) for q in (0.5, WIDTH, 2.0)})
 
 

@@ -1,0 +1,104 @@
+"""Measure tracker and ARPA under the IMO's test conditions, as a type approval would.
+
+Simulated plots with the sensor errors of resolution A.823(19) go through the whole service as it
+is shipped. The parts:
+
+  accuracy    the four scenarios of A.823 after 1 and 3 minutes, limits of A.823 and MSC.192(79)
+  manoeuvres  accuracy after own ship's turns, and how long targets' turns stay wrong
+  encounters  Imazu's 22 encounters: acquired, warned of, measured (1 run for each 100)
+  loss        targets in 5 of 10 scans are kept, vanished ones called lost
+
+Errors are those of 95 runs in a hundred; beside them stands a straight line fitted to the same
+plots, and a limit that not even the line meets is told but not demanded. A thousand runs of all
+parts keep two processors busy for some twenty minutes, longer with more estimators.
+"""
+
+import os
+import sys
+
+import numpy as np
+
+from ..estimators import ESTIMATORS
+from ..evaluation import (
+    imazu_encounters,
+    imo_conformance,
+    imo_manoeuvres,
+    imo_page,
+    imo_report,
+    lost_targets,
+    report,
+)
+from ..evaluation.imo_conformance import A823, MINUTES, Outcome, a823_trial
+from ..parameters import TrackerParameters
+from .progress_bar import progress_bar
+
+HELP = 'measure it under the test conditions of the IMO'
+PARTS = ('accuracy', 'manoeuvres', 'encounters', 'loss')
+ALL = ('gwnn', 'cs_kalman', 'imm')
+
+
+def add_arguments(parser) -> None:
+    """The command line of `imo`."""
+    parser.add_argument('--runs', type=int, default=1000, metavar='N',
+                        help='Monte Carlo runs (default 1000)')
+    parser.add_argument('--estimator', choices=[*sorted(ESTIMATORS), 'all'],
+                        default=TrackerParameters().estimator,
+                        help=f'filter of the tracker, or all of {", ".join(ALL)} on the same plots '
+                             '(default %(default)s)')
+    parser.add_argument('--part', choices=PARTS, action='append',
+                        help='do this part only; may be given again')
+    parser.add_argument('--html', metavar='DIR',
+                        help='also write the report as a page with pictures (needs matplotlib)')
+    parser.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
+    parser.add_argument('--processes', type=int, default=os.cpu_count() or 1, metavar='N',
+                        help='processes at once; they change nothing but the time '
+                             '(default %(default)s)')
+    report.add_arguments(parser)
+
+
+def run(args) -> int:
+    """Print the figures; 1 where one misses its limit."""
+    for name, least in (('runs', 1), ('seed', 0), ('processes', 1)):
+        if getattr(args, name) < least:
+            raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
+    estimators = ALL if args.estimator == 'all' else (args.estimator,)
+    parts = [part for part in PARTS if part in (args.part or PARTS)]
+    results = measure(estimators, parts, args.runs, args.seed, args.processes)
+    title = (f'IMO test conditions, {", ".join(estimators)}: {args.runs} runs, seed {args.seed}')
+    if args.html:
+        page = imo_page.write(args.html, results, title, args.seed)
+        print(f'written: {page}', file=sys.stderr)
+    return report.publish(title, imo_report.figures(results), args.json, {
+        'estimators': estimators, 'parts': parts, 'runs': args.runs, 'seed': args.seed})
+
+
+def measure(estimators, parts, runs, seed, processes) -> imo_report.Results:
+    """The parts that were asked for."""
+    found = imo_report.Results(estimators, {}, {})
+    if 'accuracy' in parts:
+        keys = [(minutes, number) for minutes in MINUTES for number in A823[minutes]]
+        with progress_bar('accuracy') as progress:
+            outcomes = imo_conformance.run(
+                [a823_trial(number, 60.0 * minutes) for minutes, number in keys], estimators, runs,
+                seed, progress, processes)
+        found = found._replace(steady=dict(zip(keys, outcomes)))
+    if 'manoeuvres' in parts:
+        numbers = list(A823[3])
+        trials = [trial for number in numbers for trial in imo_manoeuvres.own_turns(number)]
+        with progress_bar('own ship turns') as progress:
+            outcomes = imo_conformance.run(trials, estimators, -(-runs // 4), seed + 1, progress,
+                                           processes)
+        with progress_bar('targets turn') as progress:
+            turns = imo_manoeuvres.target_turns(estimators, runs, seed, progress, processes)
+        found = found._replace(turns=turns, own_turns={
+            number: Outcome(one.truth, np.concatenate([one.found, other.found]))
+            for number, one, other in zip(numbers, outcomes[::2], outcomes[1::2])})
+    if 'encounters' in parts:
+        with progress_bar('encounters') as progress:
+            found = found._replace(encounters=imazu_encounters.run(
+                estimators, -(-runs // 100), seed, progress, processes))
+    if 'loss' in parts:
+        with progress_bar('loss') as progress:
+            found = found._replace(kept=lost_targets.run(estimators, runs, seed, progress,
+                                                         processes))
+    return found

@@ -1,0 +1,48 @@
+"""Many ships at once that are alike and keep clear of each other, for statistics of single ships.
+
+They lie on a circle about own ship, who lies still, and each goes at right angles to the line of
+sight, clockwise; so they stay on a circle.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..types import Array
+from .target_data import TargetData
+
+SHIPS = 24
+DISTANCE, SPEED = 5000.0, 8.0           # m, m/s
+REACH = 500.0                           # m: a track farther from a ship is not hers
+
+
+def ring(duration: float, radar: dict[str, Any], legs: list[dict[str, Any]]) -> dict[str, Any]:
+    """The scenario's mapping; all ships run the legs."""
+    return {'duration_s': duration, 'radar': radar, 'targets': [
+        {'start': {'range_m': DISTANCE, 'bearing_deg': float(bearing)},
+         'course_deg': float(bearing + 90) % 360, 'speed_mps': SPEED, 'legs': legs}
+        for bearing in (np.arange(SHIPS) + 0.5) * (360 / SHIPS)]}
+
+
+class Owners(NamedTuple):
+    """row [S] of the target that is each ship's, and whether there is one [S]."""
+
+    row: NDArray[np.int64]
+    found: NDArray[np.bool_]
+
+
+def owners(data: TargetData, place: Array) -> Owners:
+    """Which targets are those of ships at `place` [S, 2] m from own ship: the nearest ones."""
+    return owners_of(data.motion.position - data.own.position, place)
+
+
+def owners_of(shown: Array, place: Array) -> Owners:
+    """The same for targets that are shown at [N, 2] m from own ship."""
+    if not len(shown):
+        return Owners(np.zeros(len(place), np.int64), np.zeros(len(place), bool))
+    apart = shown - place[:, None]
+    distance = np.hypot(apart[..., 0], apart[..., 1])
+    distance = np.where(np.isnan(distance), np.inf, distance)
+    row = distance.argmin(1)
+    return Owners(row, distance[np.arange(len(row)), row] < REACH)

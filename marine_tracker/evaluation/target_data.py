@@ -1,0 +1,89 @@
+"""The whole service on simulated plots: scans in, what an operator is told of each target out."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arpa import arpa, cpa, motion
+from ..arpa.own_motion import WINDOW, own_motion
+from ..geometry import locate
+from ..parameters import ArpaParameters, TrackerParameters, from_mapping
+from ..simulation.scenario import Scenario
+from ..tracking import tracker
+from ..tracking.lifecycle import LOST
+from ..types import OwnShip, Scan, Tracks, append, take
+
+
+class Memory(NamedTuple):
+    """What the service knows between two scans.
+
+    own     own ship's samples as long as they count
+    report  that of the last scan
+    """
+
+    tracker: tracker.Memory
+    motion: motion.Memory
+    own: OwnShip
+    report: tracker.Report
+
+
+class TargetData(NamedTuple):
+    """What is told of N targets at one time: their rows of the tracks, motion and approach."""
+
+    time: float
+    tracks: Tracks
+    motion: motion.Motion
+    approach: cpa.Approach
+    own: cpa.OwnMotion
+
+
+class Service:
+    """Tracker and ARPA with shipped defaults, but for what a scenario's radar and waters are.
+
+    service = Service(scenario, 'imm')
+    memory = None
+    for scan, truth in radar.simulate(scenario, seed):
+        memory = service.step(memory, scan)
+    data = service.targets(memory, scan.end)
+
+    Every step does what the targets' data depend on; acquisition and alarms are left out.
+    """
+
+    def __init__(self, scenario: Scenario, estimator: str):
+        self.parameters = from_mapping(
+            TrackerParameters, {**scenario.tracker_parameters(), 'estimator': estimator})
+        self.tracker = tracker.Tracker(self.parameters)
+        self.arpa = arpa.Arpa(ArpaParameters(), self.parameters)
+
+    def step(self, memory: Memory | None, scan: Scan) -> Memory:
+        """One revolution; `memory` is None before the first."""
+        if memory is None:
+            tracked, moving, own = self.tracker.start(), motion.begin(), scan.own_ship
+        else:
+            tracked, moving, own = memory.tracker, memory.motion, lately(memory.own, scan)
+        tracked, report = self.tracker.step(tracked, scan)
+        plots = locate(scan.plots, scan.own_ship, self.parameters.range_sigma_m,
+                       self.tracker.bearing_sigma)
+        return Memory(tracked, motion.step(moving, report, plots, self.arpa.motion), own, report)
+
+    def targets(self, memory: Memory, time: float) -> TargetData:
+        """All confirmed targets, the coasting ones too, at `time`, s."""
+        tracks = memory.report.tracks
+        rows = np.flatnonzero((tracks.number > 0) & (tracks.status != LOST))
+        moving = motion.at(take(memory.motion, rows), time)
+        own = own_motion(memory.own, time, heading(memory.own))
+        limits = self.arpa.limits
+        return TargetData(time, take(tracks, rows), moving,
+                          cpa.approach(moving, own, limits.cpa, limits.tcpa), own)
+
+
+def lately(before: OwnShip, scan: Scan) -> OwnShip:
+    """The samples of own ship that count at the end of the scan, those of scans `before` too."""
+    now = scan.own_ship
+    return append(take(before, before.time > scan.end - WINDOW),
+                  take(now, now.time > before.time[-1]))
+
+
+def heading(own_ship: OwnShip) -> float:
+    """The last heading, rad: she goes as she heads."""
+    return float(np.arctan2(*own_ship.velocity[-1]))
