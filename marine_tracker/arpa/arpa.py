@@ -11,13 +11,13 @@ from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.tracker import Report
-from ..types import Array, Scan, append, take
+from ..types import Array, OwnShip, Scan, append, take
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
 from .cpa import Approach, OwnMotion, approach
 from .motion import Motion
-from .own_motion import own_motion, sea_stabilised
+from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
 from .rows import row_of
 from .swap_risk import swap_risk
@@ -25,8 +25,12 @@ from .targets import Events, Targets
 
 
 class Memory(NamedTuple):
-    """All that the ARPA knows between two scans; see the modules of the same names."""
+    """All that the ARPA knows between two scans; see the modules of the same names.
 
+    own  own ship's samples of late
+    """
+
+    own: OwnShip
     motion: motion.Memory
     acquisition: Acquisition
     alerts: Alerts
@@ -108,7 +112,8 @@ class Arpa:
     def start(self) -> Memory:
         """No targets yet."""
         p = self.parameters
-        return Memory(motion.begin(), acquisition.begin(), alerts.begin(),
+        nothing = OwnShip(np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2)))
+        return Memory(nothing, motion.begin(), acquisition.begin(), alerts.begin(),
                       past_positions.begin(p.past_positions, p.past_interval_s))
 
     def step(self, memory: Memory, scan: Scan, report: Report, heading: float, fallen=False
@@ -120,7 +125,8 @@ class Arpa:
         """
         now, tracks, tracker = scan.end, report.tracks, self.tracker
         bearing_sigma = np.radians(tracker.bearing_sigma_deg)
-        own = own_motion(scan.own_ship, now, heading)
+        samples = lately(memory.own, scan.own_ship, now)
+        own = own_motion(samples, now, heading)
 
         # motion: course and speed from a memory of their own
         plots = locate(scan.plots, scan.own_ship, tracker.range_sigma_m, bearing_sigma)
@@ -152,7 +158,7 @@ class Arpa:
         targets = append(acquired.targets, take(before, np.isin(before.id, lost)))
         targets = take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
         row = row_of(tracks.id, targets.id)
-        return Memory(remembered, acquired, alive, past), Picture(
+        return Memory(samples, remembered, acquired, alive, past), Picture(
             now, own, row, targets, take(moving, row), take(passing, row), past, at_rest[row],
             seen.danger[row], overlap[row], events, alive, changed)
 

@@ -3,12 +3,17 @@
 import numpy as np
 
 from ..geometry import own_ship_at, unit_vector
-from ..types import Array, OwnShip
+from ..types import Array, OwnShip, append, take
 from .cpa import OwnMotion
 from .motion import Motion
 
 WINDOW = 10.0               # s of samples that own ship's velocity is smoothed over
 LEAST_SIGMA = 0.01          # m/s, of own velocity: few samples may agree by chance
+
+
+def lately(before: OwnShip, now: OwnShip, end: float) -> OwnShip:
+    """The samples that count at the time `end`, s: those of the scan, and of scans before it."""
+    return append(take(before, (before.time > end - WINDOW) & (before.time < now.time[0])), now)
 
 
 def own_motion(samples: OwnShip, time: float, heading: float, window: float = WINDOW

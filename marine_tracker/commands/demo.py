@@ -3,7 +3,6 @@
 Ends with Ctrl-C, after --duration, or when the recording or scenario has ended."""
 
 import contextlib
-import ctypes
 import json
 import os
 import signal
@@ -23,6 +22,7 @@ from ..parameters import (
     TrackerParameters,
     from_mapping,
 )
+from ..processes import end_with_parent
 
 HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
 
@@ -133,7 +133,7 @@ def _child(name: str, parameters: dict[str, Any]) -> Iterator[Child]:
         # A session of its own: Ctrl-C reaches this command alone, which then ends its children.
         process = subprocess.Popen(
             arguments, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
-            env={**os.environ, 'PYTHONPATH': search}, preexec_fn=_end_with_parent)
+            env={**os.environ, 'PYTHONPATH': search}, preexec_fn=end_with_parent)
         try:
             yield Child(name, process, log)
         finally:
@@ -143,13 +143,6 @@ def _child(name: str, parameters: dict[str, Any]) -> Iterator[Child]:
                 process.send_signal(ask)
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(STOP_S)
-
-
-def _end_with_parent() -> None:
-    """In the child: be told to end should the parent be killed. Linux only; elsewhere nothing."""
-    pr_set_pdeathsig = 1
-    with contextlib.suppress(AttributeError, OSError):
-        ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
 
 
 def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:

@@ -20,7 +20,7 @@ from ..types import Array
 from .experiments import jobs
 from .experiments.result import Progress, silent
 from .ring_of_ships import owners_of
-from .target_data import Service, heading, lately
+from .target_data import Service, heading
 
 JUDGED_AFTER = 180.0            # s after acquisition
 WARNED_BEFORE = 360.0           # s of TCPA
@@ -62,18 +62,15 @@ def follow(number: int, estimators: Sequence[str], seed: int) -> Array:
     shape = (len(services), len(loaded.fleet.names))
     acquired, cpa, tcpa = np.full((3, *shape), np.inf)
     warned = np.full(shape, -np.inf)
-    own = None
     for scan, _ in radar.simulate(loaded, seed):
         left = loaded.duration - scan.end
         if left < WARNED_BEFORE:
             break
-        own = scan.own_ship if own is None else lately(own, scan)
         place = loaded.truth_at(scan.end).position - loaded.own_ship_at(scan.end).position
         for e, service in enumerate(services):
             tracked, reckoned = memories[e]
             tracked, report = service.tracker.step(tracked, scan)
-            reckoned, picture = service.arpa.step(reckoned, scan._replace(own_ship=own), report,
-                                                  heading(own))
+            reckoned, picture = service.arpa.step(reckoned, scan, report, heading(scan.own_ship))
             memories[e] = tracked, reckoned
             row, found = owners_of(picture.motion.position - picture.own.position, place)
             new = found & np.isinf(acquired[e])

@@ -5,13 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arpa import arpa, cpa, motion
-from ..arpa.own_motion import WINDOW, own_motion
+from ..arpa.own_motion import lately, own_motion
 from ..geometry import locate
 from ..parameters import ArpaParameters, TrackerParameters, from_mapping
 from ..simulation.scenario import Scenario
 from ..tracking import tracker
 from ..tracking.lifecycle import LOST
-from ..types import OwnShip, Scan, Tracks, append, take
+from ..types import OwnShip, Scan, Tracks, take
 
 
 class Memory(NamedTuple):
@@ -60,7 +60,8 @@ class Service:
         if memory is None:
             tracked, moving, own = self.tracker.start(), motion.begin(), scan.own_ship
         else:
-            tracked, moving, own = memory.tracker, memory.motion, lately(memory.own, scan)
+            tracked, moving = memory.tracker, memory.motion
+            own = lately(memory.own, scan.own_ship, scan.end)
         tracked, report = self.tracker.step(tracked, scan)
         plots = locate(scan.plots, scan.own_ship, self.parameters.range_sigma_m,
                        self.tracker.bearing_sigma)
@@ -75,13 +76,6 @@ class Service:
         limits = self.arpa.limits
         return TargetData(time, take(tracks, rows), moving,
                           cpa.approach(moving, own, limits.cpa, limits.tcpa), own)
-
-
-def lately(before: OwnShip, scan: Scan) -> OwnShip:
-    """The samples of own ship that count at the end of the scan, those of scans `before` too."""
-    now = scan.own_ship
-    return append(take(before, before.time > scan.end - WINDOW),
-                  take(now, now.time > before.time[-1]))
 
 
 def heading(own_ship: OwnShip) -> float:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from ...heap import keep_freed_memory
+from ...processes import end_with_parent
 from .result import Progress
 
 # Threads of linear algebra only disturb each other where every processor has its own process.
@@ -45,6 +46,7 @@ def run(jobs: Sequence[Job], processes: int, progress: Progress) -> list[Any]:
 
 def _begin() -> None:
     """In each process: Ctrl-C ends it without a word, the first process speaks for all."""
+    end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     keep_freed_memory()
 
