@@ -11,7 +11,7 @@ from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.tracker import Report
-from ..types import Array, OwnShip, Scan, append, take
+from ..types import Array, OwnShip, Scan, Tracks, append, take
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
@@ -138,7 +138,7 @@ class Arpa:
         # cpa: how the tracks pass own ship
         at_rest = ~makes_way(moving) & (np.hypot(*own.velocity) < OWN_AT_REST)
         moving, own = sea_stabilised(moving, own, self.current)
-        passing = approach(moving, own, self.limits.cpa, self.limits.tcpa)
+        passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(tracks, report.reason, moving.position, passing, at_rest,
                               self.zones, own, self.limits)
 
@@ -161,6 +161,16 @@ class Arpa:
         return Memory(samples, remembered, acquired, alive, past), Picture(
             now, own, row, targets, take(moving, row), take(passing, row), past, at_rest[row],
             seen.danger[row], overlap[row], events, alive, changed)
+
+    def _approach(self, moving: Motion, own: OwnMotion, acquired: Acquisition, tracks: Tracks
+                  ) -> Approach:
+        """Of the tracks that are or may become targets in this scan; nan for the others."""
+        asked = (tracks.number > 0) | np.isin(tracks.id, acquired.targets.id)
+        if len(acquired.clicks.since):
+            asked[:] = True
+        position = np.where(asked[:, None], moving.position, np.nan)
+        return approach(moving._replace(position=position), own, self.limits.cpa,
+                        self.limits.tcpa)
 
     def _swap_risk(self, tracks, remembered: motion.Memory, passing: Approach, own: OwnMotion,
                    now: float):

@@ -6,7 +6,6 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from .convert import header
@@ -79,8 +78,10 @@ class Durations:
         self._last.append(seconds)
 
     def percentile(self, percent: float) -> float:
-        """s; 0 when there are none yet."""
-        return float(np.percentile(self._last, percent)) if self._last else 0.0
+        """s, of the last ones the nearest in rank; 0 when there are none yet."""
+        if not self._last:
+            return 0.0
+        return sorted(self._last)[round(percent / 100 * (len(self._last) - 1))]
 
 
 def status(name: str, hardware_id: str, level: bytes, message: str,
