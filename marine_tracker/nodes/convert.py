@@ -6,6 +6,7 @@ Times cross this border as integer nanoseconds, for a float of seconds since 197
 """
 
 import array
+import math
 
 import numpy as np
 from builtin_interfaces.msg import Time
@@ -178,19 +179,17 @@ def odometry_to_own_ship(message: Odometry) -> tuple[Array, Array]:
     The twist is in the ship's own frame, turned into the ground's by the orientation.
     """
     pose, twist = message.pose.pose, message.twist.twist.linear
-    with np.errstate(all='ignore'):
-        yaw = yaw_of(pose.orientation)
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        velocity = np.array([cos * twist.x - sin * twist.y, sin * twist.x + cos * twist.y])
+    yaw = yaw_of(pose.orientation)
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    velocity = np.array([cos * twist.x - sin * twist.y, sin * twist.x + cos * twist.y])
     return np.array([pose.position.x, pose.position.y]), velocity
 
 
 def yaw_of(q: Quaternion) -> float:
     """Yaw, rad counter-clockwise from east; nan for an orientation that is none."""
-    with np.errstate(all='ignore'):
-        norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z
-        yaw = np.arctan2(2 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z)
-    return float(yaw) if norm > 0 else np.nan
+    norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z
+    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z)
+    return yaw if norm > 0 else math.nan
 
 
 def fix_message(time_ns: int, latitude_deg: float, longitude_deg: float) -> NavSatFix:

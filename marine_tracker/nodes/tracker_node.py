@@ -9,6 +9,7 @@ status. In `tracks` each is stamped with the time the beam passed it. `targets` 
 those that were acquired (arpa_desk.py); a lost one stands once more in `targets`, as STALE.
 """
 
+import statistics
 import time
 from collections import deque
 
@@ -179,7 +180,8 @@ class TrackerNode(RunnableNode):
         """s of one revolution: as measured, or by parameter until there is enough to measure."""
         if len(self._starts) < 4:
             return self._tracker.parameters.scan_period_s
-        return float(np.median(np.diff(self._starts)))
+        starts = list(self._starts)
+        return statistics.median(b - a for a, b in zip(starts, starts[1:]))
 
     def _seconds(self, time_ns: int) -> float:
         """s of a stamp after the first stamp that came in."""

@@ -14,6 +14,7 @@ Own ship's position is treated likewise: a sample that implies more than `MAX_OW
 rejected, until `REBASE_OWN_AFTER` samples in a row agree with each other.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -147,8 +148,8 @@ def admit_own_ship(log: OwnShipLog, time: float, position: Array,
     """
     sample = OwnShip(np.array([time]), np.reshape(position, (1, 2)).astype(float),
                      np.reshape(velocity, (1, 2)).astype(float))
-    if not all(np.isfinite(column).all() for column in sample) or (
-            np.abs(sample.position).max() > MAX_COORDINATE):
+    numbers = (time, *position, *velocity)
+    if not (all(map(math.isfinite, numbers)) and max(map(abs, position)) <= MAX_COORDINATE):
         return log, OWN_NOT_FINITE
     reason = _against(log.taken, sample)
     if not reason:
@@ -164,14 +165,14 @@ def admit_own_ship(log: OwnShipLog, time: float, position: Array,
 
 def _against(earlier: OwnShip, sample: OwnShip) -> str:
     """Why the sample cannot follow the earlier ones; '' if it can."""
-    if np.linalg.norm(sample.velocity[0]) > MAX_OWN_SPEED:
+    if math.hypot(*sample.velocity[0]) > MAX_OWN_SPEED:
         return OWN_TELEPORTED
     if not len(earlier.time):
         return ''
     step = sample.time[0] - earlier.time[-1]
     if step <= 0:
         return OWN_REPEATED if step == 0 else OWN_WENT_BACK
-    moved = np.linalg.norm(sample.position[0] - earlier.position[-1])
+    moved = math.hypot(*(sample.position[0] - earlier.position[-1]))
     return OWN_TELEPORTED if moved > MAX_OWN_SPEED * step + OWN_JITTER else ''
 
 
