@@ -6,6 +6,8 @@ import os
 import sys
 from importlib import metadata
 
+from .processes import one_thread
+
 COMMANDS = ('demo', 'replay', 'score', 'bench', 'experiments', 'train', 'tune', 'scenario', 'imo',
             'doctor')
 
@@ -26,6 +28,7 @@ first steps:
 def main(arguments: list[str] | None = None) -> int:
     """Run a command line; returns the exit code: 0 well, 1 found wanting, 2 bad usage or input."""
     argv = sys.argv[1:] if arguments is None else arguments
+    one_thread()
     try:
         args = _parser(argv).parse_args(argv)
         return args.run(args)

@@ -29,10 +29,11 @@ MAY_IMPORT = {
     'arpa': CORE,
     'evaluation': CORE | {'simulation', 'recording', 'arpa', 'heap', 'processes'},
     'display': CORE | {'arpa'},
-    'nodes': CORE | {'simulation', 'recording', 'arpa', 'display', 'parameter_files', 'heap'},
+    'nodes': CORE | {'simulation', 'recording', 'arpa', 'display', 'parameter_files', 'heap',
+                        'processes'},
     'commands': CORE | {'simulation', 'recording', 'arpa', 'display', 'evaluation', 'nodes',
                         'parameter_files', 'heap', 'processes'},
-    'cli': {'commands'},
+    'cli': {'commands', 'processes'},
     '__main__': {'cli'},
     '__init__': set(),
 }

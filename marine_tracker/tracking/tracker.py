@@ -101,12 +101,14 @@ class Tracker:
         time, position, velocity, covariance = (np.concatenate(pair) for pair in (
             (ahead.time, lone.time), (ahead.position, lone.position),
             (ahead.velocity, np.zeros_like(lone.position)),
-            (ahead.covariance[:, :2, :2] + self.glint,
-             reach(lone, scan.end, p.max_target_speed_mps) + self.glint)))
+            (ahead.covariance[:, :2, :2], reach(lone, scan.end, p.max_target_speed_mps))))
+        if p.glint_sigma_m:
+            covariance = covariance + self.glint
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
                                          p.range_sigma_m, self.bearing_sigma, self.gate_size)
-        plots = plots._replace(covariance=plots.covariance + self.glint)
+        if p.glint_sigma_m:
+            plots = plots._replace(covariance=plots.covariance + self.glint)
         seam = track.searchsorted(count)
         first, second = track[seam:] - count, plot[seam:]
         track, plot, nis, log_det = track[:seam], plot[:seam], nis[:seam], log_det[:seam]
@@ -180,7 +182,8 @@ class Tracker:
             scan.own_ship.position[-1],
             memory.next_id + len(second), memory.next_number + len(newly),
         ), Report(time, tracks, predicted, plot_of, reason,
-                  begun._replace(covariance=begun.covariance - self.glint))
+                  begun._replace(covariance=begun.covariance - self.glint)
+                  if p.glint_sigma_m else begun)
 
     def adopt(self, memory: Memory, previous: 'Tracker') -> Memory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.

@@ -9,11 +9,8 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from ...heap import keep_freed_memory
-from ...processes import end_with_parent
+from ...processes import THREADS, end_with_parent
 from .result import Progress
-
-# Threads of linear algebra only disturb each other where every processor has its own process.
-THREADS = ('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS', 'MKL_NUM_THREADS')
 
 
 class Job(NamedTuple):
