@@ -8,7 +8,7 @@ import pytest
 
 from marine_tracker.processes import THREADS
 
-SHOW = f"import os; print(*[os.environ[name] for name in {THREADS!r}])"
+SHOW = f'import os; print(*[os.environ[name] for name in {THREADS!r}])'
 
 
 @pytest.mark.parametrize('start', [
