@@ -201,11 +201,11 @@ class ArpaParameters:
     current_drift_kn: float = parameter(
         0.0, 'Speed of the current.', unit='kn', low=0.0, high=20.0, live=True)
     trial_course_deg: float = parameter(
-        0.0, 'Trial manoeuvre: course of own ship, over ground.', unit='deg', low=0.0, high=360.0,
-        live=True)
+        0.0, 'Trial manoeuvre: course of own ship, stabilised as the targets are.', unit='deg',
+        low=0.0, high=360.0, live=True)
     trial_speed_kn: float = parameter(
-        10.0, 'Trial manoeuvre: speed of own ship, over ground.', unit='kn', low=0.0, high=100.0,
-        live=True)
+        10.0, 'Trial manoeuvre: speed of own ship, stabilised likewise.', unit='kn', low=0.0,
+        high=100.0, live=True)
     trial_delay_min: float = parameter(
         0.0, 'Trial manoeuvre: time until it begins.', unit='min', low=0.0, high=60.0, live=True)
     trial_turn_rate_deg_min: float = parameter(

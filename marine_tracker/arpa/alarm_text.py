@@ -24,7 +24,7 @@ def _sentence(kind: int, name: str, zone: str, values: list[float]) -> str:
     if kind == alarms.DANGER:
         when = f'in {fourth / 60:.1f} min' if math.isfinite(fourth) else 'at an unknown time'
         return (f'{name} dangerous: CPA {third / NAUTICAL_MILE:.2f} NM {when}, probability '
-                f'{100 * fifth:.0f} %, now at {where}')
+                f'{100 * fifth:.0f} %, then at {where}')
     if kind == alarms.LOST_TARGET:
         return f'{name} lost, last at {where}'
     if kind == alarms.NEW_TARGET:

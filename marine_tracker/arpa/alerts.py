@@ -146,7 +146,9 @@ def acknowledge(alerts: Alerts, now: float, momentary: NDArray[np.bool_], kind: 
         if value is not None:
             chosen &= column == value
     if not chosen.any() and (kind is not None or number is not None):
-        raise ValueError(f'there is no alert of kind {kind} and target {number} to acknowledge')
+        what = [f'{name} {value}' for name, value in (('kind', kind), ('target', number))
+                if value is not None]
+        raise ValueError(f'there is no alert of {" and ".join(what)} to acknowledge')
     active = chosen & (alerts.state == ACTIVE_UNACKNOWLEDGED)
     ends = (chosen & (alerts.state == RECTIFIED_UNACKNOWLEDGED)) | (active & momentary[alerts.kind])
     return _change(alerts, np.where(ends, NORMAL, np.where(active, ACTIVE_ACKNOWLEDGED,

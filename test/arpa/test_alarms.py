@@ -375,7 +375,7 @@ def test_a_danger_tells_its_values(bridge):
     one = bridge()
     for _ in range(3):
         one.scan([[0.2 * NAUTICAL_MILE, 3 * NAUTICAL_MILE]], [[0.0, -30 * KNOT]])
-    assert one.text == ['TT01 dangerous: CPA 0.20 NM in 6.0 min, probability 100 %, now at '
+    assert one.text == ['TT01 dangerous: CPA 0.20 NM in 6.0 min, probability 100 %, then at '
                         '3.01 NM, 003.8 deg']
 
 
