@@ -6,14 +6,16 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def progress_bar(text: str) -> Iterator[Callable[[int, int], None]]:
-    """Shows, while the context lasts, what is told to it: parts done, and of how many."""
+def progress_bar(text: str) -> Iterator[Callable[..., None]]:
+    """Shows, while the context lasts, what is told to it: parts done, of how many, and, where
+    that has changed, what is being done."""
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (TextColumn('{task.description}'), BarColumn(),
-               TextColumn('{task.completed:.0f} of {task.total:.0f}'), TimeElapsedColumn())
+               TextColumn('{task.completed:.0f} of {task.total:.0f}'), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True,
                   disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task(text, total=1)
-        yield lambda done, whole: bar.update(task, completed=done, total=whole)
+        yield lambda done, whole, now=None: bar.update(task, completed=done, total=whole,
+                                                       description=now)

@@ -11,7 +11,6 @@ marine_tracker/evaluation/own_waters.py).
 """
 
 import json
-import sys
 from pathlib import Path
 
 from ..evaluation import gwnn_fusion_training, gwnn_samples, gwnn_training, own_waters, report
@@ -19,8 +18,11 @@ from ..heap import keep_freed_memory
 from ..networks import gwnn_weights, wavelet_network
 from ..parameters import VESSEL_CLASSES
 from ..simulation import scenario
+from .progress_bar import progress_bar
 
 HELP = 'train the weights of an estimator anew'
+STAGES = {'tracks': 'making tracks', 'fusion': 'training to weigh the filters',
+          'spread': 'training to know the error'}
 
 
 def add_arguments(parser) -> None:
@@ -62,8 +64,9 @@ def run(args) -> int:
     plan = _plan(args)
     keep_freed_memory()
     checkpoint = out.with_name(out.name + '.part')
-    with _Bar() as bar:
-        weights = gwnn_training.run(plan, checkpoint, bar.show)
+    with progress_bar(STAGES['tracks']) as show:
+        weights = gwnn_training.run(plan, checkpoint, lambda stage, done, whole: show(
+            done, whole, STAGES[stage]))
     manifest = gwnn_weights.save(out, weights)
     out.with_suffix('.json').write_text(json.dumps(manifest, indent=1) + '\n')
     checkpoint.unlink(missing_ok=True)
@@ -83,33 +86,3 @@ def _plan(args) -> gwnn_training.Plan:
     if args.scenario is not None:
         waters = own_waters.from_scenario(waters, scenario.load(args.scenario))
     return plan._replace(waters=waters)
-
-
-class _Bar:
-    """A progress bar on a terminal, nothing elsewhere."""
-
-    TEXTS = {'tracks': 'making tracks', 'fusion': 'training to weigh the filters',
-             'spread': 'training to know the error'}
-
-    def __enter__(self):
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-        console = Console(stderr=True)
-        self.bar = Progress(TextColumn('{task.description}'), BarColumn(), TimeRemainingColumn(),
-                            console=console, disable=not sys.stderr.isatty())
-        self.tasks = {stage: self.bar.add_task(text, total=None)
-                      for stage, text in self.TEXTS.items()}
-        self.bar.start()
-        return self
-
-    def __exit__(self, *_):
-        self.bar.stop()
-
-    def show(self, stage: str, done: int, whole: int) -> None:
-        """Note how far a stage is; stages before it are done."""
-        for name, task in self.tasks.items():
-            if name == stage:
-                self.bar.update(task, completed=done, total=whole)
-                break
-            self.bar.update(task, completed=1, total=1)

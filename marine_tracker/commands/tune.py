@@ -5,12 +5,12 @@ minimises the position error one scan ahead; the figures are also given on fresh
 search did not see. Some minutes of one processor.
 """
 
-import sys
 
 from ..estimators import bank
 from ..evaluation import imm_tuning, report
 from ..heap import keep_freed_memory
 from ..parameters import VESSEL_CLASSES
+from .progress_bar import progress_bar
 
 HELP = 'search the best settings of an IMM'
 EVALUATIONS, TRACKS = 600, 280
@@ -46,9 +46,9 @@ def run(args) -> int:
     shipped = {f'shipped for {target}': modes
                for target, modes in bank.STRONGEST[args.vessel_class].items()}
     rival = f'shipped for {args.target}'
-    with _Bar() as bar:
+    with progress_bar('trying settings') as show:
         found, seen = imm_tuning.tune(args.target, args.tracks, args.evaluations, args.seed,
-                                      bar.show, args.vessel_class)
+                                      show, args.vessel_class)
     fresh = imm_tuning.fresh(FRESH * args.tracks, args.seed, args.vessel_class)
     verdict = imm_tuning.judge(found.modes, shipped, rival, args.target, seen, fresh, args.seed)
     settings = imm_tuning.as_text(found.modes)
@@ -63,24 +63,3 @@ def run(args) -> int:
         {'vessel_class': args.vessel_class, 'target': args.target,
          'evaluations': args.evaluations, 'tracks': len(seen.kind), 'seed': args.seed,
          'settings': found.modes._asdict(), 'best': found.best}, [claim])
-
-
-class _Bar:
-    """A progress bar on a terminal, nothing elsewhere."""
-
-    def __enter__(self):
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-        self.bar = Progress(TextColumn('trying settings'), BarColumn(), TimeRemainingColumn(),
-                            console=Console(stderr=True), disable=not sys.stderr.isatty())
-        self.task = self.bar.add_task('', total=None)
-        self.bar.start()
-        return self
-
-    def __exit__(self, *_):
-        self.bar.stop()
-
-    def show(self, done: int, whole: int) -> None:
-        """Note how far the search is."""
-        self.bar.update(self.task, completed=done, total=whole)
