@@ -86,12 +86,15 @@ def own_ship_at(own_ship: OwnShip, time):
 def locate(polar: PolarPlots, own_ship: OwnShip, range_sigma: float, bearing_sigma: float) -> Plots:
     """Polar plots [M] placed in the ground-stabilised frame, each by own ship at its own time.
 
-    range_sigma m and bearing_sigma rad are the radar's standard deviations.
+    range_sigma m and bearing_sigma rad are the radar's standard deviations; plots that tell their
+    own covariance keep it.
     """
     origin, _ = own_ship_at(own_ship, polar.time)
     offset, covariance = polar_to_position(polar.range, polar.bearing, range_sigma, bearing_sigma)
+    if polar.covariance is not None:
+        covariance = polar.covariance
     return Plots(polar.time, polar.range, wrap_bearing(polar.bearing), polar.amplitude,
-                 origin, origin + offset, covariance)
+                 origin, origin + offset, covariance, polar.radial_speed)
 
 
 def local_from_geodetic(latitude_deg, longitude_deg, origin_latitude_deg, origin_longitude_deg):

@@ -36,12 +36,19 @@ class PolarPlots(NamedTuple):
     range      [M]  m
     bearing    [M]  rad, clockwise from true north
     amplitude  [M]  dB, signal over noise; 0 where the radar does not tell
+
+    None where the radar does not tell:
+    radial_speed  [M]        m/s over ground along the line of sight, positive when opening
+    covariance    [M, 2, 2]  m^2, east and north, of each plot's place, where a plot is the middle
+                             of a cluster of echoes; else the radar's range and bearing sigma count
     """
 
     time: Array
     range: Array
     bearing: Array
     amplitude: Array
+    radial_speed: Array | None = None
+    covariance: Array | None = None
 
 
 class Scan(NamedTuple):
@@ -83,6 +90,8 @@ class Plots(NamedTuple):
     origin      [M, 2]     m, the antenna's position at `time`
     position    [M, 2]     m, east and north, unbiased
     covariance  [M, 2, 2]  m^2, of `position`
+    radial_speed  [M]      m/s over ground along the line of sight, positive when opening; None
+                           where the radar does not tell
     """
 
     time: Array
@@ -92,6 +101,7 @@ class Plots(NamedTuple):
     origin: Array
     position: Array
     covariance: Array
+    radial_speed: Array | None = None
 
 
 class Extrapolation(NamedTuple):
@@ -137,12 +147,16 @@ class Tracks(NamedTuple):
 
 
 def take(rows_of: Any, rows: Any) -> Any:
-    """The chosen rows (indices, mask or slice) of a NamedTuple of arrays, nested ones included."""
+    """The chosen rows (indices, mask or slice) of a NamedTuple of arrays, nested ones included.
+
+    A field that is None stays None; so it does with the functions below.
+    """
     if isinstance(rows, slice):
         return _map(lambda a: a[rows], rows_of)
     if rows.dtype == bool:
         rows = rows.nonzero()[0]
-    parts = [take(a, rows) if isinstance(a, tuple) else a.take(rows, 0) for a in rows_of]
+    parts = [take(a, rows) if isinstance(a, tuple) else None if a is None else a.take(rows, 0)
+             for a in rows_of]
     return rows_of._make(parts) if hasattr(rows_of, '_make') else tuple(parts)
 
 
@@ -169,6 +183,7 @@ def put(into: Any, rows: Any, new: Any) -> Any:
 
 def _map(f, *structures):
     first = structures[0]
-    parts = [_map(f, *column) if isinstance(column[0], tuple) else f(*column)
+    parts = [_map(f, *column) if isinstance(column[0], tuple)
+             else None if all(one is None for one in column) else f(*column)
              for column in zip(*structures)]
     return first._make(parts) if hasattr(first, '_make') else tuple(parts)

@@ -48,6 +48,24 @@ def test_take_chooses_rows_of_every_array_at_every_depth(chosen, expected):
     same(take(rows(1, 5, 7), chosen), rows(*expected))
 
 
+def test_a_field_that_is_not_told_stays_so():
+    told = rows(1, 5, 7)
+    untold = told._replace(pair=None)
+    same_but_pair = (
+        (take(untold, np.array([2, 0])), rows(7, 1)), (take(untold, slice(1, None)), rows(5, 7)),
+        (append(untold, untold), rows(1, 5, 7, 1, 5, 7)),
+        (where(np.array([True, False, True]), untold, untold), told),
+        (put(untold, np.array([0]), take(untold, np.array([1]))), rows(5, 5, 7)))
+    for found, expected in same_but_pair:
+        assert found.pair is None
+        same(found._replace(pair=expected.pair), expected)
+
+
+def test_what_is_told_by_one_alone_cannot_be_joined():
+    with pytest.raises((TypeError, ValueError)):
+        append(rows(1)._replace(pair=None), rows(2))
+
+
 def test_append_puts_the_second_rows_behind_the_first():
     same(append(rows(1, 5), rows(7)), rows(1, 5, 7))
 

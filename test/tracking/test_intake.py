@@ -3,7 +3,7 @@ import pytest
 
 from marine_tracker.geometry import KNOT
 from marine_tracker.tracking import intake
-from marine_tracker.types import PolarPlots
+from marine_tracker.types import PolarPlots, append
 
 PERIOD = 60 / 22
 
@@ -33,8 +33,7 @@ def plots(range_=(1000.0,), bearing=(1.0,), amplitude=None, time=None):
 ])
 def test_a_bad_plot_is_left_out_and_counted_by_its_reason_alone(bad, reason):
     good = plots()
-    both = PolarPlots(*(np.concatenate(columns) for columns in zip(bad, good)))
-    kept, counts = intake.screen_plots(both, PERIOD, 100)
+    kept, counts = intake.screen_plots(append(bad, good), PERIOD, 100)
     assert counts == {reason: 1}
     assert kept.range.tolist() == [1000.0]
 

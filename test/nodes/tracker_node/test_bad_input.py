@@ -11,7 +11,7 @@ from sensor_msgs.msg import PointField
 from marine_tracker.nodes import convert
 from marine_tracker.nodes.tracker_node import MISSED
 from marine_tracker.tracking import intake
-from marine_tracker.types import PolarPlots
+from marine_tracker.types import PolarPlots, append
 
 EPOCH_NS = 1_700_000_000 * 1_000_000_000
 
@@ -122,10 +122,9 @@ def test_a_hundred_thousand_plots_in_one_message_are_cut_to_the_strongest(rig, c
     here = rig(max_plots=500)
     here.play(clean[0][:8])
     before = here.names()
-    flood = PolarPlots(*(np.concatenate([ours, more]) for ours, more in zip(
-        scan.plots._replace(amplitude=scan.plots.amplitude + 200), (
-            rng.uniform(scan.start, scan.end, count), rng.uniform(50, 14e3, count),
-            rng.uniform(0, 2 * np.pi, count), rng.uniform(0, 30, count)))))
+    flood = append(scan.plots._replace(amplitude=scan.plots.amplitude + 200), PolarPlots(
+        rng.uniform(scan.start, scan.end, count), rng.uniform(50, 14e3, count),
+        rng.uniform(0, 2 * np.pi, count), rng.uniform(0, 30, count)))
     here.play([scan._replace(plots=flood), clean[0][9]])
     assert here.told(intake.TOO_MANY) == count + len(scan.plots.time) - 500
     assert len(before) == 6 and set(before) <= set(here.names())
