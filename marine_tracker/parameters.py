@@ -15,6 +15,8 @@ from typing import Any, TypeVar
 import yaml
 
 VESSEL_CLASSES = ('ship', 'small_craft')
+# m: how far the point of a target that echoes strays from its middle, each axis, by vessel class.
+GLINT_SIGMA = {'ship': 25.0, 'small_craft': 0.0}
 
 
 def parameter(default, text, *, unit='', low=None, high=None, choices=(), live=False):
@@ -105,9 +107,10 @@ class TrackerParameters:
         0.5, 'Standard deviation of a measured bearing.', unit='deg', low=0.01, high=10.0,
         live=True)
     glint_sigma_m: float = parameter(
-        0.0, 'Standard deviation of the point of a target that echoes, about its middle, along '
-        'each axis: some 0.15 of the length of large ships.', unit='m', low=0.0, high=100.0,
-        live=True)
+        -1.0, 'Standard deviation of the point of a target that echoes, about its middle, along '
+        'each axis: some 0.15 of the length of large ships. Below 0: that of the vessel class, '
+        f'{GLINT_SIGMA["ship"]:g} m for ships, {GLINT_SIGMA["small_craft"]:g} for small craft.',
+        unit='m', low=-1.0, high=100.0, live=True)
     max_target_speed_mps: float = parameter(
         25.0, 'Fastest target over ground that initiation accepts.', unit='m/s', low=0.5,
         high=100.0, live=True)
@@ -160,6 +163,11 @@ class TrackerParameters:
         if self.min_range_m >= self.max_range_m:
             raise ValueError(f'parameter min_range_m is {self.min_range_m:g} m; it must be below '
                              f'max_range_m, {self.max_range_m:g} m')
+
+    @property
+    def glint_sigma(self) -> float:
+        """m: glint_sigma_m, or where that is below 0 that of the vessel class."""
+        return GLINT_SIGMA[self.vessel_class] if self.glint_sigma_m < 0 else self.glint_sigma_m
 
 
 @dataclass(frozen=True)

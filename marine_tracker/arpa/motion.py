@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..estimators import linear_modes
 from ..estimators.linear import invert_2x2, squared_distance
+from ..parameters import GLINT_SIGMA
 from ..tracking.tracker import Report
 from ..types import Array, Plots, put, take
 from . import legs, plot_noise
@@ -30,7 +31,7 @@ class Settings(NamedTuple):
     rest_time    s, ... once its velocity has not differed from 0 for so long
     """
 
-    glint_sigma: float = 20.0
+    glint_sigma: float = GLINT_SIGMA['ship']
     speed_sigma: float = 12.5
     habits: legs.Habits = legs.Habits(hold=6000.0, manoeuvre=20.0, noise=0.2)
     rest_speed: float = 0.5
@@ -39,7 +40,7 @@ class Settings(NamedTuple):
 
 PRESETS = {
     'ship': Settings(),
-    'small_craft': Settings(glint_sigma=0.0, habits=legs.Habits(600.0, 10.0, 4.0)),
+    'small_craft': Settings(GLINT_SIGMA['small_craft'], habits=legs.Habits(600.0, 10.0, 4.0)),
 }
 
 

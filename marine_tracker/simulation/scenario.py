@@ -39,7 +39,7 @@ from numpy.typing import NDArray
 
 from .. import config
 from ..geometry import NAUTICAL_MILE
-from ..parameters import VESSEL_CLASSES, read_yaml_mapping
+from ..parameters import VESSEL_CLASSES, TrackerParameters, read_yaml_mapping
 from ..types import OwnShip, Truth
 from . import motion, sensor_errors, ships
 from .fields import Section
@@ -146,14 +146,14 @@ class Scenario:
     def tracker_parameters(self) -> dict[str, Any]:
         """What a tracker is told of this radar and its waters: fields of TrackerParameters.
 
-        The sigmas are the radar's, but not below the smallest that a tracker takes; with the
-        sensor errors of the IMO the glint is that of the largest target.
+        The sigmas are the radar's, but not below the smallest that a tracker takes. Ships echo
+        at their middle, but with the sensor errors of the IMO as real ones do.
         """
         range_sigma, bearing_sigma = self.radar.range_sigma, self.radar.bearing_sigma
         glint = 0.0
         if self.radar.sensor_errors == 'imo':
             range_sigma, bearing_sigma = sensor_errors.IMO_SIGMAS
-            glint = sensor_errors.GLINT_ALONG * float(self.fleet.length.max())
+            glint = TrackerParameters.glint_sigma_m
         return {'range_sigma_m': max(range_sigma, 0.1),
                 'bearing_sigma_deg': max(math.degrees(bearing_sigma), 0.01),
                 'glint_sigma_m': glint,

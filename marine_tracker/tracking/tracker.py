@@ -73,7 +73,7 @@ class Tracker:
         self.parameters = parameters
         self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
         self.bearing_sigma = float(np.radians(parameters.bearing_sigma_deg))
-        self.glint = parameters.glint_sigma_m ** 2 * np.eye(2)
+        self.glint = parameters.glint_sigma ** 2 * np.eye(2)
         self.gate_size = gate_size(parameters.gate_probability)
 
     def start(self) -> Memory:
@@ -102,12 +102,12 @@ class Tracker:
             (ahead.time, lone.time), (ahead.position, lone.position),
             (ahead.velocity, np.zeros_like(lone.position)),
             (ahead.covariance[:, :2, :2], reach(lone, scan.end, p.max_target_speed_mps))))
-        if p.glint_sigma_m:
+        if p.glint_sigma:
             covariance = covariance + self.glint
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
                                          p.range_sigma_m, self.bearing_sigma, self.gate_size)
-        if p.glint_sigma_m:
+        if p.glint_sigma:
             plots = plots._replace(covariance=plots.covariance + self.glint)
         seam = track.searchsorted(count)
         first, second = track[seam:] - count, plot[seam:]
@@ -151,7 +151,7 @@ class Tracker:
         drift[missed] = np.sqrt(
             (ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])[missed]
             / (p.range_sigma_m ** 2 + (distance[missed] * self.bearing_sigma) ** 2
-               + 2 * p.glint_sigma_m ** 2))
+               + 2 * p.glint_sigma ** 2))
         density = clutter_map.density(memory.clutter, chosen.range, chosen.bearing)
         own = (plot_of[track] == plot).nonzero()[0]                # pairs, as held_rows ascends
         held = len(held_rows)
@@ -183,7 +183,7 @@ class Tracker:
             memory.next_id + len(second), memory.next_number + len(newly),
         ), Report(time, tracks, predicted, plot_of, reason,
                   begun._replace(covariance=begun.covariance - self.glint)
-                  if p.glint_sigma_m else begun)
+                  if p.glint_sigma else begun)
 
     def adopt(self, memory: Memory, previous: 'Tracker') -> Memory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.

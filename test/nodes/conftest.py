@@ -13,6 +13,8 @@ os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'         # before any message is impo
 
 import pytest
 
+from marine_tracker.processes import end_with_parent
+
 CHECKOUT = Path(__file__).resolve().parents[2]
 PATIENCE = 60.0                                     # s, for what takes one second when idle
 
@@ -134,7 +136,7 @@ class Process:
             self.process = subprocess.Popen(
                 [sys.executable, '-m', f'marine_tracker.{module}', *arguments], cwd=CHECKOUT,
                 stdin=subprocess.DEVNULL, stdout=log, stderr=log,
-                env={**os.environ, 'PYTHONUNBUFFERED': '1'})
+                env={**os.environ, 'PYTHONUNBUFFERED': '1'}, preexec_fn=end_with_parent)
 
     @property
     def said(self):

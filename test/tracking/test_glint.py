@@ -38,14 +38,18 @@ def run(glint, estimator, seed):
 
 
 @pytest.mark.parametrize('estimator', ['cs_kalman', 'imm'])
-def test_a_large_ship_keeps_her_track_where_the_tracker_knows_of_glint(estimator):
+@pytest.mark.parametrize(('glint', 'most'), [
+    # The gate holds 99.5 % of 5 x 58 plots and more, as the echo wanders along one axis only.
+    (GLINT, 8),
+    # As shipped, for ships: 25 m, whose gate holds 99 % of an echo that wanders by 30.
+    (TrackerParameters.glint_sigma_m, 12)])
+def test_a_large_ship_keeps_her_track_where_the_tracker_knows_of_glint(estimator, glint, most):
     missed = 0
     for seed in range(5):
-        memory, reports = run(GLINT, estimator, seed)
+        memory, reports = run(glint, estimator, seed)
         assert memory.tracks.number.tolist() == [1]
         missed += sum((report.plot < 0).sum() for report in reports)
-    # The gate holds 99.5 % of 5 x 58 plots and more, as the echo wanders along one axis only.
-    assert missed <= 8
+    assert missed <= most
 
 
 def test_she_loses_it_where_the_tracker_does_not():
