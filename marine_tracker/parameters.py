@@ -91,7 +91,7 @@ class TrackerParameters:
 
     estimator: str = parameter(
         'imm', 'Filter that extrapolates and updates the tracks.',
-        choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper'), live=True)
+        choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper', 'cs_rough_nn', 'cs_bp_nn'), live=True)
     gwnn_weights: str = parameter(
         '', 'Weights of the estimator gwnn, a file of `marine_tracker train gwnn`; empty: those '
         'shipped.', live=True)

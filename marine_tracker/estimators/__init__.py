@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..parameters import TrackerParameters
-from . import cs_kalman, gwnn, gwnn_paper, imm
+from . import cs_kalman, cs_rough_nn, gwnn, gwnn_paper, imm
 from .contract import Account, Estimator, Velocity
 
 ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
@@ -20,6 +20,11 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
     'gwnn': lambda p: gwnn.gwnn(gwnn.weights(p.gwnn_weights, p.vessel_class),
                                 p.max_target_speed_mps, p.scan_period_s, learning=p.gwnn_learning,
                                 vessel_class=p.vessel_class),
+    'cs_rough_nn': lambda p: cs_rough_nn.parallel(cs_kalman.PRESETS[p.vessel_class],
+                                                  p.max_target_speed_mps,
+                                                  cs_rough_nn.weights('rough')),
+    'cs_bp_nn': lambda p: cs_rough_nn.parallel(cs_kalman.PRESETS[p.vessel_class],
+                                               p.max_target_speed_mps, cs_rough_nn.weights('bp')),
     'gwnn_paper': lambda p: gwnn_paper.gwnn_paper(
         cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
 }

@@ -169,11 +169,16 @@ def predict(mean, covariance, step, manoeuvre: Manoeuvre, wanted: _Layout = WHOL
     wanted: WHOLE, or SHOWN for position and velocity only (then [N, 4] and [N, 4, 4]).
     """
     phi, q = model(manoeuvre.frequency, step)
-    acceleration = mean.take((2, 5), 1)
     limit = manoeuvre.max_acceleration
-    variance = 2 * manoeuvre.frequency * acceleration_variance(acceleration, limit)
-    abar = np.minimum(np.maximum(acceleration, -limit), limit)
+    variance = acceleration_variance(mean.take((2, 5), 1), limit)
+    ahead, moved = move(mean, covariance, step, phi, limit, wanted)
+    moved += process_noise(q, 2 * manoeuvre.frequency * variance, wanted)
+    return ahead, moved
 
+
+def move(mean, covariance, step, phi, limit: float, wanted: _Layout = WHOLE):
+    """As `predict`, without process noise: for the phi [3, N] of `model`; limit m/s^2 of abar."""
+    abar = np.minimum(np.maximum(mean.take((2, 5), 1), -limit), limit)
     table = np.empty((9, len(step)))
     table[0], table[1], table[2], table[3:6] = 0.0, 1.0, step, phi
     table[6], table[7] = 0.5 * step * step - phi[2], step - phi[1]
@@ -181,14 +186,14 @@ def predict(mean, covariance, step, manoeuvre: Manoeuvre, wanted: _Layout = WHOL
     table = table.T
     transition = table.take(wanted.transition, 1)
     drive = table.take(wanted.drive, 1) * abar.take(wanted.axis, 1)
+    return np.matmul(transition, mean[..., None])[..., 0] + drive, sandwich(transition, covariance)
 
-    table = np.zeros((13, len(step)))
-    table[1:7], table[7:] = q * variance[:, 0], q * variance[:, 1]
-    noise = table.T.take(wanted.noise, 1)
 
-    moved = sandwich(transition, covariance)
-    moved += noise
-    return np.matmul(transition, mean[..., None])[..., 0] + drive, moved
+def process_noise(q, density, wanted: _Layout = WHOLE):
+    """Covariance [N, n, n] of w for the q [6, N] of `model`; density [N, 2] = 2 alpha sigma_a^2."""
+    table = np.zeros((13, len(density)))
+    table[1:7], table[7:] = q * density[:, 0], q * density[:, 1]
+    return table.T.take(wanted.noise, 1)
 
 
 def predict_mean(mean, step, manoeuvre: Manoeuvre):

@@ -1,0 +1,57 @@
+"""What the networks of `cs_rough_nn` and `cs_bp_nn` see: how far two filters are apart.
+
+Paper 001, section 4. With d the difference of two predictions (position, velocity, acceleration
+of one axis), p1 and p2 their variances, and s their sum (of the position: of the innovation
+variances),
+
+    u = d^2 / s                                          the plain network's input,
+    e = lambda (sqrt p1 + sqrt p2)                       what noise may have done to d,
+    max(0, |d| - e)^2 / s,  (|d| + e)^2 / s              the rough one's lower and upper input.
+
+Of a target that does not manoeuvre u is a chi-square variable times its mean c, which depends on
+gamma = sigma_a1 T^2 / sigma_plot and alpha T alone, and little on those. Inputs are scaled such
+that u of c times the median of chi-square is 0, and c times KAPPA 95 % quantiles is 1: then the
+networks know nothing of the plots' accuracy, nor of the period of the scans.
+"""
+
+import numpy as np
+from scipy.stats import chi2
+
+from ..networks.rough_weights import Quiet
+
+LAMBDA = 0.3
+KAPPA = 3.0
+LOW = float(chi2.ppf(0.5, 1))
+HIGH = KAPPA * float(chi2.ppf(0.95, 1))
+MOST = 1.5                      # of an input: beyond, the network was not trained
+
+
+def scaled(u_over_c):
+    """Inputs for u / c."""
+    return np.clip((u_over_c - LOW) / (HIGH - LOW), 0.0, MOST)
+
+
+def inputs(apart, deviation, neurons: int):
+    """Inputs [..., K] for |d| / sqrt(c s) and (sqrt p1 + sqrt p2) / sqrt(c s), both [...]."""
+    if neurons == 1:
+        return scaled(apart * apart)[..., None]
+    e = LAMBDA * deviation
+    return np.stack([scaled(np.maximum(apart - e, 0.0) ** 2), scaled((apart + e) ** 2)], -1)
+
+
+def quiet_variance(quiet: Quiet, gamma, y):
+    """c [..., 3] for gamma and alpha T [...]; beyond the table's edges that of the edge."""
+    i, across = _place(np.log(gamma), quiet.log_gamma)
+    j, along = _place(np.log(y), quiet.log_y)
+    table = quiet.variance
+    near = table[i, j] * (1 - along) + table[i, j + 1] * along
+    far = table[i + 1, j] * (1 - along) + table[i + 1, j + 1] * along
+    return near * (1 - across) + far * across
+
+
+def _place(value, grid):
+    """Index of the grid's interval and how far along it, [...] and [..., 1]."""
+    # A value that is not a number has a place too: its row is lost anyway.
+    place = np.nan_to_num(np.interp(value, grid, np.arange(len(grid))))
+    index = np.minimum(place.astype(int), len(grid) - 2)
+    return index, (place - index)[..., None]

@@ -1,0 +1,95 @@
+"""The rough neural network of paper 001, section 1, and the plain one it is compared with.
+
+A node holds K neurons, each connected with every neuron of the next layer. Of a rough node (K = 2)
+the lower neuron puts out the lesser, the upper one the greater of the two activations
+
+    a = f(In - theta),   f(x) = 2 / (1 + exp(-x)) - 1 = tanh(x / 2),
+
+so a node holds an interval; the network's output is the middle of its last one. With K = 1 the
+same lines are the plain backpropagation network. Inputs are [lower, upper] of each input, or one
+value where K = 1. The W_IU of the printed In_U is read as W_LU, from lower to upper neurons.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..types import Array
+
+
+class Network(NamedTuple):
+    """I inputs, H hidden nodes, one output node, all of K neurons.
+
+    inner        [I, K, H, K]  from each input neuron to each hidden one
+    inner_theta  [H, K]        their thresholds
+    outer        [H, K, K]     from each hidden neuron to those of the output
+    outer_theta  [K]
+    """
+
+    inner: Array
+    inner_theta: Array
+    outer: Array
+    outer_theta: Array
+
+
+def shapes(inputs: int, hidden: int, neurons: int) -> Network:
+    """The shapes of a network's arrays."""
+    return Network((inputs, neurons, hidden, neurons), (hidden, neurons),
+                   (hidden, neurons, neurons), (neurons,))
+
+
+def from_vector(vector, form: Network) -> Network:
+    """The network whose arrays have the shapes `form` and stand in the vector one after another."""
+    ends = np.cumsum([np.prod(shape, dtype=int) for shape in form])
+    return Network._make(part.reshape(shape)
+                         for part, shape in zip(np.split(vector, ends[:-1]), form))
+
+
+def to_vector(network: Network):
+    """All weights and thresholds in one vector."""
+    return np.concatenate([array.ravel() for array in network])
+
+
+def draw(form: Network, rng, scale: float = 0.35) -> Network:
+    """Random weights of that deviation."""
+    return Network._make(rng.normal(0, scale, shape) for shape in form)
+
+
+def _activations(network: Network, inputs):
+    """Of the hidden neurons [N, H, K], before they are put in order."""
+    nodes = network.inner_theta
+    net = _flat(inputs) @ network.inner.reshape(-1, nodes.size)
+    return np.tanh(0.5 * (net - nodes.ravel())).reshape(-1, *nodes.shape)
+
+
+def _flat(array):
+    """[N, ...] as [N, M]; N may be 0."""
+    return array.reshape(len(array), int(np.prod(array.shape[1:])))
+
+
+def bounds(network: Network, inputs):
+    """[lower, upper] of the output node, [N, K], for inputs [N, I, K]."""
+    hidden = _flat(np.sort(_activations(network, inputs), -1))
+    net = hidden @ network.outer.reshape(hidden.shape[1], -1)
+    return np.sort(np.tanh(0.5 * (net - network.outer_theta)), -1)
+
+
+def forward(network: Network, inputs):
+    """Outputs [N] for inputs [N, I, K]."""
+    return bounds(network, inputs).mean(-1)
+
+
+def jacobian(network: Network, inputs):
+    """d outputs / d `to_vector` [N, P] at inputs [N, I, K]."""
+    activation = _activations(network, inputs)
+    order = np.argsort(activation, -1)
+    hidden = _flat(np.take_along_axis(activation, order, -1))
+    outer = network.outer.reshape(hidden.shape[1], -1)
+    out = np.tanh(0.5 * (hidden @ outer - network.outer_theta))
+    last = 0.5 * (1 - out * out) / out.shape[1]                     # d output / d net
+    back = np.empty_like(activation)
+    np.put_along_axis(back, order, (last @ outer.T).reshape(activation.shape), -1)
+    first = _flat(back * 0.5 * (1 - activation * activation))
+    parts = (_flat(inputs)[:, :, None] * first[:, None], -first,
+             hidden[:, :, None] * last[:, None], -last)
+    return np.concatenate([_flat(part) for part in parts], 1)
