@@ -89,7 +89,7 @@ class TrackerParameters:
 
     estimator: str = parameter(
         'imm', 'Filter that extrapolates and updates the tracks.',
-        choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper'), live=True)
+        choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper', 'wavelet_cs'), live=True)
     gwnn_weights: str = parameter(
         '', 'Weights of the estimator gwnn, a file of `marine_tracker train gwnn`; empty: those '
         'shipped.', live=True)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..parameters import TrackerParameters
-from . import cs_kalman, gwnn, gwnn_paper, imm
+from . import cs_kalman, gwnn, gwnn_paper, imm, wavelet_cs
 from .contract import Account, Estimator, Velocity
 
 ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
@@ -22,6 +22,8 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
                                 vessel_class=p.vessel_class),
     'gwnn_paper': lambda p: gwnn_paper.gwnn_paper(
         cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
+    'wavelet_cs': lambda p: wavelet_cs.wavelet_cs(wavelet_cs.PRESETS[p.vessel_class],
+                                                  p.max_target_speed_mps),
 }
 
 
