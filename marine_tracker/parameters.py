@@ -91,7 +91,8 @@ class TrackerParameters:
 
     estimator: str = parameter(
         'imm', 'Filter that extrapolates and updates the tracks.',
-        choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper', 'cs_rough_nn', 'cs_bp_nn'), live=True)
+        choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper', 'cs_rough_nn', 'cs_bp_nn', 'wavelet_cs',
+                 'alpha_beta'), live=True)
     gwnn_weights: str = parameter(
         '', 'Weights of the estimator gwnn, a file of `marine_tracker train gwnn`; empty: those '
         'shipped.', live=True)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..parameters import TrackerParameters
-from . import cs_kalman, cs_rough_nn, gwnn, gwnn_paper, imm
+from . import cs_kalman, cs_rough_nn, gwnn, gwnn_paper, imm, wavelet_cs
 from .contract import Account, Estimator, Velocity
 
 ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
@@ -27,6 +27,8 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
                                                p.max_target_speed_mps, cs_rough_nn.weights('bp')),
     'gwnn_paper': lambda p: gwnn_paper.gwnn_paper(
         cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
+    'wavelet_cs': lambda p: wavelet_cs.wavelet_cs(wavelet_cs.PRESETS[p.vessel_class],
+                                                  p.max_target_speed_mps),
 }
 
 

@@ -1,0 +1,193 @@
+"""Wavelet multiresolution CS-Kalman without latency (paper 003, `wavelet_block` made causal).
+
+Four chains of blocks are interleaved, so that with every plot one chain's block of four plots
+ends: its last state is the estimate now. A chain is corrected at the coarsest resolution only, by
+the mean of its four innovations, and keeps the predicted details. So the noise of single plots
+moves it little, whatever acceleration the model allows for.
+
+The coarsest row of every periodised orthonormal wavelet is the mean of the block, so the choice of
+the wavelet falls away. Plots of unequal accuracy count in the mean by their accuracy, [1/4 ..]
+where they are alike.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..types import Array, Extrapolation, put, take
+from . import cs_kalman
+from .contract import Estimator
+from .cs_kalman import POSITION, SHOWN, CsState, Manoeuvre, acceleration_variance
+from .linear import invert_2x2, kalman_update, sandwich
+from .wavelet_block import SIZE, coarse
+
+# The first block of each chain is all resolutions, a plain Kalman filter: the velocity of a new
+# track is in the details.
+WARM_UP = 2 * SIZE - 1
+# A plot this many times vaguer than the track moves it by nothing; it must not push another plot
+# out of the block either.
+FAINT = 1e6
+SHARE = coarse('haar', 2)[0] ** 2       # each plot's part in the mean of the block
+
+PRESETS = {'ship': Manoeuvre(max_acceleration=1.0, frequency=1 / 60),
+           'small_craft': cs_kalman.PRESETS['small_craft']}
+
+
+class WaveletState(NamedTuple):
+    """The ends of the four chains, oldest first, and the plots that the next block shares.
+
+    time        [N, 4]        s, of the last four plots
+    mean        [N, 4, 6]     of the chain that ended at each, [x v a] east, then north
+    covariance  [N, 4, 6, 6]
+    position    [N, 3, 2]     m, of the last three plots
+    noise       [N, 3, 2, 2]  m^2, likewise
+    count       [N]           plots so far
+    """
+
+    time: Array
+    mean: Array
+    covariance: Array
+    position: Array
+    noise: Array
+    count: Array
+
+
+def begin(time, mean, covariance) -> WaveletState:
+    """New rows of which the states [N, 6], [N, 6, 6] at the times [N] are known, and no plots."""
+    rows = len(time)
+    return WaveletState(
+        np.repeat(time[:, None], SIZE, 1), np.repeat(mean[:, None], SIZE, 1),
+        np.repeat(covariance[:, None], SIZE, 1), np.zeros((rows, SIZE - 1, 2)),
+        np.ones((rows, SIZE - 1, 1, 1)) * np.eye(2), np.zeros(rows))
+
+
+def newest(state: WaveletState) -> CsState:
+    """The chain that ended last."""
+    return CsState(state.time[:, -1], state.mean[:, -1], state.covariance[:, -1])
+
+
+def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
+    """The causal filter.
+
+    max_speed, m/s, of the targets sets the velocity variance before the second plot.
+    """
+    plain = cs_kalman.cs_kalman(manoeuvre, max_speed)
+
+    def init(plots, velocity=None):
+        return begin(*plain.init(plots, velocity))._replace(count=np.ones(len(plots.time)))
+
+    def extrapolate(state, time):
+        last = newest(state)
+        mean, covariance = cs_kalman.predict(last.mean, last.covariance, time - last.time,
+                                             manoeuvre, SHOWN)
+        return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
+
+    def update(state, plots, rows):
+        before = take(state, rows)
+        mean, covariance = np.empty((len(rows), 6)), np.empty((len(rows), 6, 6))
+        told = np.empty(len(rows), bool)
+        young = before.count < WARM_UP
+        for chosen, method in ((young, _plot), (~young, _block)):
+            at = np.flatnonzero(chosen)
+            if len(at):
+                mean[at], covariance[at], told[at] = method(take(before, at), take(plots, at),
+                                                            manoeuvre)
+        after = WaveletState(
+            _push(before.time, plots.time), _push(before.mean, mean),
+            _push(before.covariance, covariance), _push(before.position, plots.position),
+            _push(before.noise, plots.covariance), before.count + 1)
+        return put(state, rows[told], take(after, told))
+
+    return Estimator(init, extrapolate, update)
+
+
+def _push(ring, new):
+    """The oldest of each row of ring [N, m, ...] dropped, new [N, ...] added."""
+    return np.concatenate([ring[:, 1:], new[:, None]], 1)
+
+
+def _tells(covariance, noise):
+    """Whether plots of covariance noise [N, 2, 2] tell tracks [N, 6, 6] anything.
+
+    A plot that is no number does: it harms its own track, as in every estimator.
+    """
+    own = covariance[:, 0, 0] + covariance[:, 3, 3]
+    return ~(np.trace(noise, axis1=1, axis2=2) > FAINT * own)
+
+
+def _plot(state, plots, manoeuvre):
+    """All resolutions: the Kalman update of the chain that ended last."""
+    last = newest(state)
+    mean, covariance = cs_kalman.predict(last.mean, last.covariance, plots.time - last.time,
+                                         manoeuvre)
+    told = _tells(covariance, plots.covariance)
+    mean, covariance, _, _ = kalman_update(
+        mean, covariance, plots.position - mean.take(POSITION, 1), plots.covariance, POSITION)
+    return mean, covariance, told
+
+
+def _block(state, plots, manoeuvre):
+    """The coarsest resolution: the oldest chain, corrected by the mean of four innovations.
+
+    Let m be the block's weighted mean state: [x, m] of the last state and the mean, an axis, is
+    moved from plot to plot by [[F, 0], [w F, 1]]. Both axes share that and the noise, in units of
+    their sigma_a^2, so the work is on matrices of one axis.
+    """
+    rows = len(plots.time)
+    noise = np.concatenate([state.noise, plots.covariance[:, None]], 1)
+    weight = SHARE / np.trace(noise, axis1=2, axis2=3)
+    weight /= weight.sum(1, keepdims=True)
+    moves, noises, drives = _steps(manoeuvre.frequency, np.concatenate(
+        [state.time[:, 1:], plots.time[:, None]], 1) - state.time)
+
+    x = state.mean[:, 0].reshape(rows, 2, 3)
+    limit = manoeuvre.max_acceleration
+    held = np.clip(x[:, :, 2:], -limit, limit)
+    variance = acceleration_variance(x[:, :, 2], limit) * (2 * manoeuvre.frequency)
+    places = np.concatenate([state.position, plots.position[:, None]], 1)
+    innovation = np.zeros((rows, 2))
+    joint, spread = np.zeros((rows, 6, 3)), np.zeros((rows, 6, 6))
+    joint[:, :3] = np.eye(3)
+    for j in range(SIZE):
+        w = weight[:, j, None, None]
+        x = np.matmul(x, moves[:, j].swapaxes(1, 2)) + held * drives[:, j, None]
+        innovation += weight[:, j, None] * (places[:, j] - x[:, :, 0])
+        step = np.zeros((rows, 6, 6))
+        step[:, :3, :3], step[:, 3:, :3], step[:, 3:, 3:] = moves[:, j], w * moves[:, j], np.eye(3)
+        joint, spread = np.matmul(step, joint), sandwich(step, spread)
+        q = noises[:, j]
+        spread[:, :3, :3] += q
+        spread[:, :3, 3:] += w * q
+        spread[:, 3:, :3] += w * q
+        spread[:, 3:, 3:] += w * w * q
+
+    # [x, m] of both axes: cov [N, axis, axis, 6, 6].
+    start = state.covariance[:, 0].reshape(rows, 2, 3, 2, 3).swapaxes(2, 3)
+    joint = joint[:, None, None]
+    both = np.matmul(np.matmul(joint, start), joint.swapaxes(-1, -2))
+    for axis in (0, 1):
+        both[:, axis, axis] += variance[:, axis, None, None] * spread
+    covariance = both[..., :3, :3].swapaxes(2, 3).reshape(rows, 6, 6)
+    told = _tells(covariance, plots.covariance)
+    toward = both[..., 3, :3].reshape(rows, 2, 6)       # C cov(m, x)
+    own = both[..., 3, 3:].reshape(rows, 2, 6)          # C cov(m, m)
+    expected = both[..., 3, 3] + np.matmul(
+        (weight ** 2)[:, None], noise.reshape(rows, SIZE, 4)).reshape(rows, 2, 2)
+    gain = np.matmul(invert_2x2(expected)[0], own)      # K', that of the mean for every state
+    mean = x.reshape(rows, 6) + np.matmul(innovation[:, None], gain)[:, 0]
+    cross = np.matmul(gain.swapaxes(1, 2), toward)
+    covariance = (covariance - cross - cross.swapaxes(1, 2)
+                  + sandwich(np.ascontiguousarray(gain.swapaxes(1, 2)), expected))
+    return mean, 0.5 * (covariance + covariance.swapaxes(1, 2)), told
+
+
+def _steps(frequency, steps):
+    """F [N, n, 3, 3], q [N, n, 3, 3] and U [N, n, 3] of one axis over the steps [N, n] s."""
+    step = steps.ravel()
+    (phi0, phi1, phi2), q = cs_kalman.model(frequency, step)
+    one, none = np.ones_like(step), np.zeros_like(step)
+    move = np.stack([one, step, phi2, none, one, phi1, none, none, phi0], -1)
+    drive = np.stack([0.5 * step * step - phi2, step - phi1, 1 - phi0], -1)
+    noise = q.T.take([0, 1, 2, 1, 3, 4, 2, 4, 5], 1)
+    return (move.reshape(*steps.shape, 3, 3), noise.reshape(*steps.shape, 3, 3),
+            drive.reshape(*steps.shape, 3))
