@@ -40,7 +40,7 @@ def leaves(structure):
     """Every array of a nested state."""
     if isinstance(structure, tuple):
         return [leaf for part in structure for leaf in leaves(part)]
-    return [structure]
+    return [] if structure is None else [structure]
 
 
 def frozen(structure):
@@ -283,7 +283,8 @@ def test_a_plot_that_is_not_a_number_harms_its_own_track_only(estimator, fleet, 
     state, time, position, _ = fleet
     good = plots_at(position + 20.0, time + PERIOD)
     bad = take(good, slice(None))
-    for name in bad._fields if field == 'all' else (field,):
+    told = [name for name in bad._fields if getattr(bad, name) is not None]
+    for name in told if field == 'all' else (field,):
         array = getattr(bad, name).copy()
         array[2] = np.nan
         bad = bad._replace(**{name: array})
