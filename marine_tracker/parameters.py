@@ -89,13 +89,17 @@ class TrackerParameters:
 
     estimator: str = parameter(
         'imm', 'Filter that extrapolates and updates the tracks.',
-        choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper'), live=True)
+        choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper', 'alpha_beta'), live=True)
     gwnn_weights: str = parameter(
         '', 'Weights of the estimator gwnn, a file of `marine_tracker train gwnn`; empty: those '
         'shipped.', live=True)
     gwnn_learning: bool = parameter(
         False, 'Whether each track of the estimator gwnn adds to the output weights what its own '
         'plots tell.')
+    alpha_beta_mode: str = parameter(
+        'hf_soft', 'How the estimator alpha_beta weighs a plot: as paper 002 does (hf), the same '
+        'with softer weights (hf_soft), or as its two rivals.',
+        choices=('hf_soft', 'hf', 'method1', 'method2'), live=True)
     vessel_class: str = parameter(
         'ship', 'Preset of the motion models: how hard targets are expected to manoeuvre.',
         choices=VESSEL_CLASSES, live=True)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..parameters import TrackerParameters
-from . import cs_kalman, gwnn, gwnn_paper, imm
+from . import alpha_beta, cs_kalman, gwnn, gwnn_paper, imm
 from .contract import Account, Estimator, Velocity
 
 ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
@@ -22,6 +22,9 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
                                 vessel_class=p.vessel_class),
     'gwnn_paper': lambda p: gwnn_paper.gwnn_paper(
         cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
+    'alpha_beta': lambda p: alpha_beta.alpha_beta(
+        p.alpha_beta_mode, p.max_target_speed_mps, p.radial_speed_sigma_mps,
+        alpha_beta.NOISE[p.vessel_class]),
 }
 
 

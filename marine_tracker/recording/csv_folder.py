@@ -109,7 +109,8 @@ def write(folder, name: str, pairs: Iterable[tuple[Scan, Truth]],
                       else scan.plots.radial_speed)
         truth += [(k, *_metres(time), target, *_metres(*position[::-1], *velocity[::-1]))
                   for time, target, position, velocity in zip(*targets)]
-    header, told = (*PLOTS, 'amplitude_db'), np.concatenate(speeds) if speeds else np.empty(0)
+    header: tuple[str, ...] = (*PLOTS, 'amplitude_db')
+    told = np.concatenate([np.empty(0), *speeds])
     if np.isfinite(told).any():
         header = (*header, RADIAL_SPEED)
         plots = [(*plot, '' if np.isnan(speed) else f'{speed:.6f}')

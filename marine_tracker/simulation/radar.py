@@ -125,7 +125,8 @@ def _false_plots(scenario, start, uniform, sea, doppler):
     distance, bearing, excess = (np.concatenate(columns) for columns in zip(*kinds, strict=True))
     speed = None
     if radar.radial_speed_sigma is not None:
-        speed = clutter.radial_speeds(radar, *(len(kind[0]) for kind in kinds), doppler)
+        noise, waves = (len(kind[0]) for kind in kinds)
+        speed = clutter.radial_speeds(radar, noise, waves, doppler)
     return PolarPlots(start + bearing * radar.scan_period / (2 * np.pi), distance, bearing,
                       10 * np.log10(THRESHOLD + excess), speed)
 

@@ -246,8 +246,8 @@ DOPPLER = CLEAN | {'radial_speed_sigma_mps': 0, 'range_resolution_m': 0}
 def test_radial_speed_is_how_fast_the_target_leaves_a_radar_at_rest(make_scenario):
     """Own ship under way changes nothing: it counts over ground. Oracle: difference of ranges."""
     loaded = make_scenario(radar=DOPPLER, own_ship={'course_deg': 40, 'speed_kn': 22}, targets=[
-        {'start': {'range_m': 3000, 'bearing_deg': b}, 'course_deg': (70 + 2 * b) % 360, 'speed_kn': 15,
-         'name': f'{b}'} for b in (20, 140, 260)])
+        {'start': {'range_m': 3000, 'bearing_deg': b}, 'course_deg': (70 + 2 * b) % 360,
+         'speed_kn': 15, 'name': f'{b}'} for b in (20, 140, 260)])
     seen = 0
     for scan, _ in simulate(loaded, 1):
         for stamp, bearing, speed in zip(scan.plots.time, scan.plots.bearing,
