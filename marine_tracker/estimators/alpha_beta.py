@@ -35,6 +35,7 @@ from .polar_motion import NEAREST, axes, to_ground, to_polar
 NOISE = {'ship': 0.01, 'small_craft': 0.5}
 SHORTEST = 0.5          # s; plots nearer in time say little about rates
 VAGUE = 100.0           # times the track's deviation: a plot that much worse says nothing
+HARMLESS = 0.125        # of the radial speed's deviation: a shift that does not matter
 UNKNOWN = 1e12          # m^2/s^2, variance of a radial speed that the radar does not tell
 RATES_LAST = np.array([0, 2, 1, 3])     # from polar order to values before rates, and back
 
@@ -127,17 +128,25 @@ def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float) ->
 
 
 def _predict(state, time, noise: float, straight: bool):
-    """mean [N, 4] and covariance [N, 4, 4] on the ground at the times [N]."""
+    """mean [N, 4] and covariance [N, 4, 4] on the ground at the times [N].
+
+    The paper's targets keep radial speed and bearing rate. With `straight` they keep the ground
+    velocity, where the bearing rate is known well enough: a straight course turns its square into
+    radial acceleration, and the square of its noise would spoil a radial speed known by Doppler.
+    """
     step = time - state.time
-    if straight:
-        return _moved(state.mean, state.covariance, step, np.full((len(step), 2), noise))
     polar, by_mean = to_polar(state.mean, state.origin)
+    spread = sandwich(by_mean, state.covariance)
     order = np.ix_(np.arange(len(step)), RATES_LAST, RATES_LAST)
     density = noise * np.stack([np.ones(len(step)), polar[:, 0] ** -2], -1)
-    polar, spread = _moved(polar[:, RATES_LAST], sandwich(by_mean, state.covariance)[order], step,
-                           density)
-    mean, by_polar = to_ground(polar[:, RATES_LAST], state.origin)
-    return mean, sandwich(by_polar, spread[order])
+    kept, moved = _moved(polar[:, RATES_LAST], spread[order], step, density)
+    mean, by_polar = to_ground(kept[:, RATES_LAST], state.origin)
+    if not straight:
+        return mean, sandwich(by_polar, moved[order])
+    ahead, covariance = _moved(state.mean, state.covariance, step, np.full((len(step), 2), noise))
+    noise_of_speed = polar[:, 0] * spread[:, 3, 3] * np.abs(step)
+    harm = noise_of_speed / (HARMLESS * np.sqrt(spread[:, 1, 1]))
+    return mean + np.clip(2 - harm, 0.0, 1.0)[:, None] * (ahead - mean), covariance
 
 
 def _moved(mean, covariance, step, noise):
