@@ -99,6 +99,10 @@ class TrackerParameters:
     gwnn_learning: bool = parameter(
         False, 'Whether each track of the estimator gwnn adds to the output weights what its own '
         'plots tell.')
+    alpha_beta_mode: str = parameter(
+        'hf_soft', 'How the estimator alpha_beta weighs a plot: as paper 002 does (hf), the same '
+        'with softer weights (hf_soft), or as its two rivals.',
+        choices=('hf_soft', 'hf', 'method1', 'method2'), live=True)
     vessel_class: str = parameter(
         'ship', 'Preset of the motion models: how hard targets are expected to manoeuvre.',
         choices=VESSEL_CLASSES, live=True)
@@ -107,6 +111,9 @@ class TrackerParameters:
     bearing_sigma_deg: float = parameter(
         0.5, 'Standard deviation of a measured bearing.', unit='deg', low=0.01, high=10.0,
         live=True)
+    radial_speed_sigma_mps: float = parameter(
+        0.5, 'Standard deviation of a measured radial speed, where the radar tells one (Doppler).',
+        unit='m/s', low=0.01, high=10.0, live=True)
     glint_sigma_m: float = parameter(
         -1.0, 'Standard deviation of the point of a target that echoes, about its middle, along '
         'each axis: some 0.15 of the length of large ships. Below 0: that of the vessel class, '

@@ -38,7 +38,8 @@ class PolarPlots(NamedTuple):
     amplitude  [M]  dB, signal over noise; 0 where the radar does not tell
 
     None where the radar does not tell:
-    radial_speed  [M]        m/s over ground along the line of sight, positive when opening
+    radial_speed  [M]        m/s over ground along the line of sight, positive when opening; nan for
+                             a plot that does not tell
     covariance    [M, 2, 2]  m^2, east and north, of each plot's place, where a plot is the middle
                              of a cluster of echoes; else the radar's range and bearing sigma count
     """
@@ -90,8 +91,8 @@ class Plots(NamedTuple):
     origin      [M, 2]     m, the antenna's position at `time`
     position    [M, 2]     m, east and north, unbiased
     covariance  [M, 2, 2]  m^2, of `position`
-    radial_speed  [M]      m/s over ground along the line of sight, positive when opening; None
-                           where the radar does not tell
+    radial_speed  [M]      m/s over ground along the line of sight, positive when opening; nan for
+                           a plot that does not tell, None where the radar does not
     """
 
     time: Array

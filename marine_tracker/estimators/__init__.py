@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..parameters import TrackerParameters
-from . import cs_kalman, cs_rough_nn, gwnn, gwnn_paper, imm, wavelet_cs
+from . import alpha_beta, cs_kalman, cs_rough_nn, gwnn, gwnn_paper, imm, wavelet_cs
 from .contract import Account, Estimator, Velocity
 
 ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
@@ -29,6 +29,9 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
         cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
     'wavelet_cs': lambda p: wavelet_cs.wavelet_cs(wavelet_cs.PRESETS[p.vessel_class],
                                                   p.max_target_speed_mps),
+    'alpha_beta': lambda p: alpha_beta.alpha_beta(
+        p.alpha_beta_mode, p.max_target_speed_mps, p.radial_speed_sigma_mps,
+        alpha_beta.NOISE[p.vessel_class]),
 }
 
 

@@ -28,6 +28,7 @@ from .topics import FRAME, OWN_SHIP_FRAME
 
 PLOT_FIELDS = ('x', 'y', 'z', 'range', 'bearing', 'amplitude', 'time_offset')
 NEEDED = ('range', 'bearing', 'amplitude', 'time_offset')
+RADIAL_SPEED = 'radial_speed'       # of a radar with Doppler
 FLOATS = {PointField.FLOAT32: 'f4', PointField.FLOAT64: 'f8'}
 
 TRACK_TYPE = np.dtype(
@@ -88,12 +89,18 @@ def plots_positions(scan: Scan) -> Array:
 
 
 def plots_to_cloud(scan: Scan, start_ns: int) -> PointCloud2:
-    """One antenna revolution; the stamp is its start."""
+    """One antenna revolution; the stamp is its start.
+
+    A field radial_speed is there where the radar tells it.
+    """
     plots, position = scan.plots, plots_positions(scan)
-    rows = np.zeros(len(plots.time), [(name, '<f4') for name in PLOT_FIELDS])
+    names = PLOT_FIELDS if plots.radial_speed is None else (*PLOT_FIELDS, RADIAL_SPEED)
+    rows = np.zeros(len(plots.time), [(name, '<f4') for name in names])
     rows['x'], rows['y'] = position.T
     rows['range'], rows['bearing'], rows['amplitude'] = plots.range, plots.bearing, plots.amplitude
     rows['time_offset'] = plots.time - scan.start
+    if plots.radial_speed is not None:
+        rows[RADIAL_SPEED] = plots.radial_speed
     return cloud_message(rows, start_ns)
 
 
@@ -101,7 +108,8 @@ def cloud_to_plots(message: PointCloud2) -> PolarPlots:
     """The plots of a cloud, their time counted from the stamp; values are not judged here.
 
     Takes any order of fields, float32 or float64, either byte order, organised clouds, padding
-    and fields beyond those needed (range, bearing, amplitude, time_offset). ConversionError else.
+    and fields beyond those needed (range, bearing, amplitude, time_offset); of those, radial_speed
+    is read. ConversionError else.
     """
     count = message.width * message.height
     if count == 0:
@@ -114,7 +122,8 @@ def cloud_to_plots(message: PointCloud2) -> PolarPlots:
         raise ConversionError(BAD_LAYOUT, 'a field name stands twice')
     order = '>' if message.is_bigendian else '<'
     kinds, offsets = [], []
-    for name in NEEDED:
+    names = (*NEEDED, RADIAL_SPEED) if RADIAL_SPEED in fields else NEEDED
+    for name in names:
         if name not in fields:
             raise ConversionError(MISSING_FIELD, name)
         field = fields[name]
@@ -137,27 +146,30 @@ def cloud_to_plots(message: PointCloud2) -> PolarPlots:
     if len(message.data) > whole:
         raise ConversionError(BAD_LAYOUT, f'{len(message.data)} bytes; {whole} announced')
     raw = np.frombuffer(message.data, np.uint8).reshape(message.height, message.row_step)[:, :used]
-    point = np.dtype({'names': list(NEEDED), 'formats': kinds, 'offsets': offsets,
+    point = np.dtype({'names': list(names), 'formats': kinds, 'offsets': offsets,
                       'itemsize': message.point_step})
     rows = np.ascontiguousarray(raw).reshape(-1).view(point)
     with np.errstate(invalid='ignore'):                 # signalling NaNs from a torn buffer
-        range_, bearing, amplitude, offset = (rows[name].astype(float) for name in NEEDED)
-    return PolarPlots(offset, range_, bearing, amplitude)
+        range_, bearing, amplitude, offset, *speed = (rows[name].astype(float) for name in names)
+    return PolarPlots(offset, range_, bearing, amplitude, *speed)
 
 
 def plots_to_readable(scan: Scan, start_ns: int) -> PointCloud:
     """One revolution for people's eyes.
 
-    Channels range_m, bearing_deg, amplitude_db, time_offset_s. Values are rounded to binary
-    fractions, which float32 holds exactly, so that an echo prints 123.25 and not 123.249996.
+    Channels range_m, bearing_deg, amplitude_db, time_offset_s, and radial_speed_mps where the radar
+    tells it. Values are rounded to binary fractions, which float32 holds exactly, so that an echo
+    prints 123.25 and not 123.249996.
     """
     plots = scan.plots
     points = [Point32(x=x, y=y) for x, y in _rounded(plots_positions(scan), 2).tolist()]
+    columns = [('range_m', plots.range, 2), ('bearing_deg', np.degrees(plots.bearing), 8),
+               ('amplitude_db', plots.amplitude, 2), ('time_offset_s', plots.time - scan.start, 8)]
+    if plots.radial_speed is not None:
+        columns.append(('radial_speed_mps', plots.radial_speed, 16))
     channels = [
         ChannelFloat32(name=name, values=array.array('f', _rounded(values, parts).tolist()))
-        for name, values, parts in (
-            ('range_m', plots.range, 2), ('bearing_deg', np.degrees(plots.bearing), 8),
-            ('amplitude_db', plots.amplitude, 2), ('time_offset_s', plots.time - scan.start, 8))]
+        for name, values, parts in columns]
     return PointCloud(header=header(start_ns), points=points, channels=channels)
 
 

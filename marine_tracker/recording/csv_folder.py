@@ -1,7 +1,9 @@
 """Recordings as folders of CSV files: what was plotted, where own ship was, where targets were.
 
 A folder holds
-  plots.csv      scan, time_s, range_m, bearing_deg [, amplitude_db]; true bearing from own ship
+  plots.csv      scan, time_s, range_m, bearing_deg [, amplitude_db] [, radial_speed_mps]; true
+                 bearing from own ship; radial speed over ground, positive when opening, empty where
+                 a plot tells none
   own_ship.csv   scan, time_s, north_m, east_m [, vel_north_mps, vel_east_mps] [, end_s];
                  one row for every scan, also those without plots
   truth.csv      scan, time_s, target, north_m, east_m, vel_north_mps, vel_east_mps; may be left
@@ -33,6 +35,7 @@ PLOTS = ('scan', 'time_s', 'range_m', 'bearing_deg')
 OWN_SHIP = ('scan', 'time_s', 'north_m', 'east_m')
 TRUTH = ('scan', 'time_s', 'target', 'north_m', 'east_m')
 VELOCITY = ('vel_north_mps', 'vel_east_mps')
+RADIAL_SPEED = 'radial_speed_mps'
 
 
 class Recording(NamedTuple):
@@ -94,7 +97,7 @@ def write(folder, name: str, pairs: Iterable[tuple[Scan, Truth]],
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ValueError(f'recording folder {folder} cannot be made: {error}') from error
-    plots, own_ship, truth = [], [], []
+    plots, own_ship, truth, speeds = [], [], [], []
     for k, (scan, targets) in enumerate(pairs):
         position, velocity = own_ship_at(scan.own_ship, scan.start)
         own_ship.append((k, *_metres(scan.start, *position[::-1], *velocity[::-1], scan.end)))
@@ -102,9 +105,17 @@ def write(folder, name: str, pairs: Iterable[tuple[Scan, Truth]],
         plots += [(k, *_metres(time, range_), f'{bearing:.9f}', f'{amplitude:.3f}')
                   for time, range_, bearing, amplitude in zip(
                       scan.plots.time, scan.plots.range, degrees, scan.plots.amplitude)]
+        speeds.append(np.full(len(degrees), np.nan) if scan.plots.radial_speed is None
+                      else scan.plots.radial_speed)
         truth += [(k, *_metres(time), target, *_metres(*position[::-1], *velocity[::-1]))
                   for time, target, position, velocity in zip(*targets)]
-    _write_table(folder / 'plots.csv', (*PLOTS, 'amplitude_db'), plots)
+    header: tuple[str, ...] = (*PLOTS, 'amplitude_db')
+    told = np.concatenate([np.empty(0), *speeds])
+    if np.isfinite(told).any():
+        header = (*header, RADIAL_SPEED)
+        plots = [(*plot, '' if np.isnan(speed) else f'{speed:.6f}')
+                 for plot, speed in zip(plots, told.tolist())]
+    _write_table(folder / 'plots.csv', header, plots)
     _write_table(folder / 'own_ship.csv', (*OWN_SHIP, *VELOCITY, 'end_s'), own_ship)
     _write_table(folder / 'truth.csv', (*TRUTH, *VELOCITY), truth)
     lines = [f'{key}: {json.dumps(value)}\n' for key, value in tracker_parameters.items()]
@@ -164,7 +175,9 @@ def _read_plots(path, numbers) -> tuple[PolarPlots, ...]:
                  else np.zeros(len(table)))
     bearing = wrap_bearing(np.radians(table.numbers('bearing_deg', low=-360.0, high=360.0)))
     plots = PolarPlots(table.numbers('time_s'), table.numbers('range_m', low=0.0), bearing,
-                       np.nan_to_num(amplitude))
+                       np.nan_to_num(amplitude),
+                       (table.numbers(RADIAL_SPEED, missing=True)
+                        if RADIAL_SPEED in table.columns else None))
     return tuple(take(plots, rows) for rows in _rows_of_scans(table, numbers))
 
 

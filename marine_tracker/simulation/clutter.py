@@ -8,6 +8,7 @@ from .scenario import Clutter, Radar
 # Power over the noise of false plots: they only just pass the threshold, sea spikes by more.
 UNIFORM_EXCESS = 1.0
 SEA_EXCESS = 5.0
+WAVE_SPEED = 1.0        # m/s, standard deviation of the radial speeds of waves
 
 
 def uniform_plots(clutter: Clutter, radar: Radar, random: np.random.Generator
@@ -35,3 +36,13 @@ def sea_plots(clutter: Clutter, radar: Radar, random: np.random.Generator
     distance = radar.blind_range - clutter.sea_scale * np.log1p(-within * random.random(count))
     return (distance, random.uniform(0, 2 * np.pi, count),
             random.exponential(SEA_EXCESS, count))
+
+
+def radial_speeds(radar: Radar, noise: int, waves: int, random: np.random.Generator) -> Array:
+    """Radial speeds [noise + waves] m/s over ground of noise plots, then of sea clutter.
+
+    Noise lies anywhere in the radar's Doppler band; waves come and go.
+    """
+    return np.concatenate([
+        random.uniform(-radar.max_radial_speed, radar.max_radial_speed, noise),
+        random.normal(0.0, WAVE_SPEED, waves)])

@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..geometry import to_range_bearing, wrap_angle, wrap_bearing
+from ..geometry import to_range_bearing, unit_vector, wrap_angle, wrap_bearing
 from ..types import PolarPlots, Scan, Truth, append, take
 from . import beam, clutter, sensor_errors
 from .scenario import Radar, Scenario
@@ -29,8 +29,8 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
     Same scenario and seed give the same plots to the bit. Each kind of chance has its own
     stream of random numbers: clutter or detection do not change the noise of targets.
     """
-    detection, noise, uniform, sea, errors, reckoning = (
-        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(6))
+    detection, noise, uniform, sea, errors, reckoning, doppler, false_doppler = (
+        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(8))
     radar = scenario.radar
     imo = sensor_errors.draw(errors) if radar.sensor_errors == 'imo' else None
     drift = np.zeros(2)
@@ -53,8 +53,12 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
         plots = plots._replace(
             range=plots.range + range_error + radar.range_bias,
             bearing=wrap_bearing(plots.bearing + bearing_error + radar.bearing_bias))
+        if radar.radial_speed_sigma is not None:
+            shift = radar.radial_speed_sigma * doppler.standard_normal(shape)
+            plots = plots._replace(radial_speed=(
+                _radial_speed(passages) + shift[passages.turn, passages.target])[seen][row])
         plots = take(plots, plots.range > 0)
-        plots = append(plots, _false_plots(scenario, start, uniform, sea))
+        plots = append(plots, _false_plots(scenario, start, uniform, sea, false_doppler))
         plots = take(plots, np.argsort(plots.time, kind='stable'))
 
         own_ship = scenario.own_ship_at(np.linspace(start, end, OWN_SHIP_SAMPLES))
@@ -108,13 +112,23 @@ def _resolve(radar: Radar, passages, distance, power, start):
     return PolarPlots(time, distance, turn * (time - start), 10 * np.log10(power)), row
 
 
-def _false_plots(scenario, start, uniform, sea):
+def _radial_speed(passages):
+    """[P] m/s over ground along the line of sight, positive when opening."""
+    _, bearing = to_range_bearing(passages.offset)
+    return (passages.velocity * unit_vector(bearing)).sum(1)
+
+
+def _false_plots(scenario, start, uniform, sea, doppler):
     radar = scenario.radar
-    distance, bearing, excess = (np.concatenate(columns) for columns in zip(
-        clutter.uniform_plots(scenario.clutter, radar, uniform),
-        clutter.sea_plots(scenario.clutter, radar, sea), strict=True))
+    kinds = (clutter.uniform_plots(scenario.clutter, radar, uniform),
+             clutter.sea_plots(scenario.clutter, radar, sea))
+    distance, bearing, excess = (np.concatenate(columns) for columns in zip(*kinds, strict=True))
+    speed = None
+    if radar.radial_speed_sigma is not None:
+        noise, waves = (len(kind[0]) for kind in kinds)
+        speed = clutter.radial_speeds(radar, noise, waves, doppler)
     return PolarPlots(start + bearing * radar.scan_period / (2 * np.pi), distance, bearing,
-                      10 * np.log10(THRESHOLD + excess))
+                      10 * np.log10(THRESHOLD + excess), speed)
 
 
 def _imo(scenario, imo, passages, random, shape):

@@ -5,7 +5,8 @@ speed as `_mps` or `_kn`. Only `duration_s` and one target are needed:
 
     description: A ferry crosses our bow
     duration_s: 900
-    radar: {max_range_nm: 6, range_sigma_m: 15, bearing_sigma_deg: 0.4, pd_near: 0.98, pd_far: 0.8}
+    radar: {max_range_nm: 6, range_sigma_m: 15, bearing_sigma_deg: 0.4, pd_near: 0.98, pd_far: 0.8,
+            radial_speed_sigma_kn: 0.5}       # only of a radar with Doppler
     clutter: {uniform: 20, sea: 40, sea_scale_nm: 1}      # mean numbers a scan
     tracker: {max_target_speed_kn: 45}                    # what the tracker is told
     own_ship: {course_deg: 0, speed_kn: 12}
@@ -51,7 +52,8 @@ TOP_KEYS = 'description duration_s origin radar clutter tracker ais own_ship tar
 RADAR_KEYS = ('rotation_rpm max_range_m|max_range_nm blind_range_m|blind_range_nm '
               'range_sigma_m|range_sigma_nm bearing_sigma_deg range_bias_m|range_bias_nm '
               'bearing_bias_deg range_resolution_m|range_resolution_nm beam_width_deg '
-              'pd_near pd_far sensor_errors')
+              'pd_near pd_far sensor_errors radial_speed_sigma_mps|radial_speed_sigma_kn '
+              'max_radial_speed_mps|max_radial_speed_kn')
 CLUTTER_KEYS = 'uniform sea sea_scale_m|sea_scale_nm'
 TRACKER_KEYS = 'max_target_speed_kn|max_target_speed_mps vessel_class'
 
@@ -70,6 +72,8 @@ class Radar(NamedTuple):
     beam_width          rad: targets closer than both in one revolution give one plot
     pd_near, pd_far     probability of detection at no range and at the maximum range
     sensor_errors       'none' or 'imo'
+    radial_speed_sigma  m/s: Gaussian noise of a plot's radial speed over ground; None: no Doppler
+    max_radial_speed    m/s: noise gives radial speeds evenly between it and its negative
     """
 
     rotation: float
@@ -84,6 +88,8 @@ class Radar(NamedTuple):
     pd_near: float
     pd_far: float
     sensor_errors: str
+    radial_speed_sigma: float | None = None
+    max_radial_speed: float = 25.0
 
     @property
     def scan_period(self) -> float:
@@ -150,7 +156,9 @@ class Scenario:
         at their middle, but with the sensor errors of the IMO as real ones do.
         """
         range_sigma, bearing_sigma = self.radar.range_sigma, self.radar.bearing_sigma
-        glint = 0.0
+        glint, doppler = 0.0, {}
+        if self.radar.radial_speed_sigma is not None:
+            doppler['radial_speed_sigma_mps'] = max(self.radar.radial_speed_sigma, 0.01)
         if self.radar.sensor_errors == 'imo':
             range_sigma, bearing_sigma = sensor_errors.IMO_SIGMAS
             glint = TrackerParameters.glint_sigma_m
@@ -160,7 +168,7 @@ class Scenario:
                 'min_range_m': self.radar.blind_range,
                 'max_range_m': self.radar.max_range,
                 'scan_period_s': self.radar.scan_period,
-                **self.stated}
+                **doppler, **self.stated}
 
 
 def detectable(scenario: Scenario, truth: Truth) -> NDArray[np.bool_]:
@@ -237,10 +245,15 @@ def _radar(section):
         math.radians(section.number('beam_width_deg', 0.0, 30.0, 1.0)),
         pd_near,
         section.number('pd_far', 0.01, 1.0, min(0.8, pd_near)),
-        errors)
+        errors,
+        (section.speed('radial_speed_sigma', 0.0, 10.0) if section.has('radial_speed_sigma')
+         else None),
+        section.speed('max_radial_speed', 1.0, 100.0, 25.0))
     if radar.blind_range >= radar.max_range:
         raise ValueError(f'radar.blind_range is {radar.blind_range:g} m; it must be below '
                          f'max_range, {radar.max_range:g} m')
+    if section.has('max_radial_speed') and radar.radial_speed_sigma is None:
+        raise ValueError('radar has max_radial_speed, but no radial_speed_sigma: give both or none')
     if radar.pd_far > radar.pd_near:
         raise ValueError(f'radar.pd_far is {radar.pd_far:g}; it must not exceed pd_near, '
                          f'{radar.pd_near:g}')

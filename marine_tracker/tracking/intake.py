@@ -23,6 +23,7 @@ from ..geometry import KNOT, own_ship_at, wrap_bearing
 from ..types import Array, OwnShip, PolarPlots, append, take
 
 MAX_RANGE = 500e3               # m; no surface radar measures farther
+MAX_RADIAL_SPEED = 100.0        # m/s, over ground; no target that a tracker is told of is faster
 REBASE_AFTER = 3                # scans
 AHEAD_SCANS, AHEAD_S = 10, 30.0
 OFFSET_SCANS = 4                # a plot's time lies in its revolution; slow radars get some room
@@ -39,7 +40,10 @@ TOO_FAR = 'plots beyond 500 km'
 BAD_BEARING = 'plots with bearing out of range'
 BAD_OFFSET = 'plots with time out of the scan'
 TOO_MANY = 'plots over max_plots'
-PLOT_REASONS = (NOT_FINITE, BAD_RANGE, TOO_FAR, BAD_BEARING, BAD_OFFSET, TOO_MANY)
+SPEED_NOT_FINITE = 'radial speeds not finite'
+SPEED_TOO_HIGH = 'radial speeds above 100 m/s'
+PLOT_REASONS = (NOT_FINITE, BAD_RANGE, TOO_FAR, BAD_BEARING, BAD_OFFSET, TOO_MANY,
+                SPEED_NOT_FINITE, SPEED_TOO_HIGH)
 
 REPEATED = 'scans repeated'
 WENT_BACK = 'scans with time going back'
@@ -66,7 +70,8 @@ def screen_plots(plots: PolarPlots, scan_period: float,
     scan_period  s, of one revolution
     max_plots    the strongest so many are kept (of equals, the first)
 
-    Bearings in [-pi, 2 pi] are wrapped to [0, 2 pi); others are rejected.
+    Bearings in [-pi, 2 pi] are wrapped to [0, 2 pi); others are rejected. A plot whose radial speed
+    alone is bad stays: where it lies is sound. The radial speed becomes nan and is counted.
     """
     counts = {}
     ok = np.ones(len(plots.range), bool)
@@ -93,6 +98,14 @@ def screen_plots(plots: PolarPlots, scan_period: float,
         counts[TOO_MANY] = len(plots.range) - max_plots
         strongest = np.argsort(-plots.amplitude, kind='stable')[:max_plots]
         plots = take(plots, np.sort(strongest))
+    if plots.radial_speed is not None:
+        speed = np.abs(plots.radial_speed)
+        for reason, bad in ((SPEED_NOT_FINITE, ~np.isfinite(speed)),
+                            (SPEED_TOO_HIGH, np.isfinite(speed) & (speed > MAX_RADIAL_SPEED))):
+            if bad.any():
+                counts[reason] = int(np.count_nonzero(bad))
+        sound = speed <= MAX_RADIAL_SPEED
+        plots = plots._replace(radial_speed=np.where(sound, plots.radial_speed, np.nan))
     return plots._replace(bearing=wrap_bearing(plots.bearing)), counts
 
 

@@ -4,12 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtri
 
 from ..estimators import ESTIMATORS, Estimator, Velocity
 from ..geometry import locate, own_ship_at, to_range_bearing
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
-from . import clutter_map, lifecycle
+from . import clutter_map, doppler, lifecycle
 from .associate import associate
 from .gate import gate, gate_size
 from .initiate import first_score, pair_up, reach
@@ -75,6 +76,7 @@ class Tracker:
         self.bearing_sigma = float(np.radians(parameters.bearing_sigma_deg))
         self.glint = parameters.glint_sigma ** 2 * np.eye(2)
         self.gate_size = gate_size(parameters.gate_probability)
+        self.speed_gate = float(ndtri(0.5 + 0.5 * parameters.gate_probability))
 
     def start(self) -> Memory:
         """No tracks yet."""
@@ -107,6 +109,10 @@ class Tracker:
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
                                          p.range_sigma_m, self.bearing_sigma, self.gate_size)
+        if plots.radial_speed is not None:
+            fit = doppler.agree(track, plot, ahead, lone, plots, p.radial_speed_sigma_mps,
+                                p.max_target_speed_mps, self.speed_gate)
+            track, plot, nis, log_det = track[fit], plot[fit], nis[fit], log_det[fit]
         if p.glint_sigma:
             plots = plots._replace(covariance=plots.covariance + self.glint)
         seam = track.searchsorted(count)

@@ -60,6 +60,37 @@ def test_a_scan_goes_out_and_comes_back():
     assert got.amplitude == pytest.approx(sent.plots.amplitude, rel=1e-6)
 
 
+def with_doppler(count=40):
+    sent = scan(count)
+    speed = np.random.default_rng(2).uniform(-20, 20, count)
+    return sent._replace(plots=sent.plots._replace(radial_speed=speed))
+
+
+def test_radial_speeds_go_out_and_come_back_where_the_radar_tells_them():
+    sent = with_doppler()
+    sent.plots.radial_speed[3] = np.nan
+    message = over_the_wire(convert.plots_to_cloud(sent, 0))
+    assert message.fields[-1].name == 'radial_speed'
+    got = convert.cloud_to_plots(message)
+    np.testing.assert_allclose(got.radial_speed, sent.plots.radial_speed, rtol=1e-6)
+    assert got.amplitude == pytest.approx(sent.plots.amplitude, rel=1e-6)
+
+
+def test_a_radial_speed_that_is_no_float_is_refused():
+    message = convert.plots_to_cloud(with_doppler(), 0)
+    message.fields[-1].datatype = PointField.INT32
+    with pytest.raises(convert.ConversionError, match='radial_speed has datatype'):
+        convert.cloud_to_plots(message)
+
+
+def test_radial_speeds_can_be_read():
+    sent = with_doppler()
+    channels = {c.name: c.values for c in convert.plots_to_readable(sent, 0).channels}
+    assert channels['radial_speed_mps'] == pytest.approx(sent.plots.radial_speed, abs=1 / 32)
+    channels = {c.name for c in convert.plots_to_readable(scan(), 0).channels}
+    assert 'radial_speed_mps' not in channels
+
+
 def test_x_and_y_are_east_and_north_in_the_map_frame():
     sent = scan(1)
     message = convert.plots_to_cloud(sent, 0)
@@ -88,6 +119,7 @@ def test_any_layout_that_has_what_is_needed_is_read(names, kind, gap):
     assert got.amplitude.tolist() == [5.0, 10.0, 15.0]
     assert got.time.tolist() == [6.0, 12.0, 18.0]
     assert all(column.dtype == np.float64 for column in got[:4])
+    assert got.radial_speed is None
 
 
 def test_an_organised_cloud_with_padded_rows_is_read():

@@ -203,3 +203,24 @@ def test_all_real_recordings_read(recordings):
         assert sum(len(scan.plots.time) for scan in recording.scans) == rows
         assert json.loads((folder / 'notes.json').read_text()) == recording.notes
         assert TrackerParameters(**recording.tracker_parameters)
+
+
+def test_radial_speeds_are_read_where_the_file_has_them_and_empty_cells_are_nan(folder):
+    assert all(scan.plots.radial_speed is None for scan in csv_folder.read(folder).scans)
+    (folder / 'plots.csv').write_text(
+        PLOTS.strip() + ',radial_speed_mps\n4,10.0,100.0,90.0,-3.5\n4,10.0,200.0,359.0,\n')
+    first, empty, last = csv_folder.read(folder).scans
+    np.testing.assert_array_equal(first.plots.radial_speed, [-3.5, np.nan])
+    assert len(empty.plots.radial_speed) == len(last.plots.radial_speed) == 0
+
+
+def test_radial_speeds_are_written_and_come_back(tmp_path):
+    own_ship = OwnShip(np.zeros(1), np.zeros((1, 2)), np.zeros((1, 2)))
+    no_truth = Truth(np.empty(0), np.empty(0, np.int64), np.empty((0, 2)), np.empty((0, 2)))
+    two = np.array([1.0, 2.0])
+    told = Scan(0.0, 2.5, PolarPlots(two, 100 * two, two, two, np.array([-7.25, np.nan])), own_ship)
+    untold = Scan(2.5, 5.0, PolarPlots(two + 2.5, 100 * two, two, two), own_ship)
+    csv_folder.write(tmp_path / 'out', 'x', [(told, no_truth), (untold, no_truth)], {})
+    first, second = csv_folder.read(tmp_path / 'out').scans
+    np.testing.assert_array_equal(first.plots.radial_speed, [-7.25, np.nan])
+    assert np.isnan(second.plots.radial_speed).all()

@@ -238,3 +238,55 @@ def test_scenario_of_seven_days_and_hundreds_of_targets_starts_at_once(make_scen
     scan, truth = next(simulate(loaded, 1))
     assert len(truth.target) == 400
     assert 300 < len(scan.plots.time) < 400
+
+
+DOPPLER = CLEAN | {'radial_speed_sigma_mps': 0, 'range_resolution_m': 0}
+
+
+def test_radial_speed_is_how_fast_the_target_leaves_a_radar_at_rest(make_scenario):
+    """Own ship under way changes nothing: it counts over ground. Oracle: difference of ranges."""
+    loaded = make_scenario(radar=DOPPLER, own_ship={'course_deg': 40, 'speed_kn': 22}, targets=[
+        {'start': {'range_m': 3000, 'bearing_deg': b}, 'course_deg': (70 + 2 * b) % 360,
+         'speed_kn': 15, 'name': f'{b}'} for b in (20, 140, 260)])
+    seen = 0
+    for scan, _ in simulate(loaded, 1):
+        for stamp, bearing, speed in zip(scan.plots.time, scan.plots.bearing,
+                                         scan.plots.radial_speed, strict=True):
+            radar_at = loaded.own_ship_at(stamp).position[0]
+            before, after = (loaded.truth_at(stamp + step).position - radar_at
+                             for step in (-0.01, 0.01))
+            leaving = (np.hypot(*after.T) - np.hypot(*before.T)) / 0.02
+            which = np.abs(wrap_angle(to_range_bearing(after)[1] - bearing)).argmin()
+            assert speed == pytest.approx(leaving[which], abs=1e-3)
+            seen += 1
+    assert seen > 500
+
+
+def test_radial_speed_has_the_stated_deviation_and_moves_no_other_chance(make_scenario):
+    # 5,280 plots, bounds as above.
+    def plots(**more):
+        loaded = make_scenario(
+            duration_s=1200, radar={'pd_near': 1, 'pd_far': 1, **more}, clutter={'uniform': 5},
+            targets=[at_rest(4000, 30 * k) for k in range(12)])
+        return [scan.plots for scan, _ in simulate(loaded, 1)]
+    with_, without = plots(radial_speed_sigma_mps=0.4, max_radial_speed_mps=20), plots()
+    assert all(p.radial_speed is None for p in without)
+    for one, other in zip(with_, without, strict=True):
+        assert equal(one[:4], other[:4])
+    speed = np.concatenate([p.radial_speed[np.abs(p.range - 4000) < 100] for p in with_])
+    speed = speed[np.abs(speed) < 2.5]              # without the noise plots that lie there
+    assert abs(speed.mean()) < 4.5 * 0.4 / np.sqrt(5280)
+    assert speed.std() == pytest.approx(0.4, rel=4.5 / np.sqrt(2 * 5280))
+
+
+def test_false_plots_have_radial_speeds_of_noise_and_of_waves(make_scenario):
+    def speeds(**clutter):
+        loaded = make_scenario(duration_s=1200, clutter=clutter, radar={
+            'radial_speed_sigma_kn': 1, 'max_radial_speed_mps': 20},
+            targets=[at_rest(3000, 0, pd=0)])
+        return np.concatenate([scan.plots.radial_speed for scan, _ in simulate(loaded, 1)])
+    noise, waves = speeds(uniform=20), speeds(sea=20)
+    assert np.abs(noise).max() <= 20
+    # Even over 40 m/s: variance 40^2 / 12, of which a sample's differs by sqrt(0.8 / n).
+    assert noise.var() == pytest.approx(1600 / 12, rel=4.5 * np.sqrt(0.8 / len(noise)))
+    assert waves.std() == pytest.approx(1.0, rel=4.5 / np.sqrt(2 * len(waves)))

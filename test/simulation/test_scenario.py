@@ -192,3 +192,14 @@ def test_unknown_names_are_answered_with_the_nearest():
         scenario.load('bussy_strait')
     with pytest.raises(ValueError, match='cannot be read: No such file'):
         scenario.load('nowhere/at_all.yaml')
+
+
+def test_a_radar_with_doppler_tells_the_tracker_its_deviation(make_scenario):
+    told = make_scenario(radar={'radial_speed_sigma_kn': 0.5}).tracker_parameters()
+    assert told['radial_speed_sigma_mps'] == pytest.approx(0.2572, abs=1e-4)
+    assert 'radial_speed_sigma_mps' not in make_scenario().tracker_parameters()
+
+
+def test_a_doppler_band_without_doppler_is_a_mistake(make_scenario):
+    with pytest.raises(ValueError, match='max_radial_speed, but no radial_speed_sigma'):
+        make_scenario(radar={'max_radial_speed_mps': 20})

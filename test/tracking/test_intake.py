@@ -171,3 +171,13 @@ def test_own_ship_never_heard_is_taken_at_rest_at_the_origin():
     own_ship, fallback = intake.own_ship_for(intake.empty_log(), 5.0, 7.0, 10.0)
     assert fallback == intake.OWN_NEVER_HEARD
     assert not own_ship.position.any() and not own_ship.velocity.any()
+
+
+def test_a_bad_radial_speed_is_forgotten_and_counted_but_its_plot_stays():
+    given = plots([1000.0, 2000.0, 3000.0, 4000.0, -1.0], [1.0] * 5)._replace(
+        radial_speed=np.array([5.0, np.nan, -1e30, -np.inf, np.nan]))
+    kept, counts = intake.screen_plots(given, PERIOD, 100)
+    assert kept.range.tolist() == [1000.0, 2000.0, 3000.0, 4000.0]
+    np.testing.assert_array_equal(kept.radial_speed, [5.0, np.nan, np.nan, np.nan])
+    assert counts == {intake.BAD_RANGE: 1, intake.SPEED_NOT_FINITE: 2, intake.SPEED_TOO_HIGH: 1}
+    assert set(counts) <= set(intake.PLOT_REASONS)
