@@ -88,7 +88,7 @@ class TrackerParameters:
     """The tracker's parameters, in process and as a node."""
 
     estimator: str = parameter(
-        'imm', 'Filter that extrapolates and updates the tracks.',
+        'gwnn', 'Filter that extrapolates and updates the tracks.',
         choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper'), live=True)
     gwnn_weights: str = parameter(
         '', 'Weights of the estimator gwnn, a file of `marine_tracker train gwnn`; empty: those '
