@@ -90,7 +90,7 @@ class TrackerParameters:
     """The tracker's parameters, in process and as a node."""
 
     estimator: str = parameter(
-        'imm', 'Filter that extrapolates and updates the tracks.',
+        'gwnn', 'Filter that extrapolates and updates the tracks.',
         choices=('cs_kalman', 'imm', 'gwnn', 'gwnn_paper', 'cs_rough_nn', 'cs_bp_nn', 'wavelet_cs',
                  'alpha_beta'), live=True)
     gwnn_weights: str = parameter(

@@ -1,13 +1,14 @@
 """What a scan costs, for this tracker and for Stone Soup on the same plots in the same run."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..estimators import ESTIMATORS, Estimator
 from ..geometry import KNOT, NAUTICAL_MILE, unit_vector, wrap_bearing
 from ..parameters import TrackerParameters
 from ..tracking.tracker import Tracker
@@ -18,6 +19,7 @@ RANGE_SIGMA = 20.0                  # m
 BEARING_SIGMA = float(np.radians(0.5))
 DETECTION = 0.9
 NEAREST, FARTHEST = 0.25 * NAUTICAL_MILE, 24 * NAUTICAL_MILE
+STONE_SOUP = 'Stone Soup'
 WARM_UP = 12                        # scans in which the tracker finds the targets by itself
 TURN_CPU = 0.1                      # s, this tracker's least share of a turn
 KEPT_WITHIN = 4.0                   # of the plot noise at that range, plus 50 m
@@ -32,16 +34,20 @@ class Traffic(NamedTuple):
 
 
 class Found(NamedTuple):
-    """One turn: CPU time of a scan, s, and the tracks' positions [., 2] m after each scan."""
+    """One turn: CPU time of a scan, s, the estimator's part of it (nan where it is not known),
+    and the tracks' positions [., 2] m after each scan."""
 
     cpu_s: float
+    estimator_s: float
     positions: list[np.ndarray]
 
 
 class Result(NamedTuple):
-    """cpu_s: mean CPU time of a scan; kept: share of targets with a track; rmse of those, m."""
+    """cpu_s: mean CPU time of a scan; estimator_s: of that, extrapolation and update; kept: share
+    of targets with a track; rmse of those, m."""
 
     cpu_s: float
+    estimator_s: float
     kept: float
     rmse: float
 
@@ -78,6 +84,24 @@ def traffic(targets: int, clutter: int, scans: int, seed: int) -> Traffic:
     return Traffic(out, np.stack(positions), np.stack(velocities))
 
 
+class Clock:
+    """CPU time spent, s, in an estimator's functions."""
+
+    def __init__(self):
+        self.spent = 0.0
+
+    def time(self, estimator: Estimator) -> Estimator:
+        """The same estimator, by the clock."""
+        def timed(function):
+            def run(*arguments):
+                begin = time.process_time()
+                found = function(*arguments)
+                self.spent += time.process_time() - begin
+                return found
+            return run
+        return Estimator(*map(timed, estimator))
+
+
 def run_tracker(scene: Traffic, estimator: str) -> Iterator[Found]:
     """This tracker: whole steps, from extrapolation to the initiation of new tracks.
 
@@ -87,19 +111,20 @@ def run_tracker(scene: Traffic, estimator: str) -> Iterator[Found]:
     parameters = TrackerParameters(
         estimator=estimator, range_sigma_m=RANGE_SIGMA, bearing_sigma_deg=0.5,
         scan_period_s=PERIOD, max_tracks=min(2 * targets + 1000, 100000))
-    tracker = Tracker(parameters)
+    clock = Clock()
+    tracker = Tracker(parameters, clock.time(ESTIMATORS[estimator](parameters)))
     warm = tracker.start()
     for scan in scene.scans[:WARM_UP]:
         warm, _ = tracker.step(warm, scan)
     timed = scene.scans[WARM_UP:]
     while True:
         memory, after = warm, []
-        begin = time.process_time()
+        clock.spent, begin = 0.0, time.process_time()
         for scan in timed:
             memory, _ = tracker.step(memory, scan)
             after.append(memory.tracks)
         cpu = time.process_time() - begin
-        yield Found(cpu / len(timed), [
+        yield Found(cpu / len(timed), clock.spent / len(timed), [
             tracker.extrapolate(tracks, scan.end).position[tracks.number > 0]
             for tracks, scan in zip(after, timed, strict=True)])
 
@@ -158,7 +183,7 @@ def run_stone_soup(scene: Traffic) -> Iterator[Found]:
         for track, hypothesis in associator.associate(tracks, detections, now).items():
             track.append(updater.update(hypothesis) if hypothesis else hypothesis.prediction)
         cpu = time.process_time() - begin
-        yield Found(cpu, [np.array([[float(t.state_vector[0]), float(t.state_vector[2])]
+        yield Found(cpu, np.nan, [np.array([[float(t.state_vector[0]), float(t.state_vector[2])]
                                     for t in tracks])])
 
 
@@ -169,39 +194,41 @@ def _nearest(truth, found):
     return cKDTree(found).query(truth)[0]
 
 
-def _result(cpu, found, scene: Traffic) -> Result:
+def _result(turns: Sequence[Found], found, scene: Traffic) -> Result:
     truth = scene.position[WARM_UP:]
     errors = np.array([_nearest(*pair) for pair in zip(truth, found, strict=True)])
     distance = np.hypot(*np.moveaxis(truth, -1, 0))
     kept = errors < KEPT_WITHIN * np.hypot(RANGE_SIGMA, distance * BEARING_SIGMA) + 50
     rmse = float(np.sqrt(np.mean(errors[kept] ** 2))) if kept.any() else float('nan')
-    return Result(float(np.mean(cpu)), float(kept[-1].mean()), rmse)
+    return Result(float(np.mean([turn.cpu_s for turn in turns])),
+                  float(np.mean([turn.estimator_s for turn in turns])), float(kept[-1].mean()), rmse)
 
 
-def benchmark(targets: int, clutter: int, estimator: str, timed_scans: int, seed: int,
+def benchmark(targets: int, clutter: int, estimators: Sequence[str], timed_scans: int, seed: int,
               alone: bool = False) -> dict[str, Result]:
-    """Both trackers on one scene: {'marine_tracker': Result, 'Stone Soup': Result}.
+    """This tracker with each of the estimators, and Stone Soup, on one scene, by name.
 
-    They take turns, scan by scan of Stone Soup, so that what else the machine does meets both
+    They take turns, scan by scan of Stone Soup, so that what else the machine does meets all
     alike. Stone Soup is left out where it is not installed, or `alone`.
     """
     scene = traffic(targets, clutter, WARM_UP + timed_scans, seed)
-    ours = run_tracker(scene, estimator)
-    next(ours)                                      # the first pass faults its memory in
+    ours = {name: run_tracker(scene, name) for name in estimators}
+    for turns in ours.values():
+        next(turns)                                 # the first pass faults its memory in
     theirs = None
     if not alone and find_spec('stonesoup'):
         theirs = run_stone_soup(scene)
-    cpu, soup = [], []
+    found: dict[str, list[Found]] = {name: [] for name in ours}
+    soup = []
     for _ in range(timed_scans):
-        spent = 0.0
-        while spent < TURN_CPU:
-            mine = next(ours)
-            cpu.append(mine.cpu_s)
-            spent += mine.cpu_s * timed_scans
+        for name, turns in ours.items():
+            spent = 0.0
+            while spent < TURN_CPU:
+                found[name].append(next(turns))
+                spent += found[name][-1].cpu_s * timed_scans
         if theirs:
             soup.append(next(theirs))
-    results = {'marine_tracker': _result(cpu, mine.positions, scene)}
+    results = {name: _result(turns, turns[-1].positions, scene) for name, turns in found.items()}
     if soup:
-        results['Stone Soup'] = _result([turn.cpu_s for turn in soup],
-                                        [turn.positions[0] for turn in soup], scene)
+        results[STONE_SOUP] = _result(soup, [turn.positions[0] for turn in soup], scene)
     return results

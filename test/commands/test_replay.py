@@ -29,7 +29,7 @@ def test_a_replay_has_the_documented_columns_and_names(tracks):
         rows = list(reader)
     assert tuple(reader.fieldnames) == track_file.COLUMNS
     assert {row['status'] for row in rows} <= {'tentative', 'confirmed', 'coasting', 'lost'}
-    assert {row['estimator'] for row in rows} == {'imm'}
+    assert {row['estimator'] for row in rows} == {'gwnn'}
     assert {bool(row['pred_north_m']) for row in rows} == {True, False}
     assert [row['pred_north_m'] for row in rows if row['track'] == rows[0]['track']][0] == ''
 

@@ -112,7 +112,7 @@ def test_targets_read_like_a_table_of_what_the_core_says(rig, clean, core):
             (picture.time - picture.motion.since[k]) / 60, 'min', 1)
         assert (values['acquired'], values['swap_risk'], values['stabilised']) == (
             'A', '', 'ground')
-        assert values['estimator'] == 'imm' and int(values['hits_in_10']) >= 9
+        assert values['estimator'] == 'gwnn' and int(values['hits_in_10']) >= 9
     assert compared >= 6 * 16
     assert len(re.fullmatch(r'\d+\.(\d+)', values['range_nm'])[1]) == 3
 
