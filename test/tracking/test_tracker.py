@@ -14,13 +14,14 @@ from marine_tracker.types import OwnShip, PolarPlots, Scan, take
 PERIOD = 60 / 22
 FLEET = np.array([[2000.0, 1500.0], [-1000.0, 3000.0], [500.0, -2500.0], [-4000.0, -300.0]])
 COURSES = np.array([[5.0, -3.0], [0.3, 0.1], [-4.0, 6.0], [12.0, 1.0]])
+POINTS = {'glint_sigma_m': 0.0}             # the targets of `revolution` have no extent
 
 
 @pytest.fixture(params=list(ESTIMATORS))
 def parameters(request):
     """The shipped defaults, changed by name."""
     def make(**changes):
-        return TrackerParameters(**{'estimator': request.param, **changes})
+        return TrackerParameters(**{'estimator': request.param, **POINTS, **changes})
     return make
 
 
@@ -372,13 +373,16 @@ def test_a_scan_and_the_memory_before_it_stay_as_they_were(parameters, revolutio
         memory = after
 
 
-CHANGES = list(itertools.product(ESTIMATORS, ['ship'], ESTIMATORS, VESSEL_CLASSES))
+# In a ring, so that every estimator is left and taken up twice, and in both vessel classes.
+CHANGES = [(old, 'ship', new, vessel)
+           for one, other in itertools.pairwise([*ESTIMATORS, next(iter(ESTIMATORS))])
+           for old, new in ((one, other), (other, one)) for vessel in VESSEL_CLASSES]
 
 
 @pytest.mark.parametrize('change', CHANGES, ids='-'.join)
 def test_no_track_is_lost_by_a_change_of_estimator(revolution, change):
     rng = np.random.default_rng(10)
-    old, new = (Tracker(TrackerParameters(estimator=estimator, vessel_class=vessel))
+    old, new = (Tracker(TrackerParameters(estimator=estimator, vessel_class=vessel, **POINTS))
                 for estimator, vessel in (change[:2], change[2:]))
     scans = [revolution(k, FLEET, COURSES, rng=rng, false=8, reach=5000) for k in range(30)]
     # One more ship appears in the last two scans: a tentative track lives through it as well.
@@ -412,7 +416,7 @@ def test_a_change_of_estimator_keeps_position_and_velocity(revolution, change, d
     new one may not believe to know much more or less than either would.
     """
     rng = np.random.default_rng(11)
-    old, new = (Tracker(TrackerParameters(estimator=estimator, vessel_class=vessel))
+    old, new = (Tracker(TrackerParameters(estimator=estimator, vessel_class=vessel, **POINTS))
                 for estimator, vessel in (change[:2], change[2:]))
     position = distance * np.array([[0.8, 0.6], [-0.6, 0.8]])
     velocity = np.array([[-10.0, 3.0], [10.0, 0.0]])
