@@ -1,4 +1,24 @@
-"""Train the weights of an estimator anew.
+"""Train the weights of an estimator anew."""
+
+import json
+from pathlib import Path
+
+from ..evaluation import (
+    gwnn_fusion_training,
+    gwnn_samples,
+    gwnn_training,
+    own_waters,
+    report,
+    rough_training,
+)
+from ..heap import keep_freed_memory
+from ..networks import gwnn_weights, rough_weights, wavelet_network
+from ..parameters import VESSEL_CLASSES
+from ..simulation import scenario
+from .progress_bar import progress_bar
+
+HELP = 'train the weights of an estimator anew'
+GWNN = """Train the network of `gwnn`.
 
 The training draws its own tracks, and takes some minutes of one processor. It may be stopped at
 any time: the same command goes on from the checkpoint beside the file (FILE.part). Use the result
@@ -9,18 +29,12 @@ With --scenario the radar is the scenario's, and the tracks of its targets are l
 with --kinds the vessels move as a file of your own says (its form stands in
 marine_tracker/evaluation/own_waters.py).
 """
+ROUGH = """Train the network of `cs_rough_nn`, or that of `cs_bp_nn`.
 
-import json
-from pathlib import Path
-
-from ..evaluation import gwnn_fusion_training, gwnn_samples, gwnn_training, own_waters, report
-from ..heap import keep_freed_memory
-from ..networks import gwnn_weights, wavelet_network
-from ..parameters import VESSEL_CLASSES
-from ..simulation import scenario
-from .progress_bar import progress_bar
-
-HELP = 'train the weights of an estimator anew'
+It learns by which share of its process noise the estimating filter is to follow the other one, from
+a grid of samples: no tracks are drawn, some seconds suffice. The shipped weights are those of seed 1.
+A .json file beside the weights tells how they came about.
+"""
 STAGES = {'tracks': 'making tracks', 'fusion': 'training to weigh the filters',
           'spread': 'training to know the error'}
 
@@ -28,7 +42,22 @@ STAGES = {'tracks': 'making tracks', 'fusion': 'training to weigh the filters',
 def add_arguments(parser) -> None:
     """The command line of `train`."""
     names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
-    sub = names.add_parser('gwnn', help='the wavelet network of `gwnn`', description=__doc__)
+    _add_gwnn(names.add_parser('gwnn', help='the wavelet network of `gwnn`', description=GWNN))
+    _add_rough(names.add_parser('rough_nn', help='the networks of `cs_rough_nn` and `cs_bp_nn`',
+                                description=ROUGH))
+
+
+def _add_rough(sub) -> None:
+    sub.add_argument('--network', choices=tuple(rough_weights.NEURONS), default='rough',
+                     help='the rough network, or the plain one (default %(default)s)')
+    sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
+    sub.add_argument('--out', metavar='FILE',
+                     help='where the weights go (default cs_NETWORK_nn.npz)')
+    report.add_arguments(sub)
+    sub.set_defaults(train=_train_rough)
+
+
+def _add_gwnn(sub) -> None:
     sub.add_argument('--vessel-class', choices=VESSEL_CLASSES, default='ship',
                      help='whose filters are weighed, and whose motion (default %(default)s)')
     sub.add_argument('--kinds', metavar='FILE', type=Path,
@@ -47,20 +76,47 @@ def add_arguments(parser) -> None:
                      default=wavelet_network.WAVELET,
                      help='hidden units; plain ones are for comparison (default %(default)s)')
     report.add_arguments(sub)
+    sub.set_defaults(train=_train_gwnn)
 
 
 def run(args) -> int:
-    """Write the weights and print how they do on tracks that they were not trained on."""
-    for name in ('tracks', 'steps'):
-        if getattr(args, name) < 1:
-            raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least 1')
+    """Write the weights and print how good they are."""
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
-    out = Path(args.out)
+    return args.train(args)
+
+
+def _out(name: str) -> Path:
+    """The file for the weights; the description goes beside it."""
+    out = Path(name)
     if not out.parent.is_dir():
         raise ValueError(f'--out is {out}; there is no folder {out.parent}')
     if out.suffix == '.json':
         raise ValueError(f'--out is {out}; that name is for the description beside the weights')
+    return out
+
+
+def _describe(out: Path, manifest) -> None:
+    out.with_suffix('.json').write_text(json.dumps(manifest, indent=1) + '\n')
+
+
+def _train_rough(args) -> int:
+    out = _out(args.out or f'cs_{args.network}_nn.npz')
+    with progress_bar('training') as show:
+        weights = rough_training.train(args.network, args.seed, show)
+    manifest = rough_weights.save(out, weights)
+    _describe(out, manifest)
+    figures = [report.Figure('RMS error of the share O on the samples', manifest['rms_error']),
+               report.Figure('samples', manifest['samples'])]
+    return report.publish(f'{out}: {args.network} network {manifest["layout"]}, seed {args.seed}',
+                          figures, args.json, manifest)
+
+
+def _train_gwnn(args) -> int:
+    for name in ('tracks', 'steps'):
+        if getattr(args, name) < 1:
+            raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least 1')
+    out = _out(args.out)
     plan = _plan(args)
     keep_freed_memory()
     checkpoint = out.with_name(out.name + '.part')
@@ -68,7 +124,7 @@ def run(args) -> int:
         weights = gwnn_training.run(plan, checkpoint, lambda stage, done, whole: show(
             done, whole, STAGES[stage]))
     manifest = gwnn_weights.save(out, weights)
-    out.with_suffix('.json').write_text(json.dumps(manifest, indent=1) + '\n')
+    _describe(out, manifest)
     checkpoint.unlink(missing_ok=True)
     figures = [report.Figure(f'{cell}: position ratio', ratio, '', None, None, "the bank's IMM")
                for cell, ratio in manifest['ratios'].items()]

@@ -23,20 +23,18 @@ LAMBDA = 0.3
 KAPPA = 3.0
 LOW = float(chi2.ppf(0.5, 1))
 HIGH = KAPPA * float(chi2.ppf(0.95, 1))
-MOST = 1.5                      # of an input: beyond, the network was not trained
-
-
-def scaled(u_over_c):
-    """Inputs for u / c."""
-    return np.clip((u_over_c - LOW) / (HIGH - LOW), 0.0, MOST)
+MOST = HIGH ** 0.5              # of |d|: harder than hard was not trained
 
 
 def inputs(apart, deviation, neurons: int):
     """Inputs [..., K] for |d| / sqrt(c s) and (sqrt p1 + sqrt p2) / sqrt(c s), both [...]."""
+    apart = np.minimum(apart, MOST)
     if neurons == 1:
-        return scaled(apart * apart)[..., None]
-    e = LAMBDA * deviation
-    return np.stack([scaled(np.maximum(apart - e, 0.0) ** 2), scaled((apart + e) ** 2)], -1)
+        bounds = apart[..., None]
+    else:
+        e = LAMBDA * deviation
+        bounds = np.stack([np.maximum(apart - e, 0.0), apart + e], -1)
+    return (bounds * bounds - LOW) / (HIGH - LOW)
 
 
 def quiet_variance(quiet: Quiet, gamma, y):

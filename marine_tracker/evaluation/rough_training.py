@@ -26,7 +26,7 @@ LOG_GAMMA = np.log(10.0) * np.arange(-3, 1.01, 0.5)
 LOG_Y = np.log([0.01, 0.03, 0.1, 0.3])
 LEVELS = np.linspace(0, 1, 5)
 SAMPLED = [(3, 0), (3, 2), (5, 1), (7, 0), (7, 2)]          # places of the table, for the intervals
-STARTS, DECAY, ROUNDS = 12, 3e-3, 150   # random beginnings; of the weights; evaluations each
+STARTS, DECAY, ROUNDS = 12, 1e-3, 200   # random beginnings; of the weights; evaluations each
 DIGITS = 5                                  # of the weights kept
 
 
@@ -77,8 +77,9 @@ def label(v):
 
 def samples(deviations, neurons: int) -> Samples:
     """The grid as networks with so many neurons to a node see it."""
-    v = np.stack(np.meshgrid(*[LEVELS] * INPUTS, indexing='ij'), -1).reshape(-1, INPUTS)
-    apart = np.sqrt(LOW + v * (HIGH - LOW))
+    square = np.concatenate([[0], LOW + LEVELS * (HIGH - LOW)])
+    square = np.stack(np.meshgrid(*[square] * INPUTS, indexing='ij'), -1).reshape(-1, INPUTS)
+    v, apart = np.maximum(square - LOW, 0) / (HIGH - LOW), np.sqrt(square)
     if neurons == 1:
         return Samples(inputs(apart, None, 1), label(v))
     seen = [inputs(apart, deviations[place], neurons) for place in SAMPLED]

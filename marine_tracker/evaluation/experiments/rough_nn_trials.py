@@ -12,7 +12,8 @@ import numpy as np
 
 from ...estimators import cs_kalman, cs_rough_nn
 from ...estimators.contract import Velocity
-from ...types import Array, Plots
+from ...geometry import polar_to_position, to_range_bearing, unit_vector
+from ...types import Array, Plots, take
 from .result import Progress
 
 CS, BP, ROUGH, IMM = 'CS', 'BP', 'rough', 'IMM of the same two filters'
@@ -53,6 +54,35 @@ SETTINGS = {
 }
 
 
+class Radar(NamedTuple):
+    """A radar and a target on a straight course that it sees.
+
+    vessel_class   preset of the filters
+    period         s
+    range_sigma    m
+    bearing_sigma  deg
+    distance       m, at the beginning
+    detection      probability of a plot
+    """
+
+    vessel_class: str
+    period: float
+    range_sigma: float
+    bearing_sigma: float
+    distance: float
+    detection: float
+
+
+RADARS = {
+    '22 rpm, 15 m, 0.5 deg, 3 km': Radar('ship', 60 / 22, 15.0, 0.5, 3000.0, 1.0),
+    '22 rpm, 15 m, 0.5 deg, 20 km': Radar('ship', 60 / 22, 15.0, 0.5, 20000.0, 1.0),
+    'the same, one plot in five missed': Radar('ship', 60 / 22, 15.0, 0.5, 20000.0, 0.8),
+    '12 rpm, 25 m, 0.4 deg, 9 km': Radar('ship', 5.0, 25.0, 0.4, 9000.0, 0.9),
+    '48 rpm, 3 m, 0.7 deg, 500 m, small craft': Radar('small_craft', 1.25, 3.0, 0.7, 500.0, 0.9),
+}
+QUIET_SCANS = 120
+
+
 class Answer(NamedTuple):
     """What a filter makes of a step of the acceleration.
 
@@ -61,6 +91,7 @@ class Answer(NamedTuple):
     acceleration  RMSE after the first scans, m/s^2; likewise velocity m/s and position m
     quiet_velocity, quiet_position  RMSE before the step
     answering     RMSE of the acceleration in the transition after the step
+    of_runs       [runs]   mean squared error of the acceleration after the first scans
     mean          [scans]  mean acceleration
     share         [scans]  mean O, or weight of the wide filter; nan where there is none
     """
@@ -73,6 +104,7 @@ class Answer(NamedTuple):
     quiet_velocity: float
     quiet_position: float
     answering: float
+    of_runs: Array
     mean: Array
     share: Array
 
@@ -190,7 +222,8 @@ def answer(setting: Setting, step: tuple[float, float], filter_: Filter, runs: i
         return float(np.sqrt(np.mean(values ** 2)))
     return Answer(there[0] * setting.period if len(there) else np.nan, float(done.max()),
                   *(rms(whole[..., i]) for i in (2, 1, 0)), rms(quiet[..., 1]), rms(quiet[..., 0]),
-                  rms(off[:, change:until, 2]), mean, np.array([share for _, share in found]))
+                  rms(off[:, change:until, 2]), (whole[..., 2] ** 2).mean(1), mean,
+                  np.array([share for _, share in found]))
 
 
 def answers(runs: int, seed: int, progress: Progress) -> dict[tuple[str, str, str], Answer]:
@@ -204,3 +237,26 @@ def answers(runs: int, seed: int, progress: Progress) -> dict[tuple[str, str, st
         found[name, step, rival] = answer(setting, setting.steps[step], FILTERS[rival], runs, seed)
     progress(len(cells), len(cells))
     return found
+
+
+def quiet_share(kind: str, radar: Radar, runs: int, seed: int) -> float:
+    """Mean O of a target that keeps its course, in the latter half of QUIET_SCANS."""
+    rng = np.random.default_rng(seed)
+    estimator = cs_rough_nn.parallel(cs_kalman.PRESETS[radar.vessel_class], 25.0,
+                                     cs_rough_nn.weights(kind))
+    start = radar.distance * unit_vector(np.full(runs, 0.7))
+    sigma = np.radians(radar.bearing_sigma)
+    state, shares = None, []
+    for k in range(QUIET_SCANS):
+        time = np.full(runs, k * radar.period)
+        r, b = to_range_bearing(start + np.array([5.0, -3.0]) * time[:, None])
+        r, b = r + rng.normal(0, radar.range_sigma, runs), b + rng.normal(0, sigma, runs)
+        plots = Plots(time, r, b, np.zeros(runs), np.zeros((runs, 2)),
+                      *polar_to_position(r, b, radar.range_sigma, sigma))
+        if state is None:
+            state = estimator.init(plots)
+            continue
+        rows = np.flatnonzero(rng.random(runs) < radar.detection)
+        state = estimator.update(state, take(plots, rows), rows)
+        shares.append(state.share.mean())
+    return float(np.mean(shares[QUIET_SCANS // 2:]))
