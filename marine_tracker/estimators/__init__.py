@@ -22,8 +22,7 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
                                 vessel_class=p.vessel_class),
     'gwnn_paper': lambda p: gwnn_paper.gwnn_paper(
         cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
-    'wavelet_cs': lambda p: wavelet_cs.wavelet_cs(wavelet_cs.PRESETS[p.vessel_class],
-                                                  p.max_target_speed_mps),
+    'wavelet_cs': lambda p: wavelet_cs.wavelet_cs(wavelet_cs.MANOEUVRE, p.max_target_speed_mps),
 }
 
 

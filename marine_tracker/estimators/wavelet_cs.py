@@ -11,10 +11,10 @@ where they are alike.
 
 The gain: taken literally, eq 13 to 15 leave the variance of the details in P, where it grows until
 the gain has one and the same shape for every a_max and plot noise, [1, .56 / tau, .16 / tau^2] for
-a block of tau seconds (less by alpha tau in the last). That is what makes the filter insensitive to
-a_max; but on the way there P may stop to be a covariance, and the track is lost. Here the position
-is corrected by the Kalman gain of the block's mean, velocity and acceleration in that limiting
-shape, and the covariance is that of the error (Joseph).
+a block of tau seconds (the last less by alpha tau). That is what makes the filter insensitive to
+a_max; but P tells three to ten times the error, and after the first plots of a track it is not even
+a covariance. Here the position is corrected by the Kalman gain of the block's mean, velocity and
+acceleration in that limiting shape, and the covariance is that of the error (Joseph's form).
 """
 
 from typing import NamedTuple
@@ -39,9 +39,9 @@ SHARE = coarse('haar', 2)[0] ** 2       # each plot's part in the mean of the bl
 # with alpha tau.
 VELOCITY_GAIN, ACCELERATION_GAIN, FALL = 0.5593, 0.1559, 0.83
 
-# The acceleration allowed for says how uncertain the track is more than where it is.
-PRESETS = {'ship': cs_kalman.PRESETS['ship'],
-           'small_craft': Manoeuvre(max_acceleration=1.0, frequency=1 / 20)}
+# The acceleration allowed for says how uncertain a track is more than where it is: agile craft
+# are followed no better with more (six recordings), and their gates grow.
+MANOEUVRE = cs_kalman.PRESETS['ship']
 
 
 class WaveletState(NamedTuple):
@@ -52,7 +52,7 @@ class WaveletState(NamedTuple):
     covariance  [N, 4, 6, 6]
     position    [N, 3, 2]     m, of the last three plots
     noise       [N, 3, 2, 2]  m^2, likewise
-    count       [N]           plots so far
+    plots       [N]           how many so far
     """
 
     time: Array
@@ -60,7 +60,7 @@ class WaveletState(NamedTuple):
     covariance: Array
     position: Array
     noise: Array
-    count: Array
+    plots: Array
 
 
 def begin(time, mean, covariance) -> WaveletState:
@@ -85,7 +85,7 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
     plain = cs_kalman.cs_kalman(manoeuvre, max_speed)
 
     def init(plots, velocity=None):
-        return begin(*plain.init(plots, velocity))._replace(count=np.ones(len(plots.time)))
+        return begin(*plain.init(plots, velocity))._replace(plots=np.ones(len(plots.time)))
 
     def extrapolate(state, time):
         last = newest(state)
@@ -97,7 +97,7 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         before = take(state, rows)
         mean, covariance = np.empty((len(rows), 6)), np.empty((len(rows), 6, 6))
         told = np.empty(len(rows), bool)
-        young = before.count < WARM_UP
+        young = before.plots < WARM_UP
         for chosen, method in ((young, _plot), (~young, _block)):
             at = np.flatnonzero(chosen)
             if len(at):
@@ -106,7 +106,7 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         after = WaveletState(
             _push(before.time, plots.time), _push(before.mean, mean),
             _push(before.covariance, covariance), _push(before.position, plots.position),
-            _push(before.noise, plots.covariance), before.count + 1)
+            _push(before.noise, plots.covariance), before.plots + 1)
         return put(state, rows[told], take(after, told))
 
     return Estimator(init, extrapolate, update)
