@@ -27,8 +27,7 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
                                                p.max_target_speed_mps, cs_rough_nn.weights('bp')),
     'gwnn_paper': lambda p: gwnn_paper.gwnn_paper(
         cs_kalman.PRESETS[p.vessel_class], p.max_target_speed_mps, p.scan_period_s),
-    'wavelet_cs': lambda p: wavelet_cs.wavelet_cs(wavelet_cs.PRESETS[p.vessel_class],
-                                                  p.max_target_speed_mps),
+    'wavelet_cs': lambda p: wavelet_cs.wavelet_cs(wavelet_cs.MANOEUVRE, p.max_target_speed_mps),
     'alpha_beta': lambda p: alpha_beta.alpha_beta(
         p.alpha_beta_mode, p.max_target_speed_mps, p.radial_speed_sigma_mps,
         alpha_beta.NOISE[p.vessel_class]),

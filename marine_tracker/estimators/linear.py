@@ -53,6 +53,16 @@ def kalman_update(mean, covariance, innovation, noise, position):
     return mean, covariance, inverse, determinant
 
 
+def weighted_fusion(first, first_noise, second, second_noise):
+    """Two measurements of one place as one: positions [..., 2] m and covariances [..., 2, 2] m^2.
+
+    Weighted by their accuracy. A Kalman update with the result is that with both in turn.
+    """
+    gain = np.matmul(first_noise, invert_2x2(first_noise + second_noise)[0])
+    return (first + np.matmul(gain, (second - first)[..., None])[..., 0],
+            first_noise - np.matmul(gain, first_noise))
+
+
 def squared_distance(innovation, inverse):
     """Squared Mahalanobis distance [...] of innovations [..., 2] by the inverse [..., 2, 2]."""
     east, north = innovation[..., 0], innovation[..., 1]

@@ -8,6 +8,13 @@ moves it little, whatever acceleration the model allows for.
 The coarsest row of every periodised orthonormal wavelet is the mean of the block, so the choice of
 the wavelet falls away. Plots of unequal accuracy count in the mean by their accuracy, [1/4 ..]
 where they are alike.
+
+The gain: taken literally, eq 13 to 15 leave the variance of the details in P, where it grows until
+the gain has one and the same shape for every a_max and plot noise, [1, .56 / tau, .16 / tau^2] for
+a block of tau seconds (the last less by alpha tau). That is what makes the filter insensitive to
+a_max; but P tells three to ten times the error, and after the first plots of a track it is not even
+a covariance. Here the position is corrected by the Kalman gain of the block's mean, velocity and
+acceleration in that limiting shape, and the covariance is that of the error (Joseph's form).
 """
 
 from typing import NamedTuple
@@ -28,9 +35,13 @@ WARM_UP = 2 * SIZE - 1
 # out of the block either.
 FAINT = 1e6
 SHARE = coarse('haar', 2)[0] ** 2       # each plot's part in the mean of the block
+# Limits of the paper's gains: of velocity times tau, and of acceleration times tau^2, which falls
+# with alpha tau.
+VELOCITY_GAIN, ACCELERATION_GAIN, FALL = 0.5593, 0.1559, 0.83
 
-PRESETS = {'ship': Manoeuvre(max_acceleration=1.0, frequency=1 / 60),
-           'small_craft': cs_kalman.PRESETS['small_craft']}
+# The acceleration allowed for says how uncertain a track is more than where it is: agile craft
+# are followed no better with more (six recordings), and their gates grow.
+MANOEUVRE = cs_kalman.PRESETS['ship']
 
 
 class WaveletState(NamedTuple):
@@ -41,7 +52,7 @@ class WaveletState(NamedTuple):
     covariance  [N, 4, 6, 6]
     position    [N, 3, 2]     m, of the last three plots
     noise       [N, 3, 2, 2]  m^2, likewise
-    count       [N]           plots so far
+    plots       [N]           how many so far
     """
 
     time: Array
@@ -49,7 +60,7 @@ class WaveletState(NamedTuple):
     covariance: Array
     position: Array
     noise: Array
-    count: Array
+    plots: Array
 
 
 def begin(time, mean, covariance) -> WaveletState:
@@ -74,7 +85,7 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
     plain = cs_kalman.cs_kalman(manoeuvre, max_speed)
 
     def init(plots, velocity=None):
-        return begin(*plain.init(plots, velocity))._replace(count=np.ones(len(plots.time)))
+        return begin(*plain.init(plots, velocity))._replace(plots=np.ones(len(plots.time)))
 
     def extrapolate(state, time):
         last = newest(state)
@@ -86,7 +97,7 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         before = take(state, rows)
         mean, covariance = np.empty((len(rows), 6)), np.empty((len(rows), 6, 6))
         told = np.empty(len(rows), bool)
-        young = before.count < WARM_UP
+        young = before.plots < WARM_UP
         for chosen, method in ((young, _plot), (~young, _block)):
             at = np.flatnonzero(chosen)
             if len(at):
@@ -95,7 +106,7 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         after = WaveletState(
             _push(before.time, plots.time), _push(before.mean, mean),
             _push(before.covariance, covariance), _push(before.position, plots.position),
-            _push(before.noise, plots.covariance), before.count + 1)
+            _push(before.noise, plots.covariance), before.plots + 1)
         return put(state, rows[told], take(after, told))
 
     return Estimator(init, extrapolate, update)
@@ -137,13 +148,13 @@ def _block(state, plots, manoeuvre):
     noise = np.concatenate([state.noise, plots.covariance[:, None]], 1)
     weight = SHARE / np.trace(noise, axis1=2, axis2=3)
     weight /= weight.sum(1, keepdims=True)
-    moves, noises, drives = _steps(manoeuvre.frequency, np.concatenate(
+    frequency, limit = manoeuvre.frequency, manoeuvre.max_acceleration
+    moves, noises, drives = _steps(frequency, np.concatenate(
         [state.time[:, 1:], plots.time[:, None]], 1) - state.time)
 
     x = state.mean[:, 0].reshape(rows, 2, 3)
-    limit = manoeuvre.max_acceleration
     held = np.clip(x[:, :, 2:], -limit, limit)
-    variance = acceleration_variance(x[:, :, 2], limit) * (2 * manoeuvre.frequency)
+    variance = acceleration_variance(x[:, :, 2], limit) * (2 * frequency)
     places = np.concatenate([state.position, plots.position[:, None]], 1)
     innovation = np.zeros((rows, 2))
     joint, spread = np.zeros((rows, 6, 3)), np.zeros((rows, 6, 6))
@@ -170,15 +181,30 @@ def _block(state, plots, manoeuvre):
     covariance = both[..., :3, :3].swapaxes(2, 3).reshape(rows, 6, 6)
     told = _tells(covariance, plots.covariance)
     toward = both[..., 3, :3].reshape(rows, 2, 6)       # C cov(m, x)
-    own = both[..., 3, 3:].reshape(rows, 2, 6)          # C cov(m, m)
     expected = both[..., 3, 3] + np.matmul(
         (weight ** 2)[:, None], noise.reshape(rows, SIZE, 4)).reshape(rows, 2, 2)
-    gain = np.matmul(invert_2x2(expected)[0], own)      # K', that of the mean for every state
-    mean = x.reshape(rows, 6) + np.matmul(innovation[:, None], gain)[:, 0]
-    cross = np.matmul(gain.swapaxes(1, 2), toward)
-    covariance = (covariance - cross - cross.swapaxes(1, 2)
-                  + sandwich(np.ascontiguousarray(gain.swapaxes(1, 2)), expected))
+    gain = np.matmul(both[..., 3, 3], invert_2x2(expected)[0])      # of the position
+    shape = _shape(frequency, plots.time - state.time[:, 0], both[..., 3, 3:])
+    gain = (gain[:, :, None] * shape[:, None, :, None]).reshape(rows, 6, 2)
+    mean = x.reshape(rows, 6) + np.matmul(gain, innovation[..., None])[..., 0]
+    cross = np.matmul(gain, toward)
+    covariance = covariance - cross - cross.swapaxes(1, 2) + sandwich(gain, expected)
     return mean, 0.5 * (covariance + covariance.swapaxes(1, 2)), told
+
+
+def _shape(frequency, tau, own):
+    """Gains [N, 3] of position, velocity and acceleration over that of the position.
+
+    The paper's limit for blocks of tau [N] s, but never more than the Kalman filter's: those over
+    short times, and where little acceleration is allowed for. own [N, 2, 2, 3]: C cov(m, m).
+    """
+    kalman = own[:, 0, 0] + own[:, 1, 1]
+    kalman = kalman / kalman[:, :1]
+    after = tau > 0
+    tau = np.where(after, tau, 1.0)
+    limit = np.stack([np.ones_like(tau), VELOCITY_GAIN / tau,
+                      ACCELERATION_GAIN / (1 + FALL * frequency * tau) / tau ** 2], 1)
+    return np.where(after[:, None], np.minimum(limit, kalman), kalman)
 
 
 def _steps(frequency, steps):

@@ -5,8 +5,9 @@ It may have OPTIONS, {name: how argparse is to read --name}: its `run` takes the
 
 from types import ModuleType
 
-from . import alpha_beta, gwnn, gwnn_monte_carlo, gwnn_paper, marine_table, rough_nn
+from . import alpha_beta, gwnn, gwnn_monte_carlo, gwnn_paper, marine_table, rough_nn, wavelet
 
 EXPERIMENTS: dict[str, ModuleType] = {
     'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo,
-    'marine_table': marine_table, 'rough_nn': rough_nn, 'alpha_beta': alpha_beta}
+    'marine_table': marine_table, 'rough_nn': rough_nn, 'wavelet': wavelet,
+    'alpha_beta': alpha_beta}
