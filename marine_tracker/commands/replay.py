@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..estimators import WANT_DOPPLER
 from ..heap import keep_freed_memory
 from ..recording import csv_folder, track_file
 from ..simulation import radar, scenario
@@ -33,11 +34,13 @@ class Source(NamedTuple):
 
 
 class Summary(NamedTuple):
-    """scans done, tracks ever confirmed, and the tracker's mean CPU time a scan in ms."""
+    """scans done, tracks ever confirmed, the tracker's mean CPU time a scan in ms, and whether any
+    plots told radial speeds."""
 
     scans: int
     confirmed: int
     cpu_ms: float
+    doppler: bool
 
 
 def add_arguments(parser) -> None:
@@ -65,6 +68,9 @@ def run(args) -> int:
             summary = write_tracks(tracker, scans, file)
     print(f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '
           f'{summary.cpu_ms:.2f} ms CPU a scan', file=sys.stderr if args.out == '-' else sys.stdout)
+    if tracker.parameters.estimator in WANT_DOPPLER and not summary.doppler:
+        print(f'warning: {args.source} tells no radial speeds, which '
+              f'{tracker.parameters.estimator} wants', file=sys.stderr)
     return 0
 
 
@@ -86,7 +92,7 @@ def write_tracks(tracker: Tracker, scans: Iterable[tuple[int, Scan]], file) -> S
     """Run the tracker over numbered scans and write what it says after each of them."""
     names = np.array(STATUS_NAMES)
     confirmed: set[int] = set()
-    memory, count, cpu = tracker.start(), 0, 0.0
+    memory, count, cpu, doppler = tracker.start(), 0, 0.0, False
     track_file.write_header(file)
     for number, scan in scans:
         began = time.process_time()
@@ -99,7 +105,8 @@ def write_tracks(tracker: Tracker, scans: Iterable[tuple[int, Scan]], file) -> S
             scan.own_ship, tracker.parameters.estimator)
         confirmed.update(tracks.id[tracks.status == CONFIRMED].tolist())
         count += 1
-    return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1))
+        doppler |= scan.plots.radial_speed is not None
+    return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1), doppler)
 
 
 def _with_progress(scans: Iterable[tuple[int, Scan]], total: int | None

@@ -4,6 +4,7 @@ A scenario is named, when it is shipped, or is a YAML file of your own; `scenari
 one, and its file in config/scenarios, tell how one is written."""
 
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -92,7 +93,10 @@ def _notes(loaded):
     """How `score` is to judge tracks: what counts as near, where the radar is least exact."""
     sigma = np.radians(loaded.tracker_parameters()['bearing_sigma_deg']) * loaded.radar.max_range
     near = float(round(max(50.0, 2 * sigma)))
-    return {'seen_within_m': near, 'cutoff_m': 2 * near, 'uncooperative': False}
+    notes: dict[str, Any] = {'seen_within_m': near, 'cutoff_m': 2 * near, 'uncooperative': False}
+    if loaded.fleet.origin is not None:
+        notes['origin'] = list(loaded.fleet.origin)
+    return notes
 
 
 def _conditions(loaded):

@@ -40,6 +40,9 @@ def _gwnn_account(state: gwnn.GwnnState) -> Account:
     return Account(gwnn.STATUS, status, rho, j, j_fallback, gwnn.REASONS, reason)
 
 
+# Estimators that are of little use where plots tell no radial speed: users are warned.
+WANT_DOPPLER = ('alpha_beta',)
+
 ACCOUNTS: dict[str, Callable[[Any], Account]] = {'gwnn': _gwnn_account}
 
-__all__ = ['ACCOUNTS', 'ESTIMATORS', 'Account', 'Estimator', 'Velocity']
+__all__ = ['ACCOUNTS', 'ESTIMATORS', 'WANT_DOPPLER', 'Account', 'Estimator', 'Velocity']

@@ -83,7 +83,7 @@ class Score(NamedTuple):
     counts_strangers: bool
 
 
-class _Live(NamedTuple):
+class Live(NamedTuple):
     """The rows [R] of live tracks, in the order of scans, at most one a track and scan."""
 
     scan: NDArray[np.int64]         # index of the scan
@@ -113,7 +113,7 @@ def score(recording: Recording, tracks: TrackRows, cutoff: float | None = None,
     if not len(truth.time):
         raise ValueError(f'recording {recording.name} has no truth to score against')
     seen, plotted = seen_by_radar(recording, truth, within)
-    live = _live(recording, tracks)
+    live = live_rows(recording, tracks)
     scans = len(recording.scans)
     parts = np.zeros((scans, 3))                    # m^2: localisation, missed, false
     pairs: list[NDArray[np.int64]] = []             # rows of truth and live, by GOSPA
@@ -162,7 +162,7 @@ def _chosen(recording: Recording, name: str, given: float | None, default: float
     return float(value)
 
 
-def _live(recording: Recording, tracks: TrackRows) -> _Live:
+def live_rows(recording: Recording, tracks: TrackRows) -> Live:
     """The rows that count: of a track in a scan the last one, standing where its first one does."""
     scan, known = _scan_of(recording, tracks)
     rows = np.argsort(tracks.time, kind='stable')
@@ -177,7 +177,7 @@ def _live(recording: Recording, tracks: TrackRows) -> _Live:
     place = np.argsort(order)                           # of each slot in that order
     before = np.where(before >= 0, place[before], -1)[order] if len(slots) else before
     rows = rows[last[order]]
-    return _Live(scan[rows], track[last[order]], tracks.time[rows], tracks.position[rows],
+    return Live(scan[rows], track[last[order]], tracks.time[rows], tracks.position[rows],
                  tracks.velocity[rows], tracks.predicted[rows], before)
 
 
@@ -201,7 +201,7 @@ def _gospa(parts: Array) -> dict:
             'gospa_without_false_m': float(np.sqrt(parts[:, :2].sum(1)).mean())}
 
 
-def _errors(truth: Truths, live: _Live, pairs) -> dict:
+def _errors(truth: Truths, live: Live, pairs) -> dict:
     """Errors over the pairs [P, 2] of truth and live rows."""
     at, row = pairs.T
     velocity = np.linalg.norm(live.velocity[row] - truth.velocity[at], axis=-1)
@@ -223,7 +223,7 @@ def _error(truth: Truths, at, position, velocity, time) -> Array:
     return np.linalg.norm(moved - truth.position[at], axis=-1)
 
 
-def _holding(truth: Truths, live: _Live, pairs, holder, targets: dict, cutoff: float) -> dict:
+def _holding(truth: Truths, live: Live, pairs, holder, targets: dict, cutoff: float) -> dict:
     at, row = pairs.T
     near = _error(truth, at, live.position[row], live.velocity[row], live.time[row]) < cutoff / 5
     waits = [t['first_confirmation_s'] for t in targets.values()
@@ -246,7 +246,7 @@ def _of_target(time: Array, holder) -> dict:
             'first_confirmation_s': float(time[held][0] - time[0]) if held.any() else None}
 
 
-def _false(live: _Live, false, holder, scans: int) -> dict:
+def _false(live: Live, false, holder, scans: int) -> dict:
     count = np.bincount(live.track[false], minlength=live.track.max(initial=-1) + 1)
     count[np.unique(holder[holder >= 0])] = 0       # tracks that were once on a target
     return {'false_per_scan': int(false.sum()) / scans,

@@ -22,6 +22,7 @@ from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import MarkerArray
 
 from ..arpa.arpa import Arpa
+from ..estimators import WANT_DOPPLER
 from ..geometry import wrap_bearing
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking import intake
@@ -39,6 +40,7 @@ from .runnable import RunnableNode
 from .view import Standing, standing, view
 
 MISSED = 'revolutions missed'
+NO_DOPPLER = 'scans without the radial speeds that the estimator wants'
 SILENT_S = 5.0              # s of the wall, and three scans, without plots: the radar is silent
 
 
@@ -63,7 +65,7 @@ class TrackerNode(RunnableNode):
         self._standing = Standing({}, 0, '', np.zeros(0, bool))
         self._processing, self._lateness = Durations(), Durations()
         self.bad_input = Tally((*convert.CLOUD_REASONS, *intake.PLOT_REASONS,
-                                *intake.SCAN_REASONS, MISSED), self._tell)
+                                *intake.SCAN_REASONS, MISSED, NO_DOPPLER), self._tell)
         self.bad_own_ship = Tally(intake.OWN_REASONS, self._tell)
         self.failures = Tally((), self._tell)
 
@@ -136,6 +138,8 @@ class TrackerNode(RunnableNode):
         plots, rejected = intake.screen_plots(plots, period, parameters.max_plots)
         for reason, count in rejected.items():
             self.bad_input.add(reason, wall, count)
+        if parameters.estimator in WANT_DOPPLER and plots.radial_speed is None and len(plots.time):
+            self.bad_input.add(NO_DOPPLER, wall, detail=parameters.estimator)
         start_ns = convert.nanoseconds(message.header.stamp)
         start = self._seconds(start_ns)
         before = self._order.last

@@ -4,7 +4,7 @@ import sys
 import numpy as np
 import pytest
 
-from marine_tracker import cli
+from marine_tracker import cli, config
 from marine_tracker.commands.replay import open_source
 from marine_tracker.evaluation import metrics
 from marine_tracker.recording import csv_folder, track_file
@@ -141,3 +141,24 @@ def test_a_parameter_file_of_other_nodes_is_refused(folder, capsys):
 def test_a_recording_knows_how_many_scans_it_has(folder):
     source = open_source(str(folder))
     assert source.total == 2 and [number for number, _ in source.scans] == [0, 1]
+
+
+def test_an_estimator_that_wants_doppler_warns_where_there_is_none(folder, capsys):
+    replay(folder / 'out.csv', folder, '--estimator', 'alpha_beta')
+    assert 'tells no radial speeds, which alpha_beta wants' in capsys.readouterr().err
+    (folder / 'plots.csv').write_text('scan,time_s,range_m,bearing_deg,radial_speed_mps\n'
+                                      '0,0,100,0,5\n')
+    replay(folder / 'out.csv', folder, '--estimator', 'alpha_beta')
+    assert capsys.readouterr().err == ''
+
+
+def test_the_hf_radars_ships_are_held_with_the_shipped_parameters(tmp_path):
+    """Within 6 km, which is three deviations across at 110 km, at the end of the hour."""
+    file = config.path('tracker_hf_radar.yaml')
+    rows = track_file.read(replay(tmp_path / 'out.csv', 'hf_radar', '--parameters', file))
+    loaded = scenario.load('hf_radar')
+    last = rows.time > 59 * 60
+    place = rows.position[last & (rows.status != 'tentative')]
+    truth = loaded.truth_at(59.5 * 60)
+    apart = np.linalg.norm(place[:, None] - truth.position, axis=-1)
+    assert (apart.min(0) < 6000).all()

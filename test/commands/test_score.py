@@ -1,9 +1,11 @@
 import json
 
+import numpy as np
 import pytest
 
 from marine_tracker import cli
-from marine_tracker.evaluation import metrics
+from marine_tracker.evaluation import ais_score, metrics
+from marine_tracker.geometry import EARTH_RADIUS
 
 COLUMNS = 'time_s,track,status,north_m,east_m,vel_north_mps,vel_east_mps\n'
 
@@ -68,3 +70,42 @@ def test_a_recording_without_truth_and_a_bad_track_file_are_one_line_errors(caps
     assert cli.main(['score', str(folder), str(tracks)]) == 2
     err = capsys.readouterr().err
     assert 'has no truth to score against' in err and err.count('\n') == 1
+
+
+@pytest.fixture
+def ais(folder):
+    """The target's own reports, every 4 s, of a frame whose zero lies at 55 N 7 E."""
+    degree = np.degrees(1 / EARTH_RADIUS)
+    lines = [f'{t},boat,{55 + (500 + 4 * t) * degree:.9f},7' for t in range(-8, 28, 4)]
+    (folder / 'ais.csv').write_text('time_s,vessel,lat_deg,lon_deg\n' + '\n'.join(lines) + '\n')
+    return folder / 'ais.csv'
+
+
+def test_track_files_score_against_ais(command, folder, ais):
+    tracks = folder / 'tracks.csv'
+    (folder / 'truth.csv').unlink()                     # not needed
+    done = command('score', folder, tracks, tracks, '--ais', ais, '--origin-deg', '55', '7',
+                   '--json', '-')
+    assert done.returncode == 0, done.stderr
+    found = figures(done.stdout)
+    assert list(found) == list(ais_score.FIGURES)
+    assert found['runs'] == 2 and found['tracks'] == 1
+    assert found['bearing_error_mean_deg'] == pytest.approx(1.08, abs=0.1)     # 10 m of 528 m
+    assert json.loads(done.stdout)['ais'] == str(ais)
+    (folder / 'notes.json').write_text('{"origin": [55, 7], "ais_start_s": 100}')
+    given = ['score', str(folder), str(tracks), '--ais', str(ais)]
+    assert cli.main(given) == 2                         # no vessel then
+    assert cli.main([*given, '--ais-start-s', '0']) == 0
+
+
+def test_what_ais_lacks_is_a_one_line_error(capsys, folder, ais):
+    tracks = str(folder / 'tracks.csv')
+    for arguments, message in (
+            ([tracks, '--ais', str(ais)], 'does not tell where on Earth it is'),
+            ([tracks, tracks], '2 track files are given; without --ais it must be one'),
+            ([tracks, '--ais', 'none.csv', '--origin-deg', '55', '7'], 'none.csv cannot be read'),
+            ([tracks, '--ais', str(ais), '--origin-deg', '55', '7', '--cutoff', '-1'],
+             'cutoff is -1; it must be above 0')):
+        assert cli.main(['score', str(folder), *arguments]) == 2
+        err = capsys.readouterr().err
+        assert message in err and err.count('\n') == 1

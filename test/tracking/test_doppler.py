@@ -89,8 +89,9 @@ def test_doppler_keeps_clutter_from_becoming_targets(hf_scans, estimator):
                 scan = scan._replace(plots=scan.plots._replace(radial_speed=None))
             memory, report = tracker.step(memory, scan)
         alive = take(report.tracks, report.tracks.status == CONFIRMED)
-        now = tracker.extrapolate(alive, scan.end)
-        apart = np.linalg.norm(now.position[:, None] - hf_scans[-1][1].position, axis=-1)
+        truth = hf_scans[-1][1]
+        now = tracker.extrapolate(alive, truth.time[0])
+        apart = np.linalg.norm(now.position[:, None] - truth.position, axis=-1)
         return len(alive.id), (apart.min(0, initial=np.inf) < 6000).sum()
     with_, held = run(True)
     without, _ = run(False)

@@ -9,7 +9,7 @@ pytest.importorskip('rclpy')
 from sensor_msgs.msg import PointField
 
 from marine_tracker.nodes import convert
-from marine_tracker.nodes.tracker_node import MISSED
+from marine_tracker.nodes.tracker_node import MISSED, NO_DOPPLER
 from marine_tracker.tracking import intake
 from marine_tracker.types import PolarPlots, append
 
@@ -144,3 +144,33 @@ def test_an_exception_in_a_callback_is_counted_not_thrown(rig, clean, monkeypatc
         here.wait(lambda: here.tracker.failures.counts.total() == 1)
     here.play(clean[0][9:11])
     assert len(before) == 6 and here.names() == before
+
+
+def with_speeds(scan, first):
+    """The scan as a radar with Doppler tells it; the first plot's radial speed is `first`."""
+    speed = np.zeros(len(scan.plots.time))
+    speed[:1] = first
+    return scan._replace(plots=scan.plots._replace(radial_speed=speed))
+
+
+@pytest.mark.parametrize('speed, reason', [
+    (np.nan, intake.SPEED_NOT_FINITE), (1e6, intake.SPEED_TOO_HIGH)])
+def test_bad_radial_speeds_are_counted_and_their_plots_kept(rig, clean, speed, reason):
+    here = rig()
+    here.play(clean[0][:3])
+    here.play([with_speeds(clean[0][3], speed)])
+    assert here.told(reason) == 1
+    assert here.tracker._plots_in_scan == len(clean[0][3].plots.time)
+    assert not here.tracker.failures.counts
+
+
+def test_an_estimator_that_wants_doppler_says_so_where_there_is_none(rig, clean):
+    here = rig(estimator='alpha_beta')
+    here.play(clean[0][:4])
+    assert here.told(NO_DOPPLER) == 4
+    here.play([with_speeds(scan, 0.0) for scan in clean[0][4:6]])
+    assert here.told(NO_DOPPLER) == 4
+    assert not here.tracker.failures.counts
+    other = rig(estimator='imm', namespace='other')
+    other.play(clean[0][:2])
+    assert other.told(NO_DOPPLER) == 0

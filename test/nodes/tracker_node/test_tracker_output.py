@@ -192,3 +192,19 @@ def test_who_comes_late_gets_the_targets_at_once(rig, node_helpers, clean):
     late = node_helpers[1](here.other, DiagnosticArray, topics.TARGETS, topics.latched())
     here.wait(lambda: len(late))
     assert late[0] == here.targets[-1]
+
+
+def test_the_hf_radars_ships_are_targets_after_some_minutes(rig):
+    """450 false plots a scan: Doppler goes from the radar over DDS to gate and filter."""
+    loaded = scenario.load('hf_radar')
+    scans = [scan for (scan, _), _ in zip(radar.simulate(loaded, 3), range(15))]
+    given = loaded.tracker_parameters()
+    here = rig(estimator='alpha_beta', **given)
+    here.play(scans)
+    truth = loaded.truth_at(scans[-1].end)
+    rows = here.rows().values()
+    place = np.array([float(row['range_nm']) * NAUTICAL_MILE * unit_vector(
+        np.radians(float(row['bearing_deg']))) for row in rows])
+    apart = np.linalg.norm(place[:, None] - truth.position, axis=-1)
+    assert (apart.min(0) < 6000).sum() >= 4 and len(place) <= 8
+    assert not here.tracker.failures.counts
