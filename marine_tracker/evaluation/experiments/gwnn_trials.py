@@ -71,11 +71,11 @@ FLEETS = {
 class Tuned(NamedTuple):
     """Simpler rivals: two modes CV/CV, one mode CV, CS-Kalman.
 
-    Tuned like the IMM, by `imm_tuning.search` for every kind of motion and phase alike: 400, 50
-    and 150 evaluations (small craft 400, 60, 200).
+    Tuned like the IMM, for every kind of motion and phase alike (`marine_tracker tune cv_cv`, `cv`
+    and `cs`).
     """
 
-    two_cv: Modes
+    cv_cv: Modes
     cv: Modes
     cs: cs_kalman.Manoeuvre
 
@@ -134,7 +134,7 @@ def rivals(vessel_class: str) -> dict[str, Estimator]:
     return {IMM: imm.imm(best['training'], SPEED),
             'IMM for manoeuvre': imm.imm(best['manoeuvre'], SPEED),
             'IMM as shipped': imm.imm(imm.PRESETS[vessel_class], SPEED),
-            'CV/CV': imm.imm(tuned.two_cv, SPEED), 'CV': imm.imm(tuned.cv, SPEED),
+            'CV/CV': imm.imm(tuned.cv_cv, SPEED), 'CV': imm.imm(tuned.cv, SPEED),
             'CS': cs_kalman.cs_kalman(tuned.cs, SPEED),
             'CS of the fallback': fallback(vessel_class)}
 
