@@ -116,9 +116,9 @@ def step(memory: Memory, report: Report, plots: Plots, settings: Settings) -> Me
 
 def at(memory: Memory, time) -> Motion:
     """The motion of every row at `time`, s: [N] or one for all. `types.take` chooses rows first."""
-    bank = linear_modes.Bank(memory.noise, np.zeros_like(memory.noise), ())
+    bank = linear_modes.straight(memory.noise[None])
     mean, covariance = linear_modes.unpack(
-        linear_modes.move(bank, memory.shown.T, time - memory.time).T)
+        linear_modes.move(bank, memory.shown.T[:, None], time - memory.time)[:, 0].T)
     position, velocity = mean[:, :2].copy(), mean[:, 2:].copy()
     position[memory.stationary] = memory.shown[memory.stationary, :2]
     velocity[memory.stationary] = 0.0

@@ -1,34 +1,43 @@
-"""Search the best settings of an IMM, and say what they gain over the shipped ones.
+"""Search the best settings of a filter, and say what they gain over the shipped ones.
 
 The search draws the tracks that the weights of `gwnn` are trained on, with a seed apart, and
 minimises the position error one scan ahead; the figures are also given on fresh tracks that the
 search did not see. Some minutes of one processor.
 """
 
-
 from ..estimators import bank
-from ..evaluation import imm_tuning, report
+from ..evaluation import filter_tuning, report
+from ..evaluation.experiments.gwnn_trials import TUNED
 from ..heap import keep_freed_memory
 from ..parameters import VESSEL_CLASSES
 from .progress_bar import progress_bar
 
-HELP = 'search the best settings of an IMM'
-EVALUATIONS, TRACKS = 600, 280
+HELP = 'search the best settings of a filter'
+TRACKS = 280
 FRESH = 10                      # times the tracks of the search
+# What is tuned, and with how many evaluations by default.
+FILTERS = {'imm': ('the four-mode IMM that `gwnn` is compared with', 600),
+           'cv_cv': ('an IMM of two straight modes', 400),
+           'cv': ('one straight mode', 50), 'cs': ('CS-Kalman', 150)}
 CLEAR = 0.995                   # ratio of errors that settings better than the shipped ones have
 
 
 def add_arguments(parser) -> None:
     """The command line of `tune`."""
     names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
-    sub = names.add_parser('imm', help='the four-mode IMM that `gwnn` is compared with',
-                           description=__doc__)
-    sub.add_argument('--for', dest='target', choices=list(imm_tuning.STRAIGHT_WEIGHT),
+    for name, (what, evaluations) in FILTERS.items():
+        sub = names.add_parser(name, help=what, description=__doc__)
+        sub.set_defaults(filter=name)
+        _add_arguments(sub, _shipped(name, 'ship'), evaluations)
+
+
+def _add_arguments(sub, targets, evaluations):
+    sub.add_argument('--for', dest='target', choices=list(targets),
                      default='training', help='what it is to be best at: every kind of motion and '
                      'phase alike, or manoeuvres only (default %(default)s)')
     sub.add_argument('--vessel-class', choices=VESSEL_CLASSES, default='ship',
                      help='whose motion (default %(default)s)')
-    sub.add_argument('--evaluations', type=int, default=EVALUATIONS, metavar='N',
+    sub.add_argument('--evaluations', type=int, default=evaluations, metavar='N',
                      help='settings to try (default %(default)s)')
     sub.add_argument('--tracks', type=int, default=TRACKS, metavar='N',
                      help='tracks to try each on (default %(default)s); '
@@ -37,29 +46,38 @@ def add_arguments(parser) -> None:
     report.add_arguments(sub)
 
 
+def _shipped(name: str, vessel_class: str) -> dict[str, filter_tuning.Settings]:
+    """The settings that the comparison uses, by what they are tuned for."""
+    if name == 'imm':
+        return dict(bank.STRONGEST[vessel_class])
+    return {'training': getattr(TUNED[vessel_class], name)}
+
+
 def run(args) -> int:
     """Print the settings found and how they and the shipped ones do."""
-    for name, least in (('evaluations', 1), ('tracks', imm_tuning.LEAST_TRACKS), ('seed', 0)):
+    for name, least in (('evaluations', 1), ('tracks', filter_tuning.LEAST_TRACKS), ('seed', 0)):
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
     keep_freed_memory()
-    shipped = {f'shipped for {target}': modes
-               for target, modes in bank.STRONGEST[args.vessel_class].items()}
+    shipped = {f'shipped for {target}': settings
+               for target, settings in _shipped(args.filter, args.vessel_class).items()}
     rival = f'shipped for {args.target}'
     with progress_bar('trying settings') as show:
-        found, seen = imm_tuning.tune(args.target, args.tracks, args.evaluations, args.seed,
-                                      show, args.vessel_class)
-    fresh = imm_tuning.fresh(FRESH * args.tracks, args.seed, args.vessel_class)
-    verdict = imm_tuning.judge(found.modes, shipped, rival, args.target, seen, fresh, args.seed)
-    settings = imm_tuning.as_text(found.modes)
+        found, seen = filter_tuning.tune(
+            args.target, args.tracks, args.evaluations, args.seed, show, args.vessel_class,
+            filter_tuning.FAMILIES[args.filter])
+    fresh = filter_tuning.fresh(FRESH * args.tracks, args.seed, args.vessel_class)
+    verdict = filter_tuning.judge(found.settings, shipped, rival, args.target, seen, fresh,
+                                  args.seed)
+    settings = filter_tuning.as_text(found.settings)
     better = verdict.ratio.high < 1 and verdict.ratio.value < CLEAR
     claim = report.Claim(
         rival, 'tuned as well as can be', settings,
         'NO: on fresh tracks the settings found are clearly better; use them' if better
         else 'nothing clearly better was found')
     return report.publish(
-        f'IMM of {args.vessel_class} for {args.target}: {args.evaluations} evaluations on '
-        f'{len(seen.kind)} tracks, seed {args.seed}', verdict.figures, args.json,
-        {'vessel_class': args.vessel_class, 'target': args.target,
+        f'{args.filter} of {args.vessel_class} for {args.target}: {args.evaluations} evaluations '
+        f'on {len(seen.kind)} tracks, seed {args.seed}', verdict.figures, args.json,
+        {'filter': args.filter, 'vessel_class': args.vessel_class, 'target': args.target,
          'evaluations': args.evaluations, 'tracks': len(seen.kind), 'seed': args.seed,
-         'settings': found.modes._asdict(), 'best': found.best}, [claim])
+         'settings': found.settings._asdict(), 'best': found.best}, [claim])

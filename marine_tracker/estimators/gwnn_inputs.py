@@ -90,8 +90,10 @@ def frame_of(plots: Plots):
 def turn(frame, vectors):
     """Vectors [2, ..., N] turned into the line of sight [along, across], or back again."""
     east, north = frame[:, 0], frame[:, 1]
-    return np.stack([vectors[0] * east + vectors[1] * north,
-                     vectors[0] * north - vectors[1] * east])
+    out = np.empty(vectors.shape)
+    out[0] = vectors[0] * east + vectors[1] * north
+    out[1] = vectors[0] * north - vectors[1] * east
+    return out
 
 
 def to_sigma(frame, states):

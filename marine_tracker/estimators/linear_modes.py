@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..types import Array
 
@@ -40,17 +41,29 @@ class Bank(NamedTuple):
     noise      [J, 1]  m^2/s^3, density of the white acceleration of each axis
     turn_rate  [J, 1]  rad/s, clockwise positive; 0 for constant velocity
     chains     the IMM filters among them
+    rates      [U, 1]  rad/s, the different sizes of turn_rate; size [J]: which of them each mode's
+               is. A sine costs as much as twenty products: modes that turn alike share theirs.
     """
 
     noise: Array
     turn_rate: Array
     chains: tuple[Chain, ...]
+    rates: Array
+    size: NDArray[np.int64]
 
 
 def bank(noise, turn_rate, chains) -> Bank:
     """A bank from plain sequences."""
-    return Bank(np.array(noise, float)[:, None], np.array(turn_rate, float)[:, None],
-                tuple(chains))
+    turn_rate = np.array(turn_rate, float)
+    rates, size = np.unique(np.abs(turn_rate), return_inverse=True)
+    return Bank(np.array(noise, float)[:, None], turn_rate[:, None], tuple(chains),
+                rates[:, None], size)
+
+
+def straight(noise) -> Bank:
+    """A bank of constant-velocity filters: noise [J, 1], or [J, N] where tracks differ."""
+    count = len(noise)
+    return Bank(noise, np.zeros((count, 1)), (), np.zeros((1, 1)), np.zeros(count, int))
 
 
 def transition_power(stay, period, entered=None):
@@ -130,11 +143,11 @@ def mix(bank: Bank, rows, weight, step):
     centre = columns[:4, :1].copy()             # keeps the squares small
     columns[:4] -= centre
     _add_squares(columns, np.add)
-    mixed = rows_of(columns)
-    weight = weight.copy()
+    moments = rows_of(columns)
+    mixed, weight = moments.copy(), weight.copy()
     for chain in bank.chains:
         weight[:, chain.modes], share = _shares(chain, weight[:, chain.modes], step)
-        mixed[:, chain.modes] = np.matmul(share, mixed[:, chain.modes])
+        np.matmul(share, moments[:, chain.modes], out=mixed[:, chain.modes])
     columns = columns_of(mixed)
     _add_squares(columns, np.subtract)
     columns[:4] += centre
@@ -158,11 +171,13 @@ def mix_means(bank: Bank, mean, weight, step):
 
 def _turn(bank: Bank, step):
     """sin and cos [J, N] of the angles turned; metres along and across per m/s of velocity."""
-    angle = bank.turn_rate * step
+    angle = bank.rates * step
     sin, cos = np.sin(angle), np.cos(angle)
-    straight = bank.turn_rate == 0
-    divisor = np.where(straight, 1.0, bank.turn_rate)
-    return sin, cos, np.where(straight, step, sin / divisor), (1 - cos) / divisor
+    straight = bank.rates == 0
+    divisor = np.where(straight, 1.0, bank.rates)
+    along, across = np.where(straight, step, sin / divisor), (1 - cos) / divisor
+    side = np.sign(bank.turn_rate)
+    return side * sin[bank.size], cos[bank.size], along[bank.size], side * across[bank.size]
 
 
 def move_means(bank: Bank, mean, step):

@@ -200,9 +200,8 @@ def _result(turns: Sequence[Found], found, scene: Traffic) -> Result:
     distance = np.hypot(*np.moveaxis(truth, -1, 0))
     kept = errors < KEPT_WITHIN * np.hypot(RANGE_SIGMA, distance * BEARING_SIGMA) + 50
     rmse = float(np.sqrt(np.mean(errors[kept] ** 2))) if kept.any() else float('nan')
-    return Result(float(np.mean([turn.cpu_s for turn in turns])),
-                  float(np.mean([turn.estimator_s for turn in turns])), float(kept[-1].mean()),
-                  rmse)
+    cpu, estimator = np.mean([turn[:2] for turn in turns], 0).tolist()
+    return Result(cpu, estimator, float(kept[-1].mean()), rmse)
 
 
 def benchmark(targets: int, clutter: int, estimators: Sequence[str], timed_scans: int, seed: int,

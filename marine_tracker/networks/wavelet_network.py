@@ -8,6 +8,7 @@ n (M + 2) units a group. The number of hidden units follows from M, n and the nu
 To tell what the wavelets are worth, a network may have as many plain units S(t) in their place.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -61,6 +62,7 @@ def group_size(layout: Layout) -> int:
     return layout.translations * (layout.levels + 2)
 
 
+@lru_cache
 def units(layout: Layout, dtype=np.float64) -> Form:
     """The form of all H hidden units; ValueError for units of no known kind."""
     if layout.units == TANH:

@@ -14,7 +14,15 @@ from marine_tracker.evaluation.experiments import (
     gwnn_pictures,
     gwnn_trials,
 )
-from marine_tracker.evaluation.experiments.gwnn_trials import ALONE, FLEETS, IMM, OWN, TANH, Cell
+from marine_tracker.evaluation.experiments.gwnn_trials import (
+    ALONE,
+    BRIEFLY,
+    FLEETS,
+    IMM,
+    OWN,
+    TANH,
+    Cell,
+)
 from marine_tracker.evaluation.experiments.result import (
     BORNE_OUT,
     IN_PART,
@@ -24,7 +32,7 @@ from marine_tracker.evaluation.experiments.result import (
 from marine_tracker.evaluation.track_trials import Ratio
 from marine_tracker.networks.wavelet_network import forward
 
-OTHERS = (ALONE, TANH, 'IMM for manoeuvre', 'IMM as shipped', 'CV/CV', 'CV', 'CS',
+OTHERS = (ALONE, TANH, BRIEFLY, 'IMM for manoeuvre', 'IMM as shipped', 'CV/CV', 'CV', 'CS',
           'CS of the fallback')
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..report import Figure, at_most
 from ..track_trials import Ratio
 from .gwnn_failures import BREAK_SIZE, COST_TRACKS
-from .gwnn_trials import ALONE, FLEETS, IMM, OWN, Cell, Conditions
+from .gwnn_trials import ALONE, BRIEFLY, FLEETS, IMM, OWN, Cell, Conditions
 
 GEOMETRIC_MEAN = 0.96
 # Position ratios demanded of ships, by cell; every other cell 1.00, the interval's upper end 1.01.
@@ -102,6 +102,9 @@ def _figures_of_a_cell(cell: Cell) -> list[Figure]:
         table.append(Figure(f'{name}: position ratio', ratio.value, '',
                             f'<= {limit:g}, upper end {UPPER_END}',
                             ratio.value <= limit and ratio.high <= UPPER_END, interval(ratio)))
+        brief = cell.over[BRIEFLY]
+        table.append(Figure(f'{name}: position ratio to the {BRIEFLY}', brief.value, '', None,
+                            None, interval(brief, BRIEFLY)))
     else:
         table.append(Figure(f'{name}: position ratio', ratio.value, '', None, None,
                             interval(ratio)))

@@ -1,8 +1,8 @@
-"""The best settings of the four-mode IMM that a search finds: rivals of `gwnn` as strong as can be.
+"""The best settings of a filter that a search finds: rivals of `gwnn` as strong as can be.
 
 Tracks are those that the weights of `gwnn` are trained on, drawn with a seed apart, but of the
-first sort of radars only (for ships: none at close range): the comparison has no others, and an
-IMM tuned for them too were a weaker rival.
+first sort of radars only (for ships: none at close range): the comparison has no others, and a
+filter tuned for them too were a weaker rival.
 Every candidate sees the same plots (common random numbers), one scan ahead, with the gate of the
 comparison. What counts is the geometric mean, over kinds of motion and phases, of the RMS
 position error in the plots' true deviations: each kind and phase counts alike.
@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from ..estimators import imm
+from ..estimators import cs_kalman, imm
+from ..estimators.contract import Estimator
 from ..types import take
 from . import gwnn_samples, ship_tracks, track_trials, training_tracks
 from .report import Figure
@@ -29,19 +30,62 @@ GLOBAL_SHARE = 2 / 3            # of the evaluations, all over the bounds; the r
 POPULATION = 4                  # times the number of settings searched, rounded up to 2^n
 SIMPLEX = 0.12                  # of the bounds' width, first step of the way down; then smaller
 
-# Least and most of what is searched. Noises are deviations, m/s^2, of the acceleration over a
-# scan; a mode is left with the chance stated in a scan. Searched by their logarithms.
+# Least and most of what is searched, by its logarithm. Noises are deviations, m/s^2, of the
+# acceleration over a scan; a mode is left with the chance stated in a scan.
 BOUNDS = {
     'quiet_noise': (1e-4, 0.1),
     'loud_noise': (0.03, 5.0),
+    'noise': (1e-3, 5.0),           # of the only mode
     'turn_noise': (1e-4, 1.0),
-    'turn_rate': (0.003, 0.45), # rad/s
+    'turn_rate': (0.003, 0.45),     # rad/s
     'leave_quiet': (1e-4, 0.3),
     'leave_loud': (0.01, 0.45),
     'leave_turn': (0.01, 0.45),
+    'max_acceleration': (0.05, 5.0),    # m/s^2, of CS-Kalman
+    'frequency': (1 / 300, 2.0),        # 1/s, likewise
 }
 
+Settings = imm.Modes | cs_kalman.Manoeuvre
 Progress = Callable[[int, int], None]
+
+
+class Family(NamedTuple):
+    """Filters of one form: what is searched, names of BOUNDS, and the settings of such values."""
+
+    searched: tuple[str, ...]
+    settings: Callable[..., Settings]
+
+    def at(self, point) -> Settings:
+        """The settings at a point of the search, each coordinate 0 to 1 over its bounds."""
+        low, high = np.log(np.array([BOUNDS[name] for name in self.searched])).T
+        return self.settings(*map(float, np.exp(low + np.clip(point, 0, 1) * (high - low))))
+
+
+def _four_modes(quiet, loud, turn, rate, leave_quiet, leave_loud, leave_turn) -> imm.Modes:
+    return _modes((quiet, loud, turn, turn), (0.0, 0.0, rate, -rate),
+                  (leave_quiet, leave_loud, leave_turn, leave_turn))
+
+
+def _modes(acceleration, turn_rate, leave) -> imm.Modes:
+    return imm.Modes(tuple(PERIOD * one ** 2 for one in acceleration), turn_rate,
+                     tuple(1 - one for one in leave), PERIOD)
+
+
+FAMILIES = {
+    'imm': Family(('quiet_noise', 'loud_noise', 'turn_noise', 'turn_rate', 'leave_quiet',
+                   'leave_loud', 'leave_turn'), _four_modes),
+    'cv_cv': Family(('quiet_noise', 'loud_noise', 'leave_quiet', 'leave_loud'),
+                    lambda quiet, loud, *leave: _modes((quiet, loud), (0.0, 0.0), leave)),
+    'cv': Family(('noise',), lambda noise: _modes((noise,), (0.0,), (0.0,))),
+    'cs': Family(('max_acceleration', 'frequency'), cs_kalman.Manoeuvre),
+}
+IMM = FAMILIES['imm']
+
+
+def filter_of(settings: Settings) -> Estimator:
+    """The filter with these settings."""
+    make = cs_kalman.cs_kalman if isinstance(settings, cs_kalman.Manoeuvre) else imm.imm
+    return make(settings, training_tracks.SPEED)            # type: ignore[operator]
 
 
 class Course(NamedTuple):
@@ -61,7 +105,7 @@ class Course(NamedTuple):
 class Found(NamedTuple):
     """What a search came to: the settings, their loss, and the best loss after each evaluation."""
 
-    modes: imm.Modes
+    settings: Settings
     loss: float
     best: list[float]
 
@@ -87,10 +131,9 @@ def course(tracks: int, rng, vessel_class: str = 'ship') -> Course:
     return Course(on, tuple(cells), np.stack(counts), kind, np.array(straight))
 
 
-def errors(modes: imm.Modes, on: Course):
-    """Squared errors [C, B] of an IMM summed over the scans of each cell, in true deviations."""
-    estimator = imm.imm(modes, training_tracks.SPEED)
-    found = track_trials.run(estimator, on.trial, gated=True).position
+def errors(settings: Settings, on: Course):
+    """Squared errors [C, B] of a filter summed over the scans of each cell, in true deviations."""
+    found = track_trials.run(filter_of(settings), on.trial, gated=True).position
     found = found / np.square(on.trial.radar.truly)[:, None]
     return np.einsum('bk,cbk->cb', found, on.counts)
 
@@ -131,18 +174,8 @@ def compare(error, against, on: Course, target: str, rng, resamples=1000) -> tra
     return track_trials.Ratio(float(value), float(low), float(high))
 
 
-def modes_at(point) -> imm.Modes:
-    """The IMM at a point [7] of the search, each coordinate 0 to 1 over its bounds."""
-    low, high = np.log(np.array(list(BOUNDS.values()))).T
-    quiet, loud, turn, rate, leave_quiet, leave_loud, leave_turn = map(
-        float, np.exp(low + np.clip(point, 0, 1) * (high - low)))
-    noise = (PERIOD * quiet ** 2, PERIOD * loud ** 2, PERIOD * turn ** 2, PERIOD * turn ** 2)
-    stay = (1 - leave_quiet, 1 - leave_loud, 1 - leave_turn, 1 - leave_turn)
-    return imm.Modes(noise, (0.0, 0.0, rate, -rate), stay, PERIOD)
-
-
-def search(judge: Callable[[imm.Modes], float], evaluations: int, seed: int, start=None,
-           progress: Progress = lambda done, whole: None) -> Found:
+def search(judge: Callable[[Settings], float], evaluations: int, seed: int, start=None,
+           progress: Progress = lambda done, whole: None, family: Family = IMM) -> Found:
     """The settings of the least loss found with so many evaluations; repeatable.
 
     Two thirds of them by differential evolution over the bounds (there are several valleys), the
@@ -150,20 +183,21 @@ def search(judge: Callable[[imm.Modes], float], evaluations: int, seed: int, sta
     comes to rest.
 
     judge  gives the loss
-    start  [7] within 0 to 1, where the search begins; the middle of the bounds by default
+    start  [.] within 0 to 1, where the search begins; the middle of the bounds by default
+    family of the filters searched
     Raises FloatingPointError where a loss is not a finite number.
     """
-    count = len(BOUNDS)
+    count = len(family.searched)
     tried: list[tuple[float, tuple[float, ...]]] = []
     best: list[float] = []
 
     def at(point):
         if len(tried) == limit:
             raise _SpentError
-        modes = modes_at(point)
-        value = judge(modes)
+        settings = family.at(point)
+        value = judge(settings)
         if not np.isfinite(value):
-            raise FloatingPointError(f'the error of {modes} is {value}')
+            raise FloatingPointError(f'the error of {settings} is {value}')
         tried.append((value, tuple(point)))
         best.append(min(tried)[0])
         progress(len(tried), evaluations)
@@ -192,7 +226,7 @@ def search(judge: Callable[[imm.Modes], float], evaluations: int, seed: int, sta
     except _SpentError:
         pass
     least, point = min(tried)
-    return Found(modes_at(point), least, best)
+    return Found(family.at(point), least, best)
 
 
 class _SpentError(Exception):
@@ -200,12 +234,12 @@ class _SpentError(Exception):
 
 
 def tune(target: str, tracks: int, evaluations: int, seed: int,
-         progress: Progress = lambda done, whole: None, vessel_class: str = 'ship'
-         ) -> tuple[Found, Course]:
+         progress: Progress = lambda done, whole: None, vessel_class: str = 'ship',
+         family: Family = IMM) -> tuple[Found, Course]:
     """The settings found for a target of STRAIGHT_WEIGHT, and the tracks they were found on."""
     on = course(tracks, _tracks_rng(seed, 0), vessel_class)
-    return search(lambda modes: loss(errors(modes, on), on, target), evaluations, seed,
-                  progress=progress), on
+    return search(lambda settings: loss(errors(settings, on), on, target), evaluations, seed,
+                  progress=progress, family=family), on
 
 
 def fresh(tracks: int, seed: int, vessel_class: str = 'ship') -> Course:
@@ -225,7 +259,7 @@ class Verdict(NamedTuple):
     ratio: track_trials.Ratio
 
 
-def judge(modes: imm.Modes, shipped: dict[str, imm.Modes], rival: str, target: str,
+def judge(settings: Settings, shipped: dict[str, Settings], rival: str, target: str,
           seen: Course, unseen: Course, seed: int) -> Verdict:
     """How settings do beside the shipped ones, on tracks they were found on and on others.
 
@@ -234,7 +268,7 @@ def judge(modes: imm.Modes, shipped: dict[str, imm.Modes], rival: str, target: s
     rng = np.random.default_rng([seed, 11, 12])
     figures = []
     for place, on in (('tracks of the search', seen), ('fresh tracks', unseen)):
-        found = errors(modes, on)
+        found = errors(settings, on)
         others = {name: errors(one, on) for name, one in shipped.items()}
         for name, error in [('found', found), *others.items()]:
             figures.append(Figure(f'{place}: {name}', float(np.exp(loss(error, on, target))),
@@ -250,8 +284,12 @@ def judge(modes: imm.Modes, shipped: dict[str, imm.Modes], rival: str, target: s
     return Verdict(figures, to_rival)
 
 
-def as_text(modes: imm.Modes) -> str:
+def as_text(settings: Settings) -> str:
     """The settings as Python, to paste."""
-    noise, turn_rate, stay = (', '.join(f'{value:.5g}' for value in values)
-                              for values in modes[:3])
-    return f'Modes(noise=({noise}), turn_rate=({turn_rate}), stay=({stay}), period=60 / 22)'
+    def value_text(value):
+        if isinstance(value, tuple):
+            return f'({", ".join(f"{one:.5g}" for one in value)}{"," * (len(value) == 1)})'
+        return '60 / 22' if value == PERIOD else f'{value:.5g}'
+    values = ', '.join(f'{name}={value_text(value)}'
+                       for name, value in settings._asdict().items())
+    return f'{type(settings).__name__}({values})'
