@@ -108,6 +108,9 @@ class TrackerParameters:
         0.0, 'Standard deviation of the point of a target that echoes, about its middle, along '
         'each axis: some 0.15 of the length of large ships.', unit='m', low=0.0, high=100.0,
         live=True)
+    radars: str = parameter(
+        '', 'Radars whose plots are fused: a list in YAML, see doc/two_radars.md; empty: one, on '
+        '`radar/plots`.')
     max_target_speed_mps: float = parameter(
         25.0, 'Fastest target over ground that initiation accepts.', unit='m/s', low=0.5,
         high=100.0, live=True)
