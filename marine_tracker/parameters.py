@@ -235,6 +235,10 @@ class RadarSimulatorParameters:
         low=0.01, high=1000.0)
     seed: int = parameter(
         1, 'Seed of every random number: same seed, same plots.', low=0, high=2 ** 31 - 1)
+    begin_at_s: float = parameter(
+        0.0, 'Stamp at which the scenario begins: two radars of one scene have the same, and one '
+        'that starts later leaves out what is past. 0: when the node starts.', unit='s', low=0.0,
+        high=1e10)
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
 
     def __post_init__(self):

@@ -55,13 +55,15 @@ def held_by_another(tracks: Tracks, radar: int, time, track, held):
     time [N] s of this look; track: tracks that have a plot in the gate; held [R] s, how long a
     plot of each radar shows that its target is there. Such a look is no miss: what is in the lee
     of a mast, or too faint for one radar, is not lost. Beside a plot that another track took it
-    is one, so two tracks on one target are still found out.
+    is one, so two tracks on one target are still found out; and of a tentative track every miss
+    counts, or each radar's clutter would live on what the other is blind to.
     """
     if len(held) == 1:
         return np.zeros(len(time), bool)
     empty = np.ones(len(time), bool)
     empty[track] = False
-    return empty & (tracks.radar != radar) & (time - tracks.last_time < held[tracks.radar])
+    return (empty & (tracks.status != TENTATIVE) & (tracks.radar != radar)
+            & (time - tracks.last_time < held[tracks.radar]))
 
 
 def evidence(nis, log_det, density, detection_probability: float):

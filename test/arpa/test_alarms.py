@@ -55,7 +55,7 @@ class Bridge:
     def sensors(self, heading=0.0, position=0.0, plots=0.0):
         self.now += PERIOD
         self.alerts, changed = alarms.watch(self.alerts, self.settings,
-                                            Silence(heading, position, plots), self.now)
+                                            Silence(heading, position, (plots,)), self.now)
         return self.told(changed)
 
     def acknowledge(self, **which):
