@@ -141,3 +141,9 @@ def test_a_parameter_file_of_other_nodes_is_refused(folder, capsys):
 def test_a_recording_knows_how_many_scans_it_has(folder):
     source = open_source(str(folder))
     assert source.total == 2 and [number for number, _ in source.scans] == [0, 1]
+
+
+def test_two_sources_of_one_scene_are_fused(tmp_path, capsys):
+    out = tmp_path / 'tracks.csv'
+    assert cli.main(['replay', 'two_radars_x', 'two_radars_s', '--out', str(out)]) == 0
+    assert capsys.readouterr().out.startswith('660 scans, ')    # 360 and 300
