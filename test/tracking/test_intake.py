@@ -174,7 +174,7 @@ def test_own_ship_never_heard_is_taken_at_rest_at_the_origin():
 
 
 def beside(*scans):
-    """What becomes of a radar's scans that start at the times, beside another one heard at 1000 s."""
+    """What becomes of scans that start at the times, beside a radar heard at 1000 s."""
     order, out = intake.TimeOrder(), []
     for start in scans:
         order, taken, reason = intake.admit_scan(order, start, 2.5, [intake.TimeOrder(1000.0)])
