@@ -119,6 +119,9 @@ class TrackerParameters:
         'each axis: some 0.15 of the length of large ships. Below 0: that of the vessel class, '
         f'{GLINT_SIGMA["ship"]:g} m for ships, {GLINT_SIGMA["small_craft"]:g} for small craft.',
         unit='m', low=-1.0, high=100.0, live=True)
+    radars: str = parameter(
+        '', 'Radars whose plots are fused: a list in YAML, see doc/two_radars.md; empty: one, on '
+        '`radar/plots`.')
     max_target_speed_mps: float = parameter(
         25.0, 'Fastest target over ground that initiation accepts.', unit='m/s', low=0.5,
         high=100.0, live=True)
@@ -248,6 +251,10 @@ class RadarSimulatorParameters:
         low=0.01, high=1000.0)
     seed: int = parameter(
         1, 'Seed of every random number: same seed, same plots.', low=0, high=2 ** 31 - 1)
+    begin_at_s: float = parameter(
+        0.0, 'Stamp at which the scenario begins: two radars of one scene have the same, and one '
+        'that starts later leaves out what is past. 0: when the node starts.', unit='s', low=0.0,
+        high=1e10)
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
 
     def __post_init__(self):

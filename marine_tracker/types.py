@@ -58,12 +58,14 @@ class Scan(NamedTuple):
     start, end  s, the time of the revolution; equal where a recording stamps all plots alike
     plots       M plots, in any order
     own_ship    K samples that cover the revolution as well as is known
+    radar       which of the tracker's radars it comes from, counted from 0
     """
 
     start: float
     end: float
     plots: PolarPlots
     own_ship: OwnShip
+    radar: int = 0
 
 
 class Truth(NamedTuple):
@@ -133,6 +135,8 @@ class Tracks(NamedTuple):
     last_time   [N]  s, last plot
     bearing     [N]  rad from own ship when last swept: tells when the beam will pass again
     state       estimator state, N rows
+    radar       [N]  which radar had the last plot
+    past        the last updates (tracking.order.Update), the last first; () with one radar
     """
 
     id: NDArray[np.int64]
@@ -145,6 +149,8 @@ class Tracks(NamedTuple):
     last_time: Array
     bearing: Array
     state: Any
+    radar: Any = None
+    past: tuple = ()
 
 
 def take(rows_of: Any, rows: Any) -> Any:

@@ -52,6 +52,12 @@ def test_own_estimator_is_about_as_good_as_a_shipped_one():
     assert 0 < own < 2 * shipped
 
 
+def test_two_radars_are_better_than_each_and_one_may_fail():
+    x, s, both, fails = metres(text := output_of('05_two_radars.py'))
+    assert both < fails < min(x, s)
+    assert re.findall(r'followed by (\d+) tracks', text) == ['6'] * 4
+
+
 def test_the_picture_shows_the_ships_of_the_strait(tmp_path):
     pytest.importorskip('matplotlib')
     drawn = output_of('04_draw_tracks.py', tmp_path / 'strait.png')

@@ -1,6 +1,7 @@
 """What an alert says, in words, nautical miles, minutes and degrees."""
 
 import math
+from collections.abc import Sequence
 
 from ..geometry import NAUTICAL_MILE
 from . import alarms
@@ -8,17 +9,28 @@ from .alerts import Alerts
 from .targets import label
 from .zones import Zones
 
+NO_LONGER = 'no longer set'      # a zone
 
-def text(alerts: Alerts, zones: Zones) -> list[str]:
-    """One sentence for each alert: what is the matter, with the values at its last change."""
+
+def text(alerts: Alerts, zones: Zones, radars: Sequence[str] = ('',)) -> list[str]:
+    """One sentence for each alert: what is the matter, with the values at its last change.
+
+    radars  their names; '' where there is only one
+    """
+    return [_sentence(kind, name, part or NO_LONGER, values)
+            for kind, name, part, values in zip(
+                alerts.kind.tolist(), label(alerts.id, alerts.number),
+                parts(alerts, zones, radars), alerts.values.tolist())]
+
+
+def parts(alerts: Alerts, zones: Zones, radars: Sequence[str] = ('',)) -> list[str]:
+    """The zone or the radar that each alert names; '' for none."""
     named = dict(zip(zones.key.tolist(), zones.name))
-    return [_sentence(kind, name, named.get(zone, 'no longer set'), values)
-            for kind, name, zone, values in zip(
-                alerts.kind.tolist(), label(alerts.id, alerts.number), alerts.zone.tolist(),
-                alerts.values.tolist())]
+    return [radars[zone] if kind == alarms.PLOTS_MISSING else named.get(zone, '')
+            for kind, zone in zip(alerts.kind.tolist(), alerts.zone.tolist())]
 
 
-def _sentence(kind: int, name: str, zone: str, values: list[float]) -> str:
+def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
     first, second, third, fourth, fifth = values
     where = f'{first / NAUTICAL_MILE:.2f} NM, {round(math.degrees(second), 1) % 360:05.1f} deg'
     if kind == alarms.DANGER:
@@ -28,7 +40,7 @@ def _sentence(kind: int, name: str, zone: str, values: list[float]) -> str:
     if kind == alarms.LOST_TARGET:
         return f'{name} lost, last at {where}'
     if kind == alarms.NEW_TARGET:
-        return f'{name} in guard zone {zone}, at {where}'
+        return f'{name} in guard zone {part}, at {where}'
     if kind == alarms.NEAR_CAPACITY:
         return f'{first:.0f} targets, {second:.0f} may be'
     if kind == alarms.CAPACITY:
@@ -39,4 +51,5 @@ def _sentence(kind: int, name: str, zone: str, values: list[float]) -> str:
         other = f'TT{third:02.0f}' if third else 'a track that is not confirmed'
         return f'{name} may be swapped with {other}, at {where}'
     silent = f'for {first:.0f} s' if math.isfinite(first) else 'so far'
-    return f'no {alarms.NAMES[kind].removesuffix(" missing")} {silent}'
+    of = f' of radar {part}' if kind == alarms.PLOTS_MISSING and part != NO_LONGER else ''
+    return f'no {alarms.NAMES[kind].removesuffix(" missing")}{of} {silent}'

@@ -11,7 +11,7 @@ What an alert is and how it lives: alerts.py. Here are the kinds and their cause
                      target already or not; one alert for each zone
     near capacity    NEARLY_FULL of the targets that may be
     capacity         as many targets as may be
-    heading, position, plots missing    not heard for too long
+    heading, position, plots missing    not heard for too long; plots of each radar
     fallback         at least a share of the confirmed targets have fallen back from their filter
     swap risk        the gate of a target overlaps that of another track
 """
@@ -75,11 +75,11 @@ class Tracking(NamedTuple):
 
 
 class Silence(NamedTuple):
-    """For how long, s, each has not been heard; inf for never."""
+    """For how long, s, each has not been heard; inf for never. plots: of each radar."""
 
     heading: float
     position: float
-    plots: float
+    plots: tuple[float, ...]
 
 
 def step(alerts: Alerts, settings: Settings, situation: Situation, acquisition: Acquisition,
@@ -115,9 +115,10 @@ def watch(alerts: Alerts, settings: Settings, silence: Silence,
 
     Where plots are missing there is no scan to call `step`. now s, of the same time as scans'.
     """
-    causes = [(kind, 0, _causes(silent > settings.sensor_timeout, silent)) for kind, silent in (
-        (HEADING_MISSING, silence.heading), (POSITION_MISSING, silence.position),
-        (PLOTS_MISSING, silence.plots))]
+    sensors = [(HEADING_MISSING, 0, silence.heading), (POSITION_MISSING, 0, silence.position),
+               *((PLOTS_MISSING, radar, silent) for radar, silent in enumerate(silence.plots))]
+    causes = [(kind, part, _causes(silent > settings.sensor_timeout, silent))
+              for kind, part, silent in sensors]
     return _advance(alerts, causes, settings, now)
 
 

@@ -33,7 +33,8 @@ class Alerts(NamedTuple):
     """All alerts that are not normal, and causes that have not held long enough; one row each.
 
     kind      [A]     what it is about, index of alarms.NAMES
-    zone      [A]     key of the zone (zones.Zones.key), 0 for none
+    zone      [A]     key of the zone (zones.Zones.key), 0 for none; where plots are missing the
+                      radar, counted from 0
     id        [A]     of the track, 0 for none
     number    [A]     of the target, 0 for none
     state     [A]     index into STATES; a cause that still has to hold stands here as NORMAL

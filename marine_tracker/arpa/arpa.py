@@ -10,6 +10,7 @@ from ..geometry import KNOT, NAUTICAL_MILE, locate, polar_to_position, unit_vect
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
+from ..tracking.radars import radars_of
 from ..tracking.tracker import Report
 from ..types import Array, OwnShip, Scan, Tracks, append, take
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
@@ -93,7 +94,7 @@ class Arpa:
 
     def __init__(self, parameters: ArpaParameters, tracker: TrackerParameters):
         p = self.parameters = parameters
-        self.tracker = tracker
+        self.radars = radars_of(tracker)
         self.limits = situation.Limits(p.cpa_limit_nm * NAUTICAL_MILE, 60 * p.tcpa_limit_min)
         self.zones = zones.parse(p.zones)
         self.acquisition = acquisition.Settings(p.acquisition, p.max_targets, p.click_radius_m,
@@ -113,7 +114,7 @@ class Arpa:
         """No targets yet."""
         p = self.parameters
         nothing = OwnShip(np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2)))
-        return Memory(nothing, motion.begin(), acquisition.begin(), alerts.begin(),
+        return Memory(nothing, motion.begin(len(self.radars)), acquisition.begin(), alerts.begin(),
                       past_positions.begin(p.past_positions, p.past_interval_s))
 
     def step(self, memory: Memory, scan: Scan, report: Report, heading: float, fallen=False
@@ -123,14 +124,14 @@ class Arpa:
         heading  rad, own ship's, true; nan where it is not known
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
         """
-        now, tracks, tracker = scan.end, report.tracks, self.tracker
-        bearing_sigma = np.radians(tracker.bearing_sigma_deg)
+        now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
+        bearing_sigma = np.radians(radar.bearing_sigma_deg)
         samples = lately(memory.own, scan.own_ship, now)
         own = own_motion(samples, now, heading)
 
         # motion: course and speed from a memory of their own
-        plots = locate(scan.plots, scan.own_ship, tracker.range_sigma_m, bearing_sigma)
-        remembered = motion.step(memory.motion, report, plots, self.motion)
+        plots = locate(scan.plots, scan.own_ship, radar.range_sigma_m, bearing_sigma)
+        remembered = motion.step(memory.motion, report, plots, self.motion, scan.radar)
         moving = motion.at(remembered, now)
         past = past_positions.step(memory.past, tracks.id, tracks.first_time, moving.position,
                                    moving.velocity, own.position, own.velocity, now)
@@ -147,7 +148,7 @@ class Arpa:
         acquired, events = acquisition.step(memory.acquisition, self.acquisition, seen, now)
 
         # alarms
-        overlap, other = self._swap_risk(tracks, remembered, passing, own, now)
+        overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
         target = acquisition.how_acquired(acquired, tracks.id) >= 0
         fallen = int(np.sum(fallen & target & (tracks.status == CONFIRMED)))
         alive, changed = alarms.step(
@@ -173,14 +174,13 @@ class Arpa:
                         self.limits.tcpa)
 
     def _swap_risk(self, tracks, remembered: motion.Memory, passing: Approach, own: OwnMotion,
-                   now: float):
-        """Overlap [N] of the gates of the next scan and the rows [N] of the others."""
+                   now: float, radar: TrackerParameters):
+        """Overlap [N] of the gates of the radar's next scan and the rows [N] of the others."""
         overlap, other = np.full(len(tracks.id), np.inf), np.full(len(tracks.id), -1)
         rows = ((tracks.number > 0) & (tracks.status != LOST)).nonzero()[0]
-        ahead = motion.at(take(remembered, rows), now + self.tracker.scan_period_s)
+        ahead = motion.at(take(remembered, rows), now + radar.scan_period_s)
         _, noise = polar_to_position(passing.range[rows], passing.bearing[rows],
-                                     self.tracker.range_sigma_m,
-                                     np.radians(self.tracker.bearing_sigma_deg))
+                                     radar.range_sigma_m, np.radians(radar.bearing_sigma_deg))
         overlap[rows], found = swap_risk(ahead.position, ahead.covariance[:, :2, :2] + noise,
                                          own.position, self.gate_size)
         other[rows] = np.where(found >= 0, np.append(rows, -1)[found], -1)

@@ -50,7 +50,7 @@ class Memory(NamedTuple):
     id          [N]
     first       [N]      s, of the first plot; nan before it
     time        [N]      s, of the last plot
-    scatter              rows of `plot_noise.Scatter`
+    scatter              rows of `plot_noise.Scatter`, for each radar
     legs                 rows of `legs.Legs`
     shown       [N, 14]  mean and covariance at `time` of what is likely, as in `linear_modes`
     noise       [N]      m^2/s^3, density of acceleration that is to be expected from then on
@@ -63,7 +63,7 @@ class Memory(NamedTuple):
     id: NDArray[np.int64]
     first: Array
     time: Array
-    scatter: plot_noise.Scatter
+    scatter: tuple[plot_noise.Scatter, ...]
     legs: legs.Legs
     shown: Array
     noise: Array
@@ -94,24 +94,28 @@ class Motion(NamedTuple):
     stationary: NDArray[np.bool_]
 
 
-def begin() -> Memory:
+def begin(radars: int = 1) -> Memory:
     """No track yet."""
-    return _blank(np.zeros(0, np.int64))
+    return _blank(np.zeros(0, np.int64), radars)
 
 
-def step(memory: Memory, report: Report, plots: Plots, settings: Settings) -> Memory:
-    """The memory after one scan; its rows are those of `report.tracks`.
+def step(memory: Memory, report: Report, plots: Plots, settings: Settings, radar: int = 0
+         ) -> Memory:
+    """The memory after one scan of the radar; its rows are those of `report.tracks`.
 
     plots  the scan's plots as `geometry.locate` gives them, to which `report.plot` refers
+
+    Plots of two radars come out of order by up to a revolution. That does no harm to straight
+    legs: their fit is the same in any order.
     """
     memory = _follow(memory, report.tracks.id)
     first = np.arange(len(memory.id) - len(report.begun.time), len(memory.id))
-    memory = _first_plots(memory, first, report.begun, settings)
+    memory = _first_plots(memory, first, report.begun, settings, radar)
     rows = np.flatnonzero(report.plot >= 0)
     plots = take(plots, report.plot[rows])
     blank = np.isnan(memory.time[rows])
-    memory = _first_plots(memory, rows[blank], take(plots, blank), settings)
-    return _next_plots(memory, rows[~blank], take(plots, ~blank), settings)
+    memory = _first_plots(memory, rows[blank], take(plots, blank), settings, radar)
+    return _next_plots(memory, rows[~blank], take(plots, ~blank), settings, radar)
 
 
 def at(memory: Memory, time) -> Motion:
@@ -127,11 +131,11 @@ def at(memory: Memory, time) -> Motion:
                   (memory.memory == STEADY) & known, memory.stationary)
 
 
-def _blank(id_) -> Memory:
+def _blank(id_, radars: int) -> Memory:
     """Rows of tracks that had no plot yet."""
     count = len(id_)
     nothing = np.full(count, np.nan)
-    return Memory(id_, nothing, nothing, plot_noise.begin(count),
+    return Memory(id_, nothing, nothing, (plot_noise.begin(count),) * radars,
                   legs.begin(np.full((count, 2), np.nan), np.full((count, 2, 2), np.nan),
                              nothing, 1.0),
                   np.full((count, 14), np.nan), nothing, np.full(count, STEADY), nothing, nothing,
@@ -143,35 +147,42 @@ def _follow(memory: Memory, id_) -> Memory:
     if np.array_equal(memory.id, id_):
         return memory
     known = np.flatnonzero(np.isin(id_, memory.id, assume_unique=True))
-    return put(_blank(id_), known, take(memory, memory.id.searchsorted(id_[known])))
+    blank = _blank(id_, len(memory.scatter))
+    return put(blank, known, take(memory, memory.id.searchsorted(id_[known])))
 
 
-def _first_plots(memory: Memory, rows, plots: Plots, settings: Settings) -> Memory:
+def _first_plots(memory: Memory, rows, plots: Plots, settings: Settings, radar: int) -> Memory:
     """The rows [K] begin with one plot each."""
     count = len(rows)
     if not count:
         return memory
-    scatter, covariance, _ = plot_noise.observe(plot_noise.begin(count), plots,
-                                                settings.glint_sigma)
+    scatters = [plot_noise.begin(count)] * len(memory.scatter)
+    scatters[radar], covariance, _ = plot_noise.observe(scatters[radar], plots,
+                                                        settings.glint_sigma)
     hypotheses = legs.begin(plots.position, covariance, plots.time, settings.speed_sigma)
     return put(memory, rows, Memory(
-        memory.id[rows], plots.time, plots.time, scatter, hypotheses, hypotheses.rows[:, 0],
+        memory.id[rows], plots.time, plots.time, tuple(scatters), hypotheses,
+        hypotheses.rows[:, 0],
         np.full(count, settings.habits.noise), np.full(count, STEADY), plots.time,
         np.full(count, np.nan), np.zeros(count, bool)))
 
 
-def _next_plots(memory: Memory, rows, plots: Plots, settings: Settings) -> Memory:
+def _next_plots(memory: Memory, rows, plots: Plots, settings: Settings, radar: int) -> Memory:
     """The rows [K] take one more plot each."""
     if not len(rows):
         return memory
     before = take(memory, rows)
-    scatter, covariance, stretch = plot_noise.observe(before.scatter, plots, settings.glint_sigma)
+    scatters = list(before.scatter)
+    scatter, covariance, stretch = plot_noise.observe(scatters[radar], plots, settings.glint_sigma)
+    scatters[radar] = scatter
+    if len(scatters) > 1:           # a fit to the plots of several radars scales with none of them
+        stretch = np.broadcast_to(np.eye(2), stretch.shape)
     hypotheses, shown = legs.update(
         before.legs, plots.time, plots.time - before.time, plots.position, covariance, stretch,
         plot_noise.FREEDOM * scatter.plots, settings.habits)
     noise = hypotheses.weight[:, 0] * settings.habits.noise
     return put(memory, rows, Memory(
-        before.id, before.first, plots.time, scatter, hypotheses, shown, noise,
+        before.id, before.first, plots.time, tuple(scatters), hypotheses, shown, noise,
         *_manoeuvre(before, hypotheses, plots.time, 2 * settings.habits.manoeuvre),
         *_rest(before, shown, plots.time, settings)))
 

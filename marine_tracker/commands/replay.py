@@ -2,7 +2,7 @@
 
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,6 +13,7 @@ from ..heap import keep_freed_memory
 from ..recording import csv_folder, track_file
 from ..simulation import radar, scenario
 from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
+from ..tracking.radars import fused, merged
 from ..tracking.tracker import Tracker
 from ..types import Scan
 from . import tracker_options
@@ -45,8 +46,9 @@ class Summary(NamedTuple):
 
 def add_arguments(parser) -> None:
     """The command line of `replay`."""
-    parser.add_argument('source', metavar='SOURCE',
-                        help='folder of a recording, name of a shipped scenario, or scenario file')
+    parser.add_argument('sources', metavar='SOURCE', nargs='+',
+                        help='folder of a recording, name of a shipped scenario, or scenario file; '
+                             'several of one scene, each by a radar of its own, are fused')
     parser.add_argument('--out', metavar='TRACKS.csv', required=True,
                         help='track file to write: one row a track and scan; - for standard output')
     parser.add_argument('--seed', type=int, default=1, help='seed of a scenario (default: 1)')
@@ -58,7 +60,7 @@ def run(args) -> int:
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
     keep_freed_memory()
-    source = open_source(args.source, args.seed)
+    source = fuse(args.sources, args.seed)
     tracker = Tracker(tracker_options.parameters(args, source.tracker_parameters))
     scans = _with_progress(source.scans, source.total)
     if args.out == '-':
@@ -86,6 +88,21 @@ def open_source(name: str, seed: int = 1) -> Source:
     chosen = scenario.load(name)
     simulated = enumerate(scan for scan, _ in radar.simulate(chosen, seed))
     return Source(simulated, None, chosen.tracker_parameters())
+
+
+def fuse(names: Sequence[str], seed: int = 1) -> Source:
+    """The sources of one scene as one, each of them a radar of its own; a single one as it is.
+
+    Scans are numbered as they end. Of scenarios each has noise of its own, from `seed` on.
+    """
+    sources = [open_source(name, seed + k) for k, name in enumerate(names)]
+    if len(sources) == 1:
+        return sources[0]
+    radars = [f'radar_{k}' for k in range(1, len(sources) + 1)]
+    totals = [source.total for source in sources if source.total is not None]
+    return Source(enumerate(merged(*((scan for _, scan in source.scans) for source in sources))),
+                  sum(totals) if len(totals) == len(sources) else None,
+                  fused([source.tracker_parameters for source in sources], radars))
 
 
 def write_tracks(tracker: Tracker, scans: Iterable[tuple[int, Scan]], file) -> Summary:

@@ -1,6 +1,6 @@
 """The whole service on simulated plots: scans in, what an operator is told of each target out."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -47,25 +47,29 @@ class Service:
     data = service.targets(memory, scan.end)
 
     Every step does what the targets' data depend on; acquisition and alarms are left out.
+    `changes` overrule the scenario's tracker parameters.
     """
 
-    def __init__(self, scenario: Scenario, estimator: str):
-        self.parameters = from_mapping(
-            TrackerParameters, {**scenario.tracker_parameters(), 'estimator': estimator})
+    def __init__(self, scenario: Scenario, estimator: str, **changes: Any):
+        self.parameters = from_mapping(TrackerParameters, {
+            **scenario.tracker_parameters(), 'estimator': estimator, **changes})
         self.tracker = tracker.Tracker(self.parameters)
         self.arpa = arpa.Arpa(ArpaParameters(), self.parameters)
 
     def step(self, memory: Memory | None, scan: Scan) -> Memory:
         """One revolution; `memory` is None before the first."""
         if memory is None:
-            tracked, moving, own = self.tracker.start(), motion.begin(), scan.own_ship
+            tracked, own = self.tracker.start(), scan.own_ship
+            moving = motion.begin(len(self.arpa.radars))
         else:
             tracked, moving = memory.tracker, memory.motion
             own = lately(memory.own, scan.own_ship, scan.end)
         tracked, report = self.tracker.step(tracked, scan)
-        plots = locate(scan.plots, scan.own_ship, self.parameters.range_sigma_m,
-                       self.tracker.bearing_sigma)
-        return Memory(tracked, motion.step(moving, report, plots, self.arpa.motion), own, report)
+        radar = self.arpa.radars[scan.radar].parameters
+        plots = locate(scan.plots, scan.own_ship, radar.range_sigma_m,
+                       np.radians(radar.bearing_sigma_deg))
+        moving = motion.step(moving, report, plots, self.arpa.motion, scan.radar)
+        return Memory(tracked, moving, own, report)
 
     def targets(self, memory: Memory, time: float) -> TargetData:
         """All confirmed targets, the coasting ones too, at `time`, s."""

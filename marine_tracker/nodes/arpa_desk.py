@@ -45,9 +45,12 @@ class ArpaDesk:
         self._memory = self.arpa.start()
         self._trial_since: float | None = None      # s, when the trial manoeuvre was switched on
         self.refused = Tally((REFUSED,), lambda reason, detail: None)
-        # Of the wall, s: when each was last heard, and between the last plots.
-        self._heard_heading = self._heard_position = self._heard_plots = time.monotonic()
-        self._spacing = deque([tracker.scan_period_s], maxlen=9)
+        # Of the wall, s: when each was last heard, and between the last plots of each radar.
+        self._heard_heading = self._heard_position = time.monotonic()
+        self._heard_plots = [self._heard_heading] * len(self.arpa.radars)
+        self._spacing = [deque([radar.parameters.scan_period_s], maxlen=9)
+                         for radar in self.arpa.radars]
+        self._scanned = [False] * len(self.arpa.radars)
         self._heading = np.nan
         self._end, self._end_ns = 0.0, 0            # s, and stamp, of the last scan's end
         self.picture: Picture | None = None
@@ -84,9 +87,11 @@ class ArpaDesk:
         The alarms that changed are published, and the trial manoeuvre while it is on.
         """
         wall = time.monotonic()
-        if self.picture is not None:
-            self._spacing.append(wall - self._heard_plots)
-        self._heard_plots, self._end, self._end_ns = wall, scan.end, end_ns
+        if self._scanned[scan.radar]:
+            self._spacing[scan.radar].append(wall - self._heard_plots[scan.radar])
+        self._heard_plots[scan.radar], self._scanned[scan.radar] = wall, True
+        if scan.end >= self._end or self.picture is None:   # of a slow radar they come later
+            self._end, self._end_ns = scan.end, end_ns
         self._memory, self.picture = self.arpa.step(
             self._memory, scan, report, self._heading_now(wall), fallen)
         self._publish_alarms(self.picture.changed)
@@ -101,8 +106,7 @@ class ArpaDesk:
         wall = time.monotonic()
         silence = alarms.Silence(wall - self._heard_heading, wall - self._heard_position,
                                  self._overdue(wall))
-        found, changed = alarms.watch(self._memory.alerts, self.arpa.alarms, silence,
-                                      self._end + silence.plots)
+        found, changed = alarms.watch(self._memory.alerts, self.arpa.alarms, silence, self._now())
         self._memory = self._memory._replace(alerts=found)
         self._publish_alarms(changed)
 
@@ -111,13 +115,19 @@ class ArpaDesk:
         old = wall - self._heard_heading > self.arpa.parameters.sensor_timeout_s
         return np.nan if old else self._heading
 
-    def _overdue(self, wall: float) -> float:
-        """s without plots; 0 while the next may still be to come: antennas and replays differ."""
-        silent = wall - self._heard_plots
-        return silent if silent > OVERDUE * median_low(self._spacing) else 0.0
+    def _overdue(self, wall: float) -> tuple[float, ...]:
+        """s without plots of each radar; 0 while the next may still be to come: antennas and
+        replays differ."""
+        return tuple(
+            wall - heard if wall - heard > OVERDUE * median_low(spacing) else 0.0
+            for heard, spacing in zip(self._heard_plots, self._spacing, strict=True))
+
+    def _since_end(self) -> float:
+        """s since the last scan's end, once the next of every radar is overdue."""
+        return min(self._overdue(time.monotonic()))
 
     def _now(self) -> float:
-        return self._end + self._overdue(time.monotonic())
+        return self._end + self._since_end()
 
     # -- commands ------------------------------------------------------------------------------
 
@@ -211,10 +221,11 @@ class ArpaDesk:
             shown = append(take(present, present.state != NORMAL),
                            take(changed, changed.state == NORMAL))
             self._to_alarms.publish(alarms_message(
-                shown, self.arpa.zones, self._now(), self._stamp(), self._hardware_id))
+                shown, self.arpa.zones, [radar.name for radar in self.arpa.radars], self._now(),
+                self._stamp(), self._hardware_id))
 
     def _stamp(self) -> int:
         """ns of now; of the node's clock before the first scan."""
         if not self._end_ns:
             return self._node.get_clock().now().nanoseconds
-        return self._end_ns + round(self._overdue(time.monotonic()) * 1e9)
+        return self._end_ns + round(self._since_end() * 1e9)

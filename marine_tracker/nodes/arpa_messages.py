@@ -1,5 +1,7 @@
 """`alarms` and `trial` as messages: one readable entry for each alert, for each target tried."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
@@ -20,27 +22,28 @@ LEVEL = {'alarm': ERROR, 'warning': WARN, 'caution': WARN}
 TRIAL = 'T'                     # stands for a trial, as on every radar screen
 
 
-def alarms_message(shown: Alerts, zones: Zones, now: float, time_ns: int, hardware_id: str
-                   ) -> DiagnosticArray:
+def alarms_message(shown: Alerts, zones: Zones, radars: Sequence[str], now: float, time_ns: int,
+                   hardware_id: str) -> DiagnosticArray:
     """The alerts, in the order of their rows; now s, of the time that they are kept in."""
-    zone_names = dict(zip(zones.key.tolist(), zones.name))
     targets = [name if id else '' for id, name in zip(
         shown.id.tolist(), label(shown.id, shown.number))]
     return diagnostics.array(time_ns, [
-        _alert(kind, target, zone_names.get(zone, ''), state, age, position, text, hardware_id)
-        for kind, target, zone, state, age, position, text in zip(
-            shown.kind.tolist(), targets, shown.zone.tolist(), shown.state.tolist(),
-            (now - shown.since).tolist(), shown.position.tolist(),
-            alarm_text.text(shown, zones))])
+        _alert(kind, target, part, state, age, position, text, hardware_id)
+        for kind, target, part, state, age, position, text in zip(
+            shown.kind.tolist(), targets, alarm_text.parts(shown, zones, radars),
+            shown.state.tolist(), (now - shown.since).tolist(), shown.position.tolist(),
+            alarm_text.text(shown, zones, radars))])
 
 
-def _alert(kind: int, target: str, zone: str, state: int, age: float, position, text: str,
+def _alert(kind: int, target: str, part: str, state: int, age: float, position, text: str,
            hardware_id: str) -> DiagnosticStatus:
     what, priority = alarms.NAMES[kind], alarms.PRIORITY[kind]
-    name = (f'{target}: ' if target else '') + what + (f' in {zone}' if zone else '')
+    of_radar = kind == alarms.PLOTS_MISSING
+    where = f' {"of" if of_radar else "in"} {part}' if part else ''
+    name = (f'{target}: ' if target else '') + what + where
     return diagnostics.status(name, hardware_id, OK if state == NORMAL else LEVEL[priority], text, {
         'kind': what, 'priority': priority, 'state': alerts.STATES[state], 'target': target,
-        'zone': zone, 'in_state_s': figure(age, 0),
+        'zone': '' if of_radar else part, 'in_state_s': figure(age, 0),
         'east_m': figure(position[0], 0), 'north_m': figure(position[1], 0)})
 
 

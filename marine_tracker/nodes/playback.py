@@ -7,6 +7,9 @@ for 0 means "no time yet" in ROS), `/clock` is published, and other nodes need u
 Due times are counted from the start, so nothing drifts. Where the machine is too slow for the
 rate, time runs slower; no revolution is left out. The first revolution waits a moment for someone
 to listen, so that a tracker started together with this node misses nothing.
+
+Two radars of one scene keep step where their nodes are told the stamp at which it begins. Then
+time never runs slower, and what is past when a node comes up is left out.
 """
 
 import itertools
@@ -56,13 +59,17 @@ class Playback:
     rate    simulated seconds in a second
     loop    begin again at the end, one revolution later
     origin  latitude and longitude in degrees of the local plane's origin; None: no fix
+    begin_at  s, stamp of the first moment; 0: when this begins. Needs rate 1: ValueError
 
     `done` becomes true when the last revolution is out (never in a loop).
     """
 
     def __init__(self, node: RunnableNode, make: Callable[[], Iterator[Revolution]], rate: float,
-                 loop: bool, origin: tuple[float, float] | None = None):
-        self.node, self.rate, self.origin = node, rate, origin
+                 loop: bool, origin: tuple[float, float] | None = None, begin_at: float = 0.0):
+        if begin_at and rate != 1:
+            raise ValueError(f'begin_at_s is {begin_at:g} s beside a rate of {rate:g}; it needs '
+                             'rate 1 (and use_sim_time beside a node that publishes /clock)')
+        self.node, self.rate, self.origin, self.begin_at = node, rate, origin, begin_at
         self.done = False
         self._revolutions = _repeat(make) if loop else make()
         self._next = next(self._revolutions, None)
@@ -110,7 +117,7 @@ class Playback:
             self._timer.cancel()
             self.done = True
             return
-        if now - due > LAG_S * self.rate:
+        if now - due > LAG_S * self.rate and not self.begin_at:
             self._anchor = (self._elapsed(), due)
         self._publish_clock(min(now, due))
         wait = (due - self._now()) / self.rate
@@ -138,8 +145,13 @@ class Playback:
         settled = self._heard is not None and wall - self._heard >= SETTLE_S
         if not settled and wall - self._created < LISTENER_S:
             return False
-        self._start_ns = start_ns
         self._anchor = (self._elapsed(), self._first)
+        if self.begin_at:
+            now_ns, start_ns = start_ns, round(self.begin_at * 1e9)
+            self._anchor = (self._elapsed(), self._first + (now_ns - start_ns) * 1e-9)
+            while self._next is not None and self._next.scan.end < self._now():
+                self._next = next(self._revolutions, None)
+        self._start_ns = start_ns
         return True
 
     def _wall(self) -> float:

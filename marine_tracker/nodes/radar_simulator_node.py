@@ -36,7 +36,7 @@ class RadarSimulatorNode(RunnableNode):
                 yield Revolution(scan, truth, OwnShip(time, *own_ship_at(scan.own_ship, time)))
 
         self._playback = Playback(self, revolutions, parameters.rate, parameters.loop,
-                                  chosen.fleet.origin)
+                                  chosen.fleet.origin, parameters.begin_at_s)
         self.get_logger().info(
             f'scenario {parameters.scenario}, seed {parameters.seed}, rate {parameters.rate:g}')
 

@@ -9,9 +9,8 @@ status. In `tracks` each is stamped with the time the beam passed it. `targets` 
 those that were acquired (arpa_desk.py); a lost one stands once more in `targets`, as STALE.
 """
 
-import statistics
 import time
-from collections import deque
+from functools import partial
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -22,26 +21,23 @@ from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import MarkerArray
 
 from ..arpa.arpa import Arpa
-from ..estimators import WANT_DOPPLER
 from ..geometry import wrap_bearing
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking import intake
 from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, TENTATIVE
+from ..tracking.radars import radars_of
 from ..tracking.tracker import Report, Tracker
 from ..types import Extrapolation, Scan, take
 from . import convert, diagnostics, topics
 from .arpa_desk import ArpaDesk
-from .convert import ConversionError, OdometryPool
+from .convert import OdometryPool
 from .declare import declare, follow
 from .diagnostics import FAILED, OK, WARN, Durations, Tally, guarded
 from .markers import MarkersWriter
+from .radar_input import RadarInput
 from .readable import TargetsWriter
 from .runnable import RunnableNode
 from .view import Standing, standing, view
-
-MISSED = 'revolutions missed'
-NO_DOPPLER = 'scans without the radial speeds that the estimator wants'
-SILENT_S = 5.0              # s of the wall, and three scans, without plots: the radar is silent
 
 
 class TrackerNode(RunnableNode):
@@ -53,19 +49,14 @@ class TrackerNode(RunnableNode):
         self._tracker = Tracker(parameters)
         self._memory = self._tracker.start()
         self._base_ns: int | None = None            # stamps are seconds after this
-        self._order = intake.TimeOrder()
         self._own_log = intake.empty_log()
         self._fallback = intake.OWN_NEVER_HEARD
-        self._starts: deque[float] = deque(maxlen=10)
-        self._stamped_alike = False
-        self._started = time.monotonic()
-        self._heard: float | None = None            # wall time of the last plots
-        self._taken = self._samples = self._plots_in_scan = 0
+        self._samples = 0
         self._status_count = np.zeros(4, int)
         self._standing = Standing({}, 0, '', np.zeros(0, bool))
         self._processing, self._lateness = Durations(), Durations()
-        self.bad_input = Tally((*convert.CLOUD_REASONS, *intake.PLOT_REASONS,
-                                *intake.SCAN_REASONS, MISSED, NO_DOPPLER), self._tell)
+        self.inputs = [RadarInput(radar, place, partial(self._tell_of, radar.name))
+                       for place, radar in enumerate(radars_of(parameters))]
         self.bad_own_ship = Tally(intake.OWN_REASONS, self._tell)
         self.failures = Tally((), self._tell)
 
@@ -92,12 +83,14 @@ class TrackerNode(RunnableNode):
         # Own ship first: of messages that wait together it is taken first.
         self._inputs = {}
         self._mismatched: set[str] = set()
-        for kind, topic, callback in ((Odometry, topics.ODOMETRY, self._on_odometry),
-                                      (PointCloud2, topics.PLOTS, self._on_plots)):
-            self._listen(kind, topic, callback, topics.best_available())
+        self._listen(Odometry, topics.ODOMETRY, self._on_odometry, topics.best_available())
+        for heard in self.inputs:
+            self._listen(PointCloud2, heard.radar.topic, partial(self._on_plots, heard),
+                         topics.best_available())
         # The wall's second, whatever the node's clock does.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self.get_logger().info(f'estimator {parameters.estimator}, waiting for {topics.PLOTS}')
+        self.get_logger().info(f'estimator {parameters.estimator}, waiting for '
+                               + ', '.join(heard.radar.topic for heard in self.inputs))
 
     def close(self) -> None:
         """A last word on /diagnostics."""
@@ -126,50 +119,19 @@ class TrackerNode(RunnableNode):
         self._desk.hear_own_ship(placed, np.pi / 2 - convert.yaw_of(message.pose.pose.orientation))
 
     @guarded
-    def _on_plots(self, message: PointCloud2) -> None:
+    def _on_plots(self, heard: RadarInput, message: PointCloud2) -> None:
         began = time.perf_counter()
-        self._heard = wall = time.monotonic()
-        try:
-            plots = convert.cloud_to_plots(message)
-        except ConversionError as error:
-            self.bad_input.add(error.reason, wall, detail=str(error))
+        found = heard.scan_of(message, self._seconds, self._own_log,
+                              [other.order for other in self.inputs if other is not heard])
+        if found is None:
             return
-        parameters, period = self._tracker.parameters, self.period
-        plots, rejected = intake.screen_plots(plots, period, parameters.max_plots)
-        for reason, count in rejected.items():
-            self.bad_input.add(reason, wall, count)
-        if parameters.estimator in WANT_DOPPLER and plots.radial_speed is None and len(plots.time):
-            self.bad_input.add(NO_DOPPLER, wall, detail=parameters.estimator)
-        start_ns = convert.nanoseconds(message.header.stamp)
-        start = self._seconds(start_ns)
-        before = self._order.last
-        self._order, taken, reason = intake.admit_scan(self._order, start, period)
-        if reason:
-            self.bad_input.add(reason, wall, detail=f'stamp {start_ns * 1e-9:.3f} s')
-        if not taken:
-            return
-        if reason == intake.REBASED:
-            self._starts.clear()
-        elif start - before > 1.5 * period:
-            self.bad_input.add(MISSED, wall, round((start - before) / period) - 1)
-        self._starts.append(start)
-
-        # Recordings may stamp all plots of a scan alike; an antenna never does.
-        if len(plots.time):
-            self._stamped_alike = not plots.time.any()
-        length = 0.0 if self._stamped_alike else max(period, plots.time.max(initial=0.0))
-        end, shift = start + length, self._order.shift
-        own_ship, self._fallback = intake.own_ship_for(
-            self._own_log, start, end, parameters.own_ship_timeout_s)
-        scan = Scan(start + shift, end + shift, plots._replace(time=plots.time + start + shift),
-                    own_ship._replace(time=own_ship.time + shift))
+        scan, self._fallback = found
         self._memory, report = self._tracker.step(self._memory, scan)
-        self._taken += 1
-        self._plots_in_scan = len(plots.time)
-        self._publish(scan, report)
+        self._publish(heard, scan, report)
         now = self.get_clock().now().nanoseconds
         if now:                                         # 0: no /clock yet
-            self._lateness.add((now - start_ns) * 1e-9 - length)
+            end_ns = int(self._stamps(heard, scan.end))
+            self._lateness.add((now - end_ns) * 1e-9)
         self._processing.add(time.perf_counter() - began)
 
     def _change(self, tracker: Tracker) -> None:
@@ -181,11 +143,8 @@ class TrackerNode(RunnableNode):
 
     @property
     def period(self) -> float:
-        """s of one revolution: as measured, or by parameter until there is enough to measure."""
-        if len(self._starts) < 4:
-            return self._tracker.parameters.scan_period_s
-        starts = list(self._starts)
-        return statistics.median(b - a for a, b in zip(starts, starts[1:]))
+        """s of one revolution, of the fastest radar."""
+        return min(heard.period for heard in self.inputs)
 
     def _seconds(self, time_ns: int) -> float:
         """s of a stamp after the first stamp that came in."""
@@ -193,30 +152,30 @@ class TrackerNode(RunnableNode):
             self._base_ns = time_ns
         return (time_ns - self._base_ns) * 1e-9
 
-    def _stamps(self, time):
-        """Stamps [N] in ns of the tracker's times [N] s."""
-        return self._base_ns + np.round((time - self._order.shift) * 1e9).astype(np.int64)
+    def _stamps(self, heard: RadarInput, time):
+        """Stamps [N] in ns, on the radar's clock, of the tracker's times [N] s."""
+        return self._base_ns + np.round((time - heard.order.shift) * 1e9).astype(np.int64)
 
     # -- out -----------------------------------------------------------------------------------
 
-    def _publish(self, scan: Scan, report: Report) -> None:
+    def _publish(self, heard: RadarInput, scan: Scan, report: Report) -> None:
         tracks, tracker = report.tracks, self._tracker
         self._status_count = np.bincount(tracks.status, minlength=4)
         listeners = [publisher.get_subscription_count() for publisher in (
             self._to_tracks, self._to_extrapolations, self._to_cloud, self._to_markers)]
         estimate = tracker.extrapolate(tracks, report.time)
         if listeners[2]:            # one message, so first
-            self._to_cloud.publish(self._cloud(scan, report, estimate))
+            self._to_cloud.publish(self._cloud(heard, scan, report, estimate))
         numbered = np.flatnonzero(tracks.number > 0)
         numbered = numbered[np.argsort(tracks.number[numbered])]
         alive = numbered[tracks.status[numbered] != LOST]
         frames = [f'track_{n:02d}' for n in tracks.number[alive].tolist()]
         if listeners[0]:
-            self._publish_each(self._to_tracks, frames, take(estimate, alive))
+            self._publish_each(heard, self._to_tracks, frames, take(estimate, alive))
         if listeners[1]:
-            self._publish_each(self._to_extrapolations, frames, tracker.extrapolate(
-                take(tracks, alive), report.time[alive] + self.period))
-        end_ns, name = int(self._stamps(scan.end)), tracker.parameters.estimator
+            self._publish_each(heard, self._to_extrapolations, frames, tracker.extrapolate(
+                take(tracks, alive), report.time[alive] + heard.period))
+        end_ns, name = int(self._stamps(heard, scan.end)), tracker.parameters.estimator
         self._standing = standing(report, name)
         picture = self._desk.step(scan, report, self._standing.fallen_at, end_ns)
         seen, arpa = view(picture, report, name), self._desk.arpa
@@ -226,12 +185,12 @@ class TrackerNode(RunnableNode):
             self._to_markers.publish(self._markers.message(
                 seen, picture, arpa.zones, arpa.parameters, end_ns))
 
-    def _publish_each(self, publisher, frames, estimate: Extrapolation) -> None:
-        for message in self._pool.fill(self._stamps(estimate.time), frames, estimate.position,
-                                       estimate.velocity, estimate.covariance):
+    def _publish_each(self, heard, publisher, frames, estimate: Extrapolation) -> None:
+        for message in self._pool.fill(self._stamps(heard, estimate.time), frames,
+                                       estimate.position, estimate.velocity, estimate.covariance):
             publisher.publish(message)
 
-    def _cloud(self, scan: Scan, report: Report, estimate: Extrapolation) -> PointCloud2:
+    def _cloud(self, heard, scan: Scan, report: Report, estimate: Extrapolation) -> PointCloud2:
         tracks, velocity, covariance = report.tracks, estimate.velocity, estimate.covariance
         rows = np.zeros(len(tracks.id), convert.TRACK_TYPE)
         rows['id'], rows['number'], rows['status'] = tracks.id, tracks.number, tracks.status
@@ -244,9 +203,12 @@ class TrackerNode(RunnableNode):
             rows[name] = covariance[:, row, column]
         rows['course'] = wrap_bearing(np.arctan2(velocity[:, 0], velocity[:, 1]))
         rows['speed'] = np.hypot(velocity[:, 0], velocity[:, 1])
-        return convert.cloud_message(rows, int(self._stamps(scan.start)))
+        return convert.cloud_message(rows, int(self._stamps(heard, scan.start)))
 
     # -- how it fares --------------------------------------------------------------------------
+
+    def _tell_of(self, radar: str, reason: str, detail: str) -> None:
+        self._tell(f'{radar}: {reason}' if radar else reason, detail)
 
     def _tell(self, reason: str, detail: str) -> None:
         """Log the first of its kind; /diagnostics counts the rest."""
@@ -264,24 +226,14 @@ class TrackerNode(RunnableNode):
         wall, now = time.monotonic(), self.get_clock().now().nanoseconds
         self._desk.watch()
         self._to_diagnostics.publish(diagnostics.array(
-            now, [self._input_status(wall, now), self._tracking_status(wall),
-                  self._own_ship_status(wall)]))
+            now, [*(self._input_status(heard, wall, now) for heard in self.inputs),
+                  self._tracking_status(wall), self._own_ship_status(wall)]))
 
-    def _input_status(self, wall: float, now: int) -> DiagnosticStatus:
-        level, message = OK, 'plots come in'
-        fresh = self.bad_input.fresh(wall)
-        silent = wall - (self._heard or self._started)
-        if self._heard is None:
-            level, message = WARN, f'no plots yet on {topics.PLOTS}'
-        elif silent > SILENT_S + 3 * self.period:
-            level, message = WARN, f'no plots for {silent:.0f} s'
-        elif fresh:
-            level, message = WARN, 'lately: ' + ', '.join(fresh)
+    def _input_status(self, heard: RadarInput, wall: float, now: int) -> DiagnosticStatus:
+        level, message, values = heard.state(wall)
         if now == 0:
             level, message = WARN, message + '; use_sim_time is set and /clock is silent'
-        values = {'scans taken': self._taken, 'plots in last scan': self._plots_in_scan,
-                  'period_s': f'{self.period:.3f}', **self.bad_input.counts}
-        return self._status('input', level, message, values)
+        return self._status(f'input {heard.radar.name}'.rstrip(), level, message, values)
 
     def _tracking_status(self, wall: float) -> DiagnosticStatus:
         level, message = OK, f'{self._status_count[[CONFIRMED, COASTING]].sum()} targets'
@@ -319,7 +271,8 @@ class TrackerNode(RunnableNode):
         fresh = self.bad_own_ship.fresh(wall)
         if fresh:
             level, message = WARN, 'lately: ' + ', '.join(fresh)
-        if self._fallback and self._taken or not self._samples:
+        taken = any(heard.taken for heard in self.inputs)
+        if self._fallback and taken or not self._samples:
             level, message = WARN, self._fallback
         return self._status('own ship', level, message,
                             {'samples': self._samples, **self.bad_own_ship.counts})

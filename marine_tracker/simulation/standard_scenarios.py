@@ -1,4 +1,5 @@
-"""Scenarios that are defined elsewhere, made to the letter: the IMO's test conditions and Imazu's.
+"""Scenarios made by rule: the IMO's test conditions and Imazu's encounters, which are defined
+elsewhere, and one scene as two radars see it.
 
 Each function gives what a scenario file would hold (see scenario.py).
 """
@@ -100,6 +101,36 @@ def imazu(number: int) -> dict[str, Any]:
         'targets': ships}
 
 
+# One ship has two radars; ships by range NM, bearing deg, course deg, speed kn, turn deg (by 1
+# deg/s after 5 minutes, back after 10). The last is a boat that the second radar hardly sees.
+TWO_RADARS = {
+    'x': {'rotation_rpm': 24, 'range_sigma_m': 12, 'bearing_sigma_deg': 0.5, 'beam_width_deg': 0.9,
+          'pd_near': 0.95, 'pd_far': 0.7, 'max_range_nm': 6},
+    's': {'rotation_rpm': 20, 'range_sigma_m': 25, 'bearing_sigma_deg': 0.7, 'beam_width_deg': 1.9,
+          'pd_near': 0.97, 'pd_far': 0.85, 'max_range_nm': 12}}
+TWO_RADARS_CLUTTER = {'x': {'uniform': 20, 'sea': 30}, 's': {'uniform': 20, 'sea': 5}}
+TWO_RADARS_SHIPS = ((4.5, 40, 235, 14, 0), (3.2, 310, 95, 11, 60), (5.2, 85, 262, 9, -45),
+                    (2.4, 200, 20, 16, 0), (4.0, 150, 330, 12, 90), (3.6, 260, 60, 18, 0),
+                    (2.6, 120, 15, 8, 0))
+
+
+def two_radars(which: str) -> dict[str, Any]:
+    """The scene as the radar 'x' or 's' sees it; the ships are the same."""
+    ships: list[dict[str, Any]] = []
+    for distance, bearing, course, speed, turn in TWO_RADARS_SHIPS:
+        legs = [leg for way in (turn, -turn) if way for leg in (
+            {'straight': {'duration_s': 300}}, {'turn': {'angle_deg': way, 'rate_deg_per_s': 1}})]
+        ships.append({'start': {'range_nm': distance, 'bearing_deg': bearing}, 'course_deg': course,
+                      'speed_kn': speed, **({'legs': legs} if legs else {})})
+    if which == 's':
+        ships[-1]['pd'] = 0.05
+    return {
+        'description': f'Seven ships and two radars on ours - the {which.upper()} band radar',
+        'duration_s': 900, 'radar': dict(TWO_RADARS[which]),
+        'clutter': dict(TWO_RADARS_CLUTTER[which]),
+        'own_ship': {'course_deg': 10.0, 'speed_kn': 10.0}, 'targets': ships}
+
+
 def _target(start, velocity):
     speed, course = to_range_bearing(velocity)
     return {'start': {'east_m': float(start[0]), 'north_m': float(start[1])},
@@ -109,4 +140,6 @@ def _target(start, velocity):
 STANDARD: dict[str, Callable[[], dict[str, Any]]] = {
     **{f'imo_{number}': lambda number=number: a823(number) for number in A823},   # type: ignore
     **{f'imazu_{number:02d}': lambda number=number: imazu(number)                 # type: ignore
-       for number in range(1, len(IMAZU) + 1)}}
+       for number in range(1, len(IMAZU) + 1)},
+    **{f'two_radars_{which}': lambda which=which: two_radars(which)               # type: ignore
+       for which in TWO_RADARS}}

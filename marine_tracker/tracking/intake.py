@@ -9,12 +9,15 @@ same time, or far ahead (`AHEAD_SCANS` scans, at least `AHEAD_S`) is rejected, f
 stamp must not move the tracks. When `REBASE_AFTER` scans in a row agree with each other on a new
 time, the clock was set: the new time is taken, as if the first of them had followed the last good
 scan by one revolution. The tracker's own time never jumps, so its tracks live through it.
+Each radar has an order of its own. A scan that agrees with another radar's time is not far ahead,
+however long its own was silent; and a clock that was set for one radar may be set for the others.
 
 Own ship's position is treated likewise: a sample that implies more than `MAX_OWN_SPEED` is
 rejected, until `REBASE_OWN_AFTER` samples in a row agree with each other.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -49,7 +52,8 @@ REPEATED = 'scans repeated'
 WENT_BACK = 'scans with time going back'
 JUMPED_AHEAD = 'scans with time jumping ahead'
 REBASED = 'clock re-based'
-SCAN_REASONS = (REPEATED, WENT_BACK, JUMPED_AHEAD, REBASED)
+CLOCKS_DIFFER = 'scans with a time far from other radars'
+SCAN_REASONS = (REPEATED, WENT_BACK, JUMPED_AHEAD, REBASED, CLOCKS_DIFFER)
 
 OWN_NOT_FINITE = 'samples not finite'
 OWN_REPEATED = 'samples repeated'
@@ -122,14 +126,22 @@ class TimeOrder(NamedTuple):
     waiting: tuple[float, ...] = ()
 
 
-def admit_scan(order: TimeOrder, start: float,
-               scan_period: float) -> tuple[TimeOrder, bool, str]:
-    """Whether a scan that begins at `start` is to be taken, and the reason to count or ''."""
-    if np.isnan(order.last):
-        return order._replace(last=start), True, ''
-    ahead = max(AHEAD_S, AHEAD_SCANS * scan_period)
-    if order.last < start <= order.last + ahead:
-        return order._replace(last=start, waiting=()), True, ''
+def admit_scan(order: TimeOrder, start: float, scan_period: float,
+               others: Sequence[TimeOrder] = ()) -> tuple[TimeOrder, bool, str]:
+    """Whether a scan that begins at `start` is to be taken, and the reason to count or ''.
+
+    others  the orders of the other radars
+    """
+    ahead, new = max(AHEAD_S, AHEAD_SCANS * scan_period), math.isnan(order.last)
+    others = [other for other in others if not math.isnan(other.last)]
+    for shift in dict.fromkeys((order.shift, *(other.shift for other in others))):
+        after = start + shift - (order.last + order.shift)              # nan for a new radar
+        beside = any(abs(start + shift - other.last - other.shift) <= ahead for other in others)
+        if (0 < after <= ahead) or ((new or after > 0) and beside) or (new and not others):
+            same = new or shift == order.shift
+            return TimeOrder(start, shift), True, '' if same else REBASED
+    if new:
+        return order, False, CLOCKS_DIFFER
     follows = order.waiting and order.waiting[-1] < start <= order.waiting[-1] + ahead
     waiting = (*order.waiting, start) if follows else (start,)
     if len(waiting) >= REBASE_AFTER:

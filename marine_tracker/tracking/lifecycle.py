@@ -49,6 +49,23 @@ def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters)
                            age=tracks.age + counted)
 
 
+def held_by_another(tracks: Tracks, radar: int, time, track, held):
+    """Mask [N] of the tracks that another radar sees, while this one has no plot in their gate.
+
+    time [N] s of this look; track: tracks that have a plot in the gate; held [R] s, how long a
+    plot of each radar shows that its target is there. Such a look is no miss: what is in the lee
+    of a mast, or too faint for one radar, is not lost. Beside a plot that another track took it
+    is one, so two tracks on one target are still found out; and of a tentative track every miss
+    counts, or each radar's clutter would live on what the other is blind to.
+    """
+    if len(held) == 1:
+        return np.zeros(len(time), bool)
+    empty = np.ones(len(time), bool)
+    empty[track] = False
+    return (empty & (tracks.status != TENTATIVE) & (tracks.radar != radar)
+            & (time - tracks.last_time < held[tracks.radar]))
+
+
 def evidence(nis, log_det, density, detection_probability: float):
     """Log-likelihood ratio [K] of plots: from the track against from clutter.
 
@@ -61,8 +78,9 @@ def evidence(nis, log_det, density, detection_probability: float):
 def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now: float):
     """Status [N] and reason [N] of a loss, by the named rules.
 
-    hit [N] had a plot in this scan; beyond [N] lies outside the radar's range; drift [N] is the
-    deviation of the extrapolated position over that of a plot; now s.
+    hit [N] had a plot in this scan, or of another radar lately; beyond [N] lies outside the range
+    of every radar; drift [N] is the deviation of the extrapolated position over that of a plot;
+    now s.
 
     M of N: a tentative track is confirmed by `confirm_hits` plots in `confirm_scans` scans, if
     its score too reaches `confirm_score`, and lost once its plots cannot get there. A confirmed

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from marine_tracker.arpa import acquisition, alarms, alerts, zones
-from marine_tracker.arpa.alarm_text import text
+from marine_tracker.arpa.alarm_text import parts, text
 from marine_tracker.arpa.alarms import NAMES, Settings, Silence, Tracking
 from marine_tracker.arpa.alerts import STATES
 from marine_tracker.arpa.situation import Limits
@@ -55,7 +55,7 @@ class Bridge:
     def sensors(self, heading=0.0, position=0.0, plots=0.0):
         self.now += PERIOD
         self.alerts, changed = alarms.watch(self.alerts, self.settings,
-                                            Silence(heading, position, plots), self.now)
+                                            Silence(heading, position, (plots,)), self.now)
         return self.told(changed)
 
     def acknowledge(self, **which):
@@ -420,3 +420,14 @@ def test_whatever_happens_every_change_follows_from_the_state_before(situate, se
         differences = {key for key in {*before, *after} if before.get(key) != after.get(key)}
         assert len(told) == len(differences), (kept, one.alerts)
         before = after
+
+
+def test_plots_missing_of_two_radars_are_two_alerts_that_name_them(bridge):
+    here = bridge()
+    here.alerts, changed = alarms.watch(here.alerts, here.settings,
+                                        Silence(0.0, 0.0, (0.0, 20.0)), 100.0)
+    assert text(changed, zones.parse(''), ['X band', 'S band']) == [
+        'no plots of radar S band for 20 s']
+    here.alerts, changed = alarms.watch(here.alerts, here.settings,
+                                        Silence(0.0, 0.0, (20.0, 30.0)), 110.0)
+    assert parts(changed, zones.parse(''), ['X band', 'S band']) == ['X band']

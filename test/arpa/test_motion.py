@@ -309,7 +309,7 @@ def test_a_track_without_any_plot_is_unknown_until_it_has_one(polars):
 def test_what_is_handed_in_stays_as_it_was(polars):
     memory = fed(polars[:20])
     plots = plots_of(polars[20], 20 * PERIOD)
-    frozen = [a for part in (memory, memory.scatter, memory.legs, plots) for a in part
+    frozen = [a for part in (memory, *memory.scatter, memory.legs, plots) for a in part
               if isinstance(a, np.ndarray)]
     for array in frozen:
         array.flags.writeable = False

@@ -162,3 +162,9 @@ def test_the_hf_radars_ships_are_held_with_the_shipped_parameters(tmp_path):
     truth = loaded.truth_at(59.5 * 60)
     apart = np.linalg.norm(place[:, None] - truth.position, axis=-1)
     assert (apart.min(0) < 6000).all()
+
+
+def test_two_sources_of_one_scene_are_fused(tmp_path, capsys):
+    out = tmp_path / 'tracks.csv'
+    assert cli.main(['replay', 'two_radars_x', 'two_radars_s', '--out', str(out)]) == 0
+    assert capsys.readouterr().out.startswith('660 scans, ')    # 360 and 300

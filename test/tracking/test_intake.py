@@ -181,3 +181,44 @@ def test_a_bad_radial_speed_is_forgotten_and_counted_but_its_plot_stays():
     np.testing.assert_array_equal(kept.radial_speed, [5.0, np.nan, np.nan, np.nan])
     assert counts == {intake.BAD_RANGE: 1, intake.SPEED_NOT_FINITE: 2, intake.SPEED_TOO_HIGH: 1}
     assert set(counts) <= set(intake.PLOT_REASONS)
+
+
+def beside(*scans):
+    """What becomes of scans that start at the times, beside a radar heard at 1000 s."""
+    order, out = intake.TimeOrder(), []
+    for start in scans:
+        order, taken, reason = intake.admit_scan(order, start, 2.5, [intake.TimeOrder(1000.0)])
+        out.append((taken, reason))
+    return order, out
+
+
+def test_a_scan_older_than_another_radars_last_is_not_going_back():
+    _, out = beside(997.0, 999.5)
+    assert out == [(True, ''), (True, '')]
+
+
+def test_a_radar_that_was_silent_for_long_returns_in_the_others_time():
+    """Without another radar it would be taken to follow its last scan by one revolution."""
+    order, _ = beside(995.0, 997.5)
+    later = intake.TimeOrder(1600.0)
+    order, taken, reason = intake.admit_scan(order, 1601.0, 2.5, [later])
+    assert (taken, reason, order.shift) == (True, '', 0.0)
+
+
+def test_a_radar_whose_clock_is_another_is_never_taken():
+    _, out = beside(5000.0, 5002.5, 5005.0, 5007.5)
+    assert out == [(False, intake.CLOCKS_DIFFER)] * 4
+
+
+def test_a_clock_that_was_set_for_one_radar_is_set_for_the_other():
+    order, _ = beside(995.0, 997.5)
+    moved = intake.TimeOrder(4000.0, shift=-2999.0)         # 1001 s of the tracker's time
+    order, taken, reason = intake.admit_scan(order, 4001.5, 2.5, [moved])
+    assert (taken, reason, order.shift) == (True, intake.REBASED, -2999.0)
+    order, taken, reason = intake.admit_scan(order, 4004.0, 2.5, [moved])
+    assert (taken, reason) == (True, '')
+
+
+def test_a_repeated_scan_is_not_taken_for_all_that_others_say():
+    _, out = beside(999.0, 999.0)
+    assert out == [(True, ''), (False, intake.REPEATED)]

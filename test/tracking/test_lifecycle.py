@@ -14,7 +14,7 @@ from marine_tracker.tracking.lifecycle import (
     OUT_OF_RANGE,
     TENTATIVE,
 )
-from marine_tracker.types import Tracks
+from marine_tracker.types import Tracks, take
 
 PERIOD = 60 / 22
 
@@ -211,7 +211,7 @@ def test_tracks_are_judged_each_for_itself():
     facts = (many.history & 1 == 1, rng.random(count) < 0.1, rng.uniform(0, 6, count))
     found = lifecycle.judge(many, p, *facts, 0.0)
     for row in range(count):
-        one = Tracks(*(np.asarray(column)[row:row + 1] for column in many))
+        one = take(many, np.array([row]))
         alone = lifecycle.judge(one, p, *(fact[row:row + 1] for fact in facts), 0.0)
         assert (alone[0][0], alone[1][0]) == (found[0][row], found[1][row])
     assert set(found[0]) == {TENTATIVE, CONFIRMED, COASTING, LOST}

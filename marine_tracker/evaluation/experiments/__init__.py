@@ -5,9 +5,18 @@ It may have OPTIONS, {name: how argparse is to read --name}: its `run` takes the
 
 from types import ModuleType
 
-from . import alpha_beta, gwnn, gwnn_monte_carlo, gwnn_paper, marine_table, rough_nn, wavelet
+from . import (
+    alpha_beta,
+    gwnn,
+    gwnn_monte_carlo,
+    gwnn_paper,
+    marine_table,
+    rough_nn,
+    two_radars,
+    wavelet,
+)
 
 EXPERIMENTS: dict[str, ModuleType] = {
     'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo,
     'marine_table': marine_table, 'rough_nn': rough_nn, 'wavelet': wavelet,
-    'alpha_beta': alpha_beta}
+    'alpha_beta': alpha_beta, 'two_radars': two_radars}

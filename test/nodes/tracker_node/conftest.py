@@ -111,7 +111,7 @@ class Rig:
 
     def told(self, reason):
         """How often the tracker has counted this."""
-        return (self.tracker.bad_input.counts + self.tracker.bad_own_ship.counts)[reason]
+        return (self.tracker.inputs[0].bad.counts + self.tracker.bad_own_ship.counts)[reason]
 
     def rows(self):
         """The last targets as dicts by name, with `status` and `level`."""

@@ -9,7 +9,7 @@ pytest.importorskip('rclpy')
 from sensor_msgs.msg import PointField
 
 from marine_tracker.nodes import convert
-from marine_tracker.nodes.tracker_node import MISSED, NO_DOPPLER
+from marine_tracker.nodes.radar_input import MISSED, NO_DOPPLER
 from marine_tracker.tracking import intake
 from marine_tracker.types import PolarPlots, append
 
@@ -49,7 +49,7 @@ def test_scans_out_of_time_are_counted_and_the_tracks_live_on(rig, clean):
         here.wait(lambda reason=reason: here.told(reason) == 1)
     here.play(scans[8:10])
     assert len(before) == 6 and here.names() == before
-    assert here.tracker._taken == 10
+    assert here.tracker.inputs[0].taken == 10
 
 
 def test_missed_revolutions_are_counted(rig, clean):
@@ -97,7 +97,7 @@ def test_random_bytes_do_not_stop_the_node(rig, clean):
     here = rig()
     here.play(clean[0][:8])
     before = here.names()
-    counts = here.tracker.bad_input.counts
+    counts = here.tracker.inputs[0].bad.counts
     for _ in range(150):
         message = convert.plots_to_cloud(clean[0][8], here.stamp(clean[0][7].start))
         message.data = array.array('B', rng.bytes(
@@ -160,7 +160,7 @@ def test_bad_radial_speeds_are_counted_and_their_plots_kept(rig, clean, speed, r
     here.play(clean[0][:3])
     here.play([with_speeds(clean[0][3], speed)])
     assert here.told(reason) == 1
-    assert here.tracker._plots_in_scan == len(clean[0][3].plots.time)
+    assert here.tracker.inputs[0]._plots_in_scan == len(clean[0][3].plots.time)
     assert not here.tracker.failures.counts
 
 

@@ -10,7 +10,7 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import PointCloud2
 
 from marine_tracker.nodes import convert, topics
-from marine_tracker.nodes.tracker_node import MISSED
+from marine_tracker.nodes.radar_input import MISSED
 from marine_tracker.tracking import intake
 
 
@@ -69,5 +69,5 @@ def test_a_radar_that_publishes_best_effort_is_heard(rig, clean, graph):
         k = next(scans)
         driver.publish(convert.plots_to_cloud(
             clean[0][0], here.stamp(clean[0][0].start + 0.02 * k)))
-        return here.tracker._taken > 0
+        return here.tracker.inputs[0].taken > 0
     here.wait(heard)

@@ -26,7 +26,7 @@ def test_tracks_live_through_a_clock_that_was_set(rig, clean, jump_s):
     here.play(scans[12:20])
     assert len(before) == 6 and here.names() == before
     assert [entry.message for entry in here.targets[-1].status] == ['TRACKING'] * 6
-    assert here.told(intake.REBASED) == 1 and here.tracker._taken == 18
+    assert here.told(intake.REBASED) == 1 and here.tracker.inputs[0].taken == 18
     stamp = convert.nanoseconds(here.targets[-1].header.stamp)
     assert stamp == pytest.approx(here.stamp(scans[19].end), abs=2e6)
 
