@@ -24,7 +24,7 @@ demo: $(INSTALLED)
 	@exec $(BIN)/python .ci/foreground.py $(BIN)/marine_tracker demo $(ARGS)
 
 test: $(INSTALLED)
-	$(BIN)/python -m pytest $(ARGS)
+	$(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile $(ARGS)
 
 check: $(TOOLS)
 	$(BIN)/ruff check
@@ -35,11 +35,11 @@ slow: $(INSTALLED)
 	$(BIN)/python -m pytest -m slow $(ARGS)
 
 $(INSTALLED): $(DESCRIPTION)
-	@.ci/setup ros,test,plot,bench
+	@.ci/setup ros,test,parallel,plot,bench
 	@touch $@
 
 $(TOOLS): $(INSTALLED)
-	@.ci/setup ros,test,plot,bench,dev
+	@.ci/setup ros,test,parallel,plot,bench,dev
 	@touch $@
 
 clean:

@@ -50,6 +50,7 @@ setup(
             'ros-jazzy-domain-coordinator',
             'setuptools>=64',
         ],
+        'parallel': ['pytest-xdist>=3.3'],
         'bench': ['stonesoup>=1.4'],
         'plot': ['matplotlib>=3.6'],
         'dev': ['mypy>=1.8', 'pre-commit>=3.0', 'ruff>=0.4', 'types-PyYAML'],
