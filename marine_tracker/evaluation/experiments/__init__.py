@@ -5,8 +5,8 @@ It may have OPTIONS, {name: how argparse is to read --name}: its `run` takes the
 
 from types import ModuleType
 
-from . import gwnn, gwnn_monte_carlo, gwnn_paper, marine_table, two_radars
+from . import compare, gwnn, gwnn_monte_carlo, gwnn_paper, marine_table, two_radars
 
 EXPERIMENTS: dict[str, ModuleType] = {
     'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo,
-    'marine_table': marine_table, 'two_radars': two_radars}
+    'marine_table': marine_table, 'two_radars': two_radars, 'compare': compare}
