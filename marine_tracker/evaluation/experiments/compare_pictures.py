@@ -49,8 +49,8 @@ def paint(figure, found, scenes) -> None:
         panels[0].plot([], [], mark, color=colour, linestyle='', label=name)
     panels[0].plot([], [], color='0.35', linewidth=1, label=BESIDE)
     figure.legend(loc='outside upper left', ncols=len(found), frameon=False, fontsize=9,
-                  title=f'Left of 1 is better; at the right edge: {MOST:g} or more; hollow: holds its '
-                  'targets for less of the time',
+                  title=f'Left of 1 is better; at the right edge: {MOST:g} or more; hollow: holds '
+                        'its targets for less of the time',
                   alignment='left', columnspacing=1.0, handletextpad=0.2)
 
 
