@@ -46,7 +46,7 @@ class Summary(NamedTuple):
 
 def add_arguments(parser) -> None:
     """The command line of `replay`."""
-    parser.add_argument('sources', metavar='SOURCE', nargs='+',
+    parser.add_argument('source', metavar='SOURCE', nargs='+',
                         help='folder of a recording, name of a shipped scenario, or scenario file; '
                              'several of one scene, each by a radar of its own, are fused')
     parser.add_argument('--out', metavar='TRACKS.csv', required=True,
@@ -60,7 +60,7 @@ def run(args) -> int:
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
     keep_freed_memory()
-    source = fuse(args.sources, args.seed)
+    source = fuse(args.source, args.seed)
     tracker = Tracker(tracker_options.parameters(args, source.tracker_parameters))
     scans = _with_progress(source.scans, source.total)
     if args.out == '-':

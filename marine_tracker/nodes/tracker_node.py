@@ -138,6 +138,8 @@ class TrackerNode(RunnableNode):
         """Live parameters were changed: another tracker takes the tracks over."""
         self._memory = tracker.adopt(self._memory, self._tracker)
         self._tracker = tracker
+        for heard, radar in zip(self.inputs, radars_of(tracker.parameters), strict=True):
+            heard.radar = radar
         self._desk.change(self._desk.arpa.parameters, tracker.parameters)
         self.get_logger().info(f'parameters changed; estimator {tracker.parameters.estimator}')
 

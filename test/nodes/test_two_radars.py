@@ -6,6 +6,7 @@ import pytest
 pytest.importorskip('rclpy')
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
+from rclpy.parameter import Parameter
 from sensor_msgs.msg import PointCloud2
 
 from marine_tracker.nodes import convert, topics
@@ -108,6 +109,16 @@ def test_diagnostics_tell_of_each_radar_by_its_name(bridge):
               == 'plots come in')
     assert statuses(here.diagnostics)['tracker: input radar_s'].message == (
         'no plots yet on radar_s/radar/plots')
+
+
+def test_a_parameter_that_no_radar_has_of_its_own_changes_for_both(bridge):
+    here = bridge()
+    answer, = here.tracker.set_parameters([Parameter('max_plots', value=5)])
+    assert answer.successful
+    here.play(merged(*scans_of(10)))
+    for heard in here.tracker.inputs:
+        assert heard.bad.counts['plots over max_plots'] > 0
+        assert heard.radar.parameters.range_sigma_m != 15.0         # its own stays
 
 
 def test_a_radar_whose_clock_differs_is_told_of_and_does_not_move_the_tracks(bridge):

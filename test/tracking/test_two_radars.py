@@ -86,7 +86,7 @@ def test_two_plots_of_one_time_are_their_weighted_mean(name):
 
 def test_the_track_knows_all_plots_in_the_order_of_their_times(fleet):
     """After a run of both radars the states are those of the tracks' plots sorted by time."""
-    tracker = Tracker(parameters(estimator='imm'))
+    tracker = Tracker(parameters(estimator='imm', glint_sigma_m=0.0))
     memory, taken = tracker.start(), {}
     late = 0
     for scan in merged(*fleet(60)):

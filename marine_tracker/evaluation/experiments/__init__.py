@@ -7,6 +7,7 @@ from types import ModuleType
 
 from . import (
     alpha_beta,
+    compare,
     gwnn,
     gwnn_monte_carlo,
     gwnn_paper,
@@ -19,4 +20,4 @@ from . import (
 EXPERIMENTS: dict[str, ModuleType] = {
     'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo,
     'marine_table': marine_table, 'rough_nn': rough_nn, 'wavelet': wavelet,
-    'alpha_beta': alpha_beta, 'two_radars': two_radars}
+    'alpha_beta': alpha_beta, 'two_radars': two_radars, 'compare': compare}
