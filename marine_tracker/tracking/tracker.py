@@ -109,7 +109,7 @@ class Tracker:
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
                                          p.range_sigma_m, self.bearing_sigma, self.gate_size)
-        if plots.radial_speed is not None:
+        if p.doppler_gate and plots.radial_speed is not None:
             fit = doppler.agree(track, plot, ahead, lone, plots, p.radial_speed_sigma_mps,
                                 p.max_target_speed_mps, self.speed_gate)
             track, plot, nis, log_det = track[fit], plot[fit], nis[fit], log_det[fit]
