@@ -111,9 +111,6 @@ class TrackerParameters:
     radial_speed_sigma_mps: float = parameter(
         0.5, 'Standard deviation of a measured radial speed, where the radar tells one (Doppler).',
         unit='m/s', low=0.01, high=10.0, live=True)
-    doppler_gate: bool = parameter(
-        True, 'Whether a plot must have the radial speed over ground that its track expects, where '
-        'the radar tells it.', live=True)
     glint_sigma_m: float = parameter(
         0.0, 'Standard deviation of the point of a target that echoes, about its middle, along '
         'each axis: some 0.15 of the length of large ships.', unit='m', low=0.0, high=100.0,
@@ -133,6 +130,9 @@ class TrackerParameters:
     gate_probability: float = parameter(
         0.995, 'Probability that the gate holds the plot of a track.', low=0.5, high=0.999999,
         live=True)
+    doppler_gate: bool = parameter(
+        True, 'Whether a plot must have the radial speed over ground that its track expects, where '
+        'the radar tells it.', live=True)
     detection_probability: float = parameter(
         0.85, 'Probability that a target gives a plot, as the track score assumes it.', low=0.1,
         high=0.99, live=True)

@@ -76,7 +76,8 @@ class Tracker:
         self.bearing_sigma = float(np.radians(parameters.bearing_sigma_deg))
         self.glint = parameters.glint_sigma_m ** 2 * np.eye(2)
         self.gate_size = gate_size(parameters.gate_probability)
-        self.speed_gate = float(ndtri(0.5 + 0.5 * parameters.gate_probability))
+        self.speed_gate = (float(ndtri(0.5 + 0.5 * parameters.gate_probability))
+                           if parameters.doppler_gate else np.inf)
 
     def start(self) -> Memory:
         """No tracks yet."""
@@ -109,7 +110,7 @@ class Tracker:
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
                                          p.range_sigma_m, self.bearing_sigma, self.gate_size)
-        if p.doppler_gate and plots.radial_speed is not None:
+        if plots.radial_speed is not None:
             fit = doppler.agree(track, plot, ahead, lone, plots, p.radial_speed_sigma_mps,
                                 p.max_target_speed_mps, self.speed_gate)
             track, plot, nis, log_det = track[fit], plot[fit], nis[fit], log_det[fit]
