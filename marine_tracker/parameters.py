@@ -137,6 +137,9 @@ class TrackerParameters:
     gate_probability: float = parameter(
         0.995, 'Probability that the gate holds the plot of a track.', low=0.5, high=0.999999,
         live=True)
+    doppler_gate: bool = parameter(
+        True, 'Whether a plot must have the radial speed over ground that its track expects, where '
+        'the radar tells it.', live=True)
     detection_probability: float = parameter(
         0.85, 'Probability that a target gives a plot, as the track score assumes it.', low=0.1,
         high=0.99, live=True)

@@ -71,7 +71,7 @@ def run(args) -> int:
     print(f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '
           f'{summary.cpu_ms:.2f} ms CPU a scan', file=sys.stderr if args.out == '-' else sys.stdout)
     if tracker.parameters.estimator in WANT_DOPPLER and not summary.doppler:
-        print(f'warning: {args.source} tells no radial speeds, which '
+        print('warning: the plots tell no radial speeds, which '
               f'{tracker.parameters.estimator} wants', file=sys.stderr)
     return 0
 

@@ -33,7 +33,7 @@ def add_arguments(parser) -> None:
     parser.add_argument('--ais', metavar='FILE', type=Path,
                         help='score against the AIS reports in this CSV file: columns '
                              + ', '.join(ais.COLUMNS))
-    parser.add_argument('--ais-start-s', type=float, metavar='S', default=None,
+    parser.add_argument('--ais-start-s', type=float, metavar='S',
                         help="the AIS file's time at the recording's time 0 (default: notes.json, "
                              'else 0)')
     parser.add_argument('--ais-max-gap-s', type=float, metavar='S', default=ais_score.MAX_GAP,
@@ -74,19 +74,11 @@ def run(args) -> int:
 
 
 def _against_ais(args, recording) -> int:
-    notes = recording.notes
-    origin = args.origin_deg or notes.get('origin')
-    if origin is None:
-        raise ValueError(f'recording {recording.name} does not tell where on Earth it is: give '
-                         '--origin-deg, or `origin` in notes.json')
-    cutoff, start = ((notes.get(name, default) if given is None else given)
-                     for name, given, default in (('cutoff_m', args.cutoff, metrics.CUTOFF),
-                                                  ('ais_start_s', args.ais_start_s, 0.0)))
-    found = ais_score.score(recording, [track_file.read(file) for file in args.tracks], args.ais,
-                            (float(origin[0]), float(origin[1])), float(start), float(cutoff),
-                            args.ais_max_gap_s)
+    found = ais_score.score(
+        recording, [track_file.read(file) for file in args.tracks], args.ais, args.origin_deg,
+        args.ais_start_s, args.cutoff, args.ais_max_gap_s)
     figures = [report.Figure(name, value, ais_score.FIGURES[name][0], against='AIS')
                for name, value in found.items()]
     what = args.tracks[0] if len(args.tracks) == 1 else f'{len(args.tracks)} track files'
     return report.publish(f'{what} on {recording.name}', figures, args.json, {
-        'recording': recording.name, 'ais': str(args.ais), 'cutoff_m': float(cutoff)})
+        'recording': recording.name, 'ais': str(args.ais)})

@@ -27,7 +27,7 @@ from ..recording.track_file import TrackRows
 from ..simulation import ais, motion
 from ..types import Array
 from .gospa import assign_sticky
-from .metrics import Live, live_rows
+from .metrics import CUTOFF, Live, chosen, live_rows
 from .recorded_truth import by_scan
 
 MAX_GAP = 120.0             # s
@@ -87,20 +87,23 @@ class _Run(NamedTuple):
 
 
 def score(recording: Recording, runs: Sequence[TrackRows], ais_file: Path,
-          origin: tuple[float, float], start: float = 0.0, cutoff: float = 100.0,
-          max_gap: float = MAX_GAP) -> dict[str, float | int | None]:
+          origin: Sequence[float] | None = None, start: float | None = None,
+          cutoff: float | None = None, max_gap: float = MAX_GAP) -> dict[str, float | int | None]:
     """The figures of FIGURES, None where there was nothing to take one from.
 
     runs    track files of the same scans
-    origin  latitude and longitude in degrees of the recording's [0, 0]
-    start   s, the AIS file's time at the recording's time 0
-    cutoff  m, a track farther from a vessel is not on it
-    ValueError for an AIS file that is wrong or has no vessel at that time.
+    origin  latitude and longitude in degrees of the recording's [0, 0]; default the notes' origin
+    start   s, the AIS file's time at the recording's time 0; default the notes' ais_start_s, else 0
+    cutoff  m, a track farther from a vessel is not on it; default the notes' cutoff_m, else 100
+    max_gap s, between reports farther apart a vessel is not known
+    ValueError for what is no finite number, for a recording that does not tell where it is, and for
+    an AIS file that is wrong or has no vessel at that time.
     """
-    for name, value in (('cutoff', cutoff), ('max_gap', max_gap)):
-        if not 0 < value < np.inf:
-            raise ValueError(f'{name} is {value:g}; it must be above 0')
-    fleet = _fleet(recording, ais_file, origin, start, max_gap)
+    cutoff = chosen(recording, 'cutoff_m', cutoff, CUTOFF, above=0.0)
+    start = chosen(recording, 'ais_start_s', start, 0.0)
+    if not 0 < max_gap < np.inf:
+        raise ValueError(f'max_gap is {max_gap:g} s; it must be above 0 and finite')
+    fleet = _fleet(recording, ais_file, _origin(recording, origin), start, max_gap)
     in_view = _in_view(recording, fleet)
     done = [_pair(recording, live_rows(recording, rows), fleet, in_view, cutoff) for rows in runs]
     long = in_view.sum(0) >= LEAST_SCANS
@@ -112,6 +115,18 @@ def score(recording: Recording, runs: Sequence[TrackRows], ais_file: Path,
         'held': _mean(np.concatenate(of_long)), 'lost_percent': _mean(100.0 * np.array(lost)),
         **_errors(recording, done, fleet), **_lengths(done)}
     return {name: figures[name] for name in FIGURES}
+
+
+def _origin(recording: Recording, given: Sequence[float] | None) -> tuple[float, float]:
+    origin = recording.notes.get('origin') if given is None else given
+    if origin is None:
+        raise ValueError(f'recording {recording.name} does not tell where on Earth it is: give '
+                         'its origin, here or in notes.json')
+    if not (isinstance(origin, (list, tuple)) and len(origin) == 2 and all(
+            type(degrees) in (int, float) and abs(degrees) <= most
+            for degrees, most in zip(origin, (85, 180)))):
+        raise ValueError(f'origin is {origin}; it must be latitude and longitude in degrees')
+    return float(origin[0]), float(origin[1])
 
 
 def _fleet(recording, file, origin, start, max_gap) -> _Fleet:

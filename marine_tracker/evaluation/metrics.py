@@ -106,10 +106,10 @@ def score(recording: Recording, tracks: TrackRows, cutoff: float | None = None,
     ValueError for a recording without truth, for a distance that is not above 0, and for what is
     no finite number.
     """
-    cutoff = _chosen(recording, 'cutoff_m', cutoff, CUTOFF, above=0.0)
-    within = _chosen(recording, 'seen_within_m', None, SEEN_WITHIN, above=0.0)
-    truth = as_plotted(recording, _chosen(recording, 'azimuth_bias_deg', bias_deg, 0.0),
-                       _chosen(recording, 'plot_lag_s', lag, 0.0))
+    cutoff = chosen(recording, 'cutoff_m', cutoff, CUTOFF, above=0.0)
+    within = chosen(recording, 'seen_within_m', None, SEEN_WITHIN, above=0.0)
+    truth = as_plotted(recording, chosen(recording, 'azimuth_bias_deg', bias_deg, 0.0),
+                       chosen(recording, 'plot_lag_s', lag, 0.0))
     if not len(truth.time):
         raise ValueError(f'recording {recording.name} has no truth to score against')
     seen, plotted = seen_by_radar(recording, truth, within)
@@ -151,7 +151,7 @@ def score(recording: Recording, tracks: TrackRows, cutoff: float | None = None,
                  bool(recording.notes.get('uncooperative', True)))
 
 
-def _chosen(recording: Recording, name: str, given: float | None, default: float,
+def chosen(recording: Recording, name: str, given: float | None, default: float,
             above: float = -np.inf) -> float:
     """What was given, else what the recording's notes say, else the default."""
     value = recording.notes.get(name, default) if given is None else given

@@ -91,7 +91,8 @@ class Tracker:
         self.updates = held_updates(radars_of(parameters))
         self.glint = parameters.glint_sigma ** 2 * np.eye(2)
         self.gate_size = gate_size(parameters.gate_probability)
-        self.speed_gate = float(ndtri(0.5 + 0.5 * parameters.gate_probability))
+        self.speed_gate = (float(ndtri(0.5 + 0.5 * parameters.gate_probability))
+                           if parameters.doppler_gate else np.inf)
 
     def start(self) -> Memory:
         """No tracks yet."""

@@ -145,7 +145,7 @@ def test_a_recording_knows_how_many_scans_it_has(folder):
 
 def test_an_estimator_that_wants_doppler_warns_where_there_is_none(folder, capsys):
     replay(folder / 'out.csv', folder, '--estimator', 'alpha_beta')
-    assert 'tells no radial speeds, which alpha_beta wants' in capsys.readouterr().err
+    assert 'the plots tell no radial speeds, which alpha_beta wants' in capsys.readouterr().err
     (folder / 'plots.csv').write_text('scan,time_s,range_m,bearing_deg,radial_speed_mps\n'
                                       '0,0,100,0,5\n')
     replay(folder / 'out.csv', folder, '--estimator', 'alpha_beta')

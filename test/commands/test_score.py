@@ -105,7 +105,8 @@ def test_what_ais_lacks_is_a_one_line_error(capsys, folder, ais):
             ([tracks, tracks], '2 track files are given; without --ais it must be one'),
             ([tracks, '--ais', 'none.csv', '--origin-deg', '55', '7'], 'none.csv cannot be read'),
             ([tracks, '--ais', str(ais), '--origin-deg', '55', '7', '--cutoff', '-1'],
-             'cutoff is -1; it must be above 0')):
+             'cutoff_m is -1.0; it must be a number, above 0'),
+            ([tracks, '--ais', str(ais), '--origin-deg', '95', '7'], 'origin is [95.0, 7.0]')):
         assert cli.main(['score', str(folder), *arguments]) == 2
         err = capsys.readouterr().err
         assert message in err and err.count('\n') == 1

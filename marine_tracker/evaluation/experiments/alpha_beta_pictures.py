@@ -16,7 +16,7 @@ PERCENT, KM, KMH, DEG = 100, 1e3, 1 / 3.6, np.radians(1)
 
 def pictures(on: Scene, outcomes: dict[str, Outcome]) -> list[Picture]:
     """The tracks of the first run, and the crossing ship over time in all runs."""
-    return [Picture('alpha_beta_tracks', (10, 7.2), partial(tracks, on=on, outcomes=outcomes)),
+    return [Picture('alpha_beta_tracks', (10, 6.3), partial(tracks, on=on, outcomes=outcomes)),
             Picture('alpha_beta_errors', (11, 6), partial(errors, on=on, outcomes=outcomes))]
 
 
@@ -36,9 +36,10 @@ def tracks(figure, on: Scene, outcomes: dict[str, Outcome]) -> None:
                           markeredgewidth=2)
             axes.annotate(f'{ship + 1}', way[0, ship], xytext=(5, 5), textcoords='offset points',
                           fontsize=9, color='0.35')
-        axes.set_title(f'{name}: {100 * outcomes[name].lost[-1, :, CROSSING].mean():.0f} % lose '
-                       'ship 5', fontsize=10)
+        lost = PERCENT * outcomes[name].lost[-1, :, CROSSING].mean()
+        axes.set_title(f'{name}: ship 5 lost in {lost:.0f} % of the runs', fontsize=10)
         axes.set_aspect('equal')
+        axes.margins(0.1)
         axes.grid(color='0.93')
     for axes in panels[:, 0]:
         axes.set_ylabel('north of the station, km')

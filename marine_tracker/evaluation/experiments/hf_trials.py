@@ -13,9 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ... import config
 from ...estimators.contract import Estimator
 from ...estimators.polar_motion import to_polar
 from ...geometry import polar_to_position, wrap_angle
+from ...parameters import read_yaml_mapping
 from ...simulation import scenario
 from ...types import Array, Plots, take
 
@@ -57,9 +59,15 @@ class Outcome(NamedTuple):
     place: Array
 
 
-def scene(name: str = 'hf_radar') -> Scene:
-    """The scenario as the station sees it, a scan at a time, all ships at once."""
-    loaded = scenario.load(name)
+def scene(crossing_speed: float | None = None) -> Scene:
+    """The scenario as the station sees it, a scan at a time, all ships at once.
+
+    crossing_speed  m/s, of the fifth ship; by default the scenario's
+    """
+    values = read_yaml_mapping(config.path('scenarios', 'hf_radar.yaml'))
+    if crossing_speed is not None:
+        values['targets'][CROSSING]['speed_mps'] = crossing_speed
+    loaded = scenario.build(values, 'hf_radar')
     time = loaded.radar.scan_period * np.arange(loaded.scans, dtype=float)
     truths = [loaded.truth_at(at) for at in time]
     truth = np.stack([to_polar(np.concatenate([t.position, t.velocity], 1),
