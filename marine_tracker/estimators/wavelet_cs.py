@@ -25,7 +25,7 @@ from ..types import Array, Extrapolation, put, take
 from . import cs_kalman
 from .contract import Estimator
 from .cs_kalman import POSITION, SHOWN, CsState, Manoeuvre, acceleration_variance
-from .linear import invert_2x2, kalman_update, sandwich
+from .linear import invert_2x2, kalman_update, sandwich, squared_distance
 from .wavelet_block import SIZE, coarse
 
 # The first block of each chain is all resolutions, a plain Kalman filter: the velocity of a new
@@ -38,6 +38,9 @@ SHARE = coarse('haar', 2)[0] ** 2       # each plot's part in the mean of the bl
 # Limits of the paper's gains: of velocity times tau, and of acceleration times tau^2, which falls
 # with alpha tau.
 VELOCITY_GAIN, ACCELERATION_GAIN, FALL = 0.5593, 0.1559, 0.83
+# Squared distance of an innovation that says that the limit cannot follow, which it is slow to do
+# where plots are missed: one in ten is larger where all is well.
+SURPRISE = 4.6
 
 # The acceleration allowed for says how uncertain a track is more than where it is: agile craft
 # are followed no better with more (six recordings), and their gates grow.
@@ -183,8 +186,10 @@ def _block(state, plots, manoeuvre):
     toward = both[..., 3, :3].reshape(rows, 2, 6)       # C cov(m, x)
     expected = both[..., 3, 3] + np.matmul(
         (weight ** 2)[:, None], noise.reshape(rows, SIZE, 4)).reshape(rows, 2, 2)
-    gain = np.matmul(both[..., 3, 3], invert_2x2(expected)[0])      # of the position
-    shape = _shape(frequency, plots.time - state.time[:, 0], both[..., 3, 3:])
+    inverse, _ = invert_2x2(expected)
+    gain = np.matmul(both[..., 3, 3], inverse)          # of the position
+    behind = squared_distance(innovation, inverse) > SURPRISE
+    shape = _shape(frequency, plots.time - state.time[:, 0], both[..., 3, 3:], behind)
     gain = (gain[:, :, None] * shape[:, None, :, None]).reshape(rows, 6, 2)
     mean = x.reshape(rows, 6) + np.matmul(gain, innovation[..., None])[..., 0]
     cross = np.matmul(gain, toward)
@@ -192,19 +197,19 @@ def _block(state, plots, manoeuvre):
     return mean, 0.5 * (covariance + covariance.swapaxes(1, 2)), told
 
 
-def _shape(frequency, tau, own):
+def _shape(frequency, tau, own, behind):
     """Gains [N, 3] of position, velocity and acceleration over that of the position.
 
-    The paper's limit for blocks of tau [N] s, but never more than the Kalman filter's: those over
-    short times, and where little acceleration is allowed for. own [N, 2, 2, 3]: C cov(m, m).
+    The paper's limit for blocks of tau [N] s, but never more than the Kalman filter's, and the
+    Kalman filter's where a track is `behind` [N]. own [N, 2, 2, 3]: C cov(m, m).
     """
     kalman = own[:, 0, 0] + own[:, 1, 1]
     kalman = kalman / kalman[:, :1]
-    after = tau > 0
-    tau = np.where(after, tau, 1.0)
+    limited = (tau > 0) & ~behind
+    tau = np.where(limited, tau, 1.0)
     limit = np.stack([np.ones_like(tau), VELOCITY_GAIN / tau,
                       ACCELERATION_GAIN / (1 + FALL * frequency * tau) / tau ** 2], 1)
-    return np.where(after[:, None], np.minimum(limit, kalman), kalman)
+    return np.where(limited[:, None], np.minimum(limit, kalman), kalman)
 
 
 def _steps(frequency, steps):

@@ -42,9 +42,12 @@ def test_the_first_plots_are_those_of_the_kalman_filter(filter_, plots_at):
         np.testing.assert_array_equal(wavelet_cs.newest(ours).mean, theirs.mean)
 
 
-def test_a_block_is_the_coarse_correction_of_all_four_states(filter_, tracked):
-    """In full matrices of the block, and with the joint error of block and plots."""
+@pytest.mark.parametrize('off', [0.0, 300.0])
+def test_a_block_is_the_coarse_correction_of_all_four_states(filter_, tracked, off):
+    """In full matrices of the block; a track that is far off its plots has the Kalman gain."""
     state, plots = tracked
+    plots = plots._replace(position=plots.position + off)
+    surprised = []
     found = wavelet_cs.newest(filter_.update(state, plots, ALL))
     time = np.concatenate([state.time, plots.time[:, None]], 1)
     block = wavelet_block.predict(state.mean[:, 0], state.covariance[:, 0], np.diff(time),
@@ -60,16 +63,19 @@ def test_a_block_is_the_coarse_correction_of_all_four_states(filter_, tracked):
         position = own[::3, ::3] @ np.linalg.inv(own[::3, ::3] + spread)
         tau = time[i, 4] - time[i, 0]
         kalman = (own[1, 0] + own[4, 3], own[2, 0] + own[5, 3]) / (own[0, 0] + own[3, 3])
-        shape = np.array([1, min(0.5593 / tau, kalman[0]),
-                          min(0.1559 / (1 + 0.83 * tau / 60) / tau ** 2, kalman[1])])
-        gain = np.concatenate([np.outer(shape, row) for row in position])
         innovation = weight @ (seen[i] - block.mean[i][:, ::3])
+        surprised.append(innovation @ np.linalg.inv(own[::3, ::3] + spread) @ innovation > 4.6)
+        limit = np.inf if surprised[-1] else 0.5593 / tau
+        shape = np.array([1, min(limit, kalman[0]), min(
+            limit / tau * 0.1559 / 0.5593 / (1 + 0.83 * tau / 60), kalman[1])])
+        gain = np.concatenate([np.outer(shape, row) for row in position])
         np.testing.assert_allclose(found.mean[i], block.mean[i, -1] + gain @ innovation,
                                    rtol=1e-10, atol=1e-9)
         last = np.concatenate([np.zeros((6, 18)), np.eye(6)], 1)
         error = last - gain @ mean_of[::3]
         joseph = error @ block.covariance[i] @ error.T + gain @ spread @ gain.T
         np.testing.assert_allclose(found.covariance[i], joseph, rtol=1e-8, atol=1e-8)
+    assert any(surprised) == (off > 0)
 
 
 @pytest.mark.parametrize(('alpha', 'step'), [(1e-4, 1.0), (1 / 60, PERIOD), (1 / 20, PERIOD)])
@@ -114,29 +120,27 @@ def test_a_plot_that_tells_nothing_pushes_none_out_of_the_block(filter_, tracked
 
 
 def test_turns_are_followed_through_missed_plots_whatever_a_max(plots_at):
-    """200 boats that circle with 0.2 m/s^2, three plots in four seen.
+    """200 boats that turn by 86 deg with 0.2 m/s^2, three plots in four seen.
 
-    With a_max from 0.5 to 3 m/s^2 the velocity stays as good within a tenth, and is better than
-    that of CS-Kalman with 3 m/s^2 by more than a third: 200 tracks tell ratios to 3 %.
+    With a_max from 0.5 to 3 m/s^2 the velocity is as good within a tenth, and errs less than half
+    as much as CS-Kalman's with 3 m/s^2: 200 tracks tell such ratios to 3 %.
     """
     runs, speed, rate = 200, 8.0, 0.025
+    turned = rate * PERIOD * np.clip(np.arange(160) - 60, 0, 22)
+    way = speed * np.stack([np.cos(turned), np.sin(turned)], 1)
+    place = np.array([2000.0, 500.0]) + np.cumsum(PERIOD * way, 0)
 
     def errors(estimator):
         rng, state, off = np.random.default_rng(5), None, []
-        for k in range(150):
-            time = k * PERIOD
-            course = rate * time
-            truth = np.array([2000.0, 500]) + speed / rate * np.array(
-                [np.sin(course), 1 - np.cos(course)])
-            plots = plots_at(np.tile(truth, (runs, 1)), time, rng=rng)
+        for k in range(len(way)):
+            plots = plots_at(np.tile(place[k], (runs, 1)), k * PERIOD, rng=rng)
             rows = np.flatnonzero(rng.random(runs) < 0.75)
             state = (estimator.init(plots) if state is None
                      else estimator.update(state, take(plots, rows), rows))
             if k >= 40:
-                now = estimator.extrapolate(state, plots.time)
-                off.append(now.velocity - speed * np.array([np.cos(course), np.sin(course)]))
+                off.append(estimator.extrapolate(state, plots.time).velocity - way[k])
         return np.sqrt(np.mean(np.square(off)))
     found = [errors(wavelet_cs.wavelet_cs(Manoeuvre(limit, 1 / 60), 25.0))
              for limit in (0.5, 1.0, 3.0)]
     assert max(found) < 1.1 * min(found)
-    assert max(found) < 0.65 * errors(cs_kalman.cs_kalman(Manoeuvre(3.0, 1 / 60), 25.0))
+    assert max(found) < 0.5 * errors(cs_kalman.cs_kalman(Manoeuvre(3.0, 1 / 60), 25.0))
