@@ -47,7 +47,7 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
     figures = equivalence(on, seed) + scenes(errors)
     progress(parts - 1, parts)
     sea, sea_imm = at_sea(runs, seed)
-    figures += sea_figures(sea, sea_imm) + noise_figures(runs, seed)
+    figures += sea_figures(sea, sea_imm) + circles(runs, seed) + noise_figures(runs, seed)
     on = wavelet_study.sea_case(runs, np.random.default_rng(seed))
     literal = wavelet_study.literal(on, wavelet_study.SEA, False, marine_table.PERIOD)
     progress(parts, parts)
@@ -165,6 +165,17 @@ def sea_figures(sea, sea_imm) -> list[report.Figure]:
         report.at_most('sea, a_max 1: position over CS-Kalman', ours / plain, 0.9, '', CS),
         report.at_most('sea, a_max .1: position', sea[CAUSAL, 0.1][0], 25.0, 'm', 'prototype')]
     return figures
+
+
+def circles(runs: int, seed: int) -> list[report.Figure]:
+    """Where it is weak: turning on and on, by how many of the plots are seen."""
+    leg = marine_table.TRACKS['turns']._replace(turning=marine_table.SCANS)
+    ship = cs_kalman.PRESETS['ship']
+    rivals = {CS: cs_kalman.cs_kalman(ship, 30.0), CAUSAL: wavelet_cs.wavelet_cs(ship, 30.0),
+              'imm': imm.imm(imm.PRESETS['ship'], 30.0)}
+    return [report.Figure(f'sea, circles, {100 * seen:g} % of the plots, {name}: position',
+                          marine_table.errors(filter_, leg, runs, seed, seen)[0], 'm')
+            for seen in (1.0, 0.5) for name, filter_ in rivals.items()]
 
 
 def noise_figures(runs: int, seed: int) -> list[report.Figure]:
