@@ -44,7 +44,8 @@ def analysis(wavelet: str, depth: int, size: int = SIZE) -> Array:
         raise ValueError(f'a block of {size} cannot be halved {depth} times')
     if not pywt.Wavelet(wavelet).orthogonal:
         raise ValueError(f'the wavelet {wavelet} is not orthogonal')
-    low, details = np.eye(size), []
+    low = np.eye(size)
+    details: list[Array] = []
     for _ in range(depth):
         low, detail = pywt.dwt(low, wavelet, 'periodization', axis=0)
         details.insert(0, detail)

@@ -6,14 +6,13 @@ the mean of its four innovations, and keeps the predicted details. So the noise 
 moves it little, whatever acceleration the model allows for.
 
 The coarsest row of every periodised orthonormal wavelet is the mean of the block, so the choice of
-the wavelet falls away. Plots of unequal accuracy count in the mean by their accuracy, [1/4 ..]
-where they are alike.
+the wavelet falls away. Plots of unequal accuracy count in the mean by their accuracy.
 
 The gain: taken literally, eq 13 to 15 leave the variance of the details in P, where it grows until
-the gain has one and the same shape for every a_max and plot noise, [1, .56 / tau, .16 / tau^2] for
-a block of tau seconds (the last less by alpha tau). That is what makes the filter insensitive to
-a_max; but P tells three to ten times the error, and after the first plots of a track it is not even
-a covariance. Here the position is corrected by the Kalman gain of the block's mean, velocity and
+the gain has nearly one shape for every a_max and plot noise, [1, .56 / tau, .16 / tau^2] for a
+block of tau seconds (the last less by alpha tau). That is what makes the filter insensitive to
+a_max; but P tells ten times the error at sea, and after the first plots of a track it is not even a
+covariance. Here the position is corrected by the Kalman gain of the block's mean, velocity and
 acceleration in that limiting shape, and the covariance is that of the error (Joseph's form).
 """
 
@@ -25,8 +24,8 @@ from ..types import Array, Extrapolation, put, take
 from . import cs_kalman
 from .contract import Estimator
 from .cs_kalman import POSITION, SHOWN, CsState, Manoeuvre, acceleration_variance
-from .linear import invert_2x2, kalman_update, sandwich
-from .wavelet_block import SIZE, coarse
+from .linear import invert_2x2, kalman_update, sandwich, squared_distance
+from .wavelet_block import SIZE
 
 # The first block of each chain is all resolutions, a plain Kalman filter: the velocity of a new
 # track is in the details.
@@ -34,10 +33,12 @@ WARM_UP = 2 * SIZE - 1
 # A plot this many times vaguer than the track moves it by nothing; it must not push another plot
 # out of the block either.
 FAINT = 1e6
-SHARE = coarse('haar', 2)[0] ** 2       # each plot's part in the mean of the block
 # Limits of the paper's gains: of velocity times tau, and of acceleration times tau^2, which falls
 # with alpha tau.
 VELOCITY_GAIN, ACCELERATION_GAIN, FALL = 0.5593, 0.1559, 0.83
+# Squared distance of an innovation that says that the limit cannot follow, which it is slow to do
+# where plots are missed: one in ten is larger where all is well.
+SURPRISE = 4.6
 
 # The acceleration allowed for says how uncertain a track is more than where it is: agile craft
 # are followed no better with more (six recordings), and their gates grow.
@@ -138,73 +139,81 @@ def _plot(state, plots, manoeuvre):
 
 
 def _block(state, plots, manoeuvre):
-    """The coarsest resolution: the oldest chain, corrected by the mean of four innovations.
-
-    Let m be the block's weighted mean state: [x, m] of the last state and the mean, an axis, is
-    moved from plot to plot by [[F, 0], [w F, 1]]. Both axes share that and the noise, in units of
-    their sigma_a^2, so the work is on matrices of one axis.
-    """
+    """The coarsest resolution: the oldest chain, corrected by the mean of four innovations."""
     rows = len(plots.time)
+    places = np.concatenate([state.position, plots.position[:, None]], 1)
     noise = np.concatenate([state.noise, plots.covariance[:, None]], 1)
-    weight = SHARE / np.trace(noise, axis1=2, axis2=3)
+    weight = 1 / np.trace(noise, axis1=2, axis2=3)
     weight /= weight.sum(1, keepdims=True)
-    frequency, limit = manoeuvre.frequency, manoeuvre.max_acceleration
-    moves, noises, drives = _steps(frequency, np.concatenate(
-        [state.time[:, 1:], plots.time[:, None]], 1) - state.time)
+    mean, expected, both = _predict(state, plots.time, weight, manoeuvre)
+    innovation = (weight[..., None] * (places - expected)).sum(1)
 
+    covariance = both[..., :3, :3].swapaxes(2, 3).reshape(rows, 6, 6)
+    told = _tells(covariance, plots.covariance)
+    toward, own = both[..., 3, :3].reshape(rows, 2, 6), both[..., 3, 3:]    # C cov(m, x), of m
+    spread = own[..., 0] + ((weight ** 2)[..., None, None] * noise).sum(1)
+    inverse, _ = invert_2x2(spread)
+    behind = squared_distance(innovation, inverse) > SURPRISE
+    shape = _shape(manoeuvre.frequency, plots.time - state.time[:, 0], own, behind)
+    gain = np.matmul(own[..., 0], inverse)                                  # of the position
+    gain = (gain[:, :, None] * shape[:, None, :, None]).reshape(rows, 6, 2)
+    mean = mean + np.matmul(gain, innovation[..., None])[..., 0]
+    cross = np.matmul(gain, toward)
+    covariance = covariance - cross - cross.swapaxes(1, 2) + sandwich(gain, spread)
+    return mean, 0.5 * (covariance + covariance.swapaxes(1, 2)), told
+
+
+def _predict(state, time, weight, manoeuvre):
+    """The oldest chain moved through the block that ends at the times [N] s.
+
+    weight [N, 4] of the states in their mean m. Returns the last state x [N, 6], the positions
+    [N, 4, 2] expected of all four and the covariance [N, axis, axis, 6, 6] of [x, m].
+
+    [x, m] of one axis is moved from plot to plot by [[F, 0], [w F, 1]]. Both axes share that and
+    the noise in units of their sigma_a^2: small matrices do.
+    """
+    rows = len(time)
+    limit = manoeuvre.max_acceleration
+    moves, noises, drives = _steps(manoeuvre.frequency, np.diff(
+        np.concatenate([state.time, time[:, None]], 1), axis=1))
     x = state.mean[:, 0].reshape(rows, 2, 3)
     held = np.clip(x[:, :, 2:], -limit, limit)
-    variance = acceleration_variance(x[:, :, 2], limit) * (2 * frequency)
-    places = np.concatenate([state.position, plots.position[:, None]], 1)
-    innovation = np.zeros((rows, 2))
+    variance = 2 * manoeuvre.frequency * acceleration_variance(x[:, :, 2], limit)
+    expected = np.empty((rows, SIZE, 2))
     joint, spread = np.zeros((rows, 6, 3)), np.zeros((rows, 6, 6))
     joint[:, :3] = np.eye(3)
     for j in range(SIZE):
-        w = weight[:, j, None, None]
+        w, q = weight[:, j, None, None], noises[:, j]
         x = np.matmul(x, moves[:, j].swapaxes(1, 2)) + held * drives[:, j, None]
-        innovation += weight[:, j, None] * (places[:, j] - x[:, :, 0])
+        expected[:, j] = x[:, :, 0]
         step = np.zeros((rows, 6, 6))
         step[:, :3, :3], step[:, 3:, :3], step[:, 3:, 3:] = moves[:, j], w * moves[:, j], np.eye(3)
         joint, spread = np.matmul(step, joint), sandwich(step, spread)
-        q = noises[:, j]
         spread[:, :3, :3] += q
         spread[:, :3, 3:] += w * q
         spread[:, 3:, :3] += w * q
         spread[:, 3:, 3:] += w * w * q
-
-    # [x, m] of both axes: cov [N, axis, axis, 6, 6].
     start = state.covariance[:, 0].reshape(rows, 2, 3, 2, 3).swapaxes(2, 3)
     joint = joint[:, None, None]
     both = np.matmul(np.matmul(joint, start), joint.swapaxes(-1, -2))
     for axis in (0, 1):
         both[:, axis, axis] += variance[:, axis, None, None] * spread
-    covariance = both[..., :3, :3].swapaxes(2, 3).reshape(rows, 6, 6)
-    told = _tells(covariance, plots.covariance)
-    toward = both[..., 3, :3].reshape(rows, 2, 6)       # C cov(m, x)
-    expected = both[..., 3, 3] + np.matmul(
-        (weight ** 2)[:, None], noise.reshape(rows, SIZE, 4)).reshape(rows, 2, 2)
-    gain = np.matmul(both[..., 3, 3], invert_2x2(expected)[0])      # of the position
-    shape = _shape(frequency, plots.time - state.time[:, 0], both[..., 3, 3:])
-    gain = (gain[:, :, None] * shape[:, None, :, None]).reshape(rows, 6, 2)
-    mean = x.reshape(rows, 6) + np.matmul(gain, innovation[..., None])[..., 0]
-    cross = np.matmul(gain, toward)
-    covariance = covariance - cross - cross.swapaxes(1, 2) + sandwich(gain, expected)
-    return mean, 0.5 * (covariance + covariance.swapaxes(1, 2)), told
+    return x.reshape(rows, 6), expected, both
 
 
-def _shape(frequency, tau, own):
+def _shape(frequency, tau, own, behind):
     """Gains [N, 3] of position, velocity and acceleration over that of the position.
 
-    The paper's limit for blocks of tau [N] s, but never more than the Kalman filter's: those over
-    short times, and where little acceleration is allowed for. own [N, 2, 2, 3]: C cov(m, m).
+    The paper's limit for blocks of tau [N] s, but never more than the Kalman filter's, and the
+    Kalman filter's where a track is `behind` [N]. own [N, 2, 2, 3]: C cov(m, m).
     """
     kalman = own[:, 0, 0] + own[:, 1, 1]
     kalman = kalman / kalman[:, :1]
-    after = tau > 0
-    tau = np.where(after, tau, 1.0)
+    limited = (tau > 0) & ~behind
+    tau = np.where(limited, tau, 1.0)
     limit = np.stack([np.ones_like(tau), VELOCITY_GAIN / tau,
                       ACCELERATION_GAIN / (1 + FALL * frequency * tau) / tau ** 2], 1)
-    return np.where(after[:, None], np.minimum(limit, kalman), kalman)
+    return np.where(limited[:, None], np.minimum(limit, kalman), kalman)
 
 
 def _steps(frequency, steps):

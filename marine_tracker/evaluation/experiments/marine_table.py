@@ -13,7 +13,7 @@ import numpy as np
 from ...estimators import cs_kalman, imm
 from ...estimators.contract import Estimator
 from ...geometry import polar_to_position, to_range_bearing, unit_vector
-from ...types import Plots
+from ...types import Plots, take
 from .. import report
 from .result import Progress, Result, silent
 
@@ -70,8 +70,11 @@ def truth(leg: Leg):
     return position, leg.speed * unit_vector(course)
 
 
-def errors(estimator: Estimator, leg: Leg, runs: int, seed: int):
-    """RMS position error m and velocity error m/s an axis; every run is a track of one batch."""
+def errors(estimator: Estimator, leg: Leg, runs: int, seed: int, detection: float = 1.0):
+    """RMS position error m and velocity error m/s an axis; every run is a track of one batch.
+
+    detection  probability of each plot after the first
+    """
     rng = np.random.default_rng(seed)
     position, velocity = truth(leg)
     distance, bearing = to_range_bearing(position)
@@ -83,7 +86,9 @@ def errors(estimator: Estimator, leg: Leg, runs: int, seed: int):
         z, covariance = polar_to_position(r, b, RANGE_SIGMA, BEARING_SIGMA)
         time = np.full(runs, k * PERIOD)
         plots = Plots(time, r, b, np.zeros(runs), np.zeros((runs, 2)), z, covariance)
-        state = estimator.init(plots) if state is None else estimator.update(state, plots, every)
+        seen = every if detection == 1 else np.flatnonzero(rng.random(runs) < detection)
+        state = (estimator.init(plots) if state is None
+                 else estimator.update(state, take(plots, seen), seen))
         if k >= SETTLED:
             now = estimator.extrapolate(state, time)
             off.append((now.position - position[k], now.velocity - velocity[k]))

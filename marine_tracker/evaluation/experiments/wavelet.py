@@ -14,7 +14,7 @@ from ...estimators.wavelet_noise import noise_deviation
 from ...types import Array
 from .. import report
 from . import marine_table, wavelet_study
-from .result import IN_PART, NOT_BORNE_OUT, Picture, Progress, Result, silent, verdict
+from .result import IN_PART, NOT_BORNE_OUT, Progress, Result, silent, verdict
 from .wavelet_pictures import pictures
 from .wavelet_study import SETTLED, Case
 
@@ -44,16 +44,16 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
         errors[scene, LOW_PASS] = wavelet_study.literal(on, wavelet_study.MANOEUVRE,
                                                         True).mean - on.truth
     progress(parts - 2, parts)
-    figures = equivalence(on, seed) + scenes(errors)
+    figures = equivalence(on) + scenes(errors)
     progress(parts - 1, parts)
     sea, sea_imm = at_sea(runs, seed)
-    figures += sea_figures(sea, sea_imm) + noise_figures(runs, seed)
+    figures += sea_figures(sea, sea_imm) + circles(runs, seed) + noise_figures(runs, seed)
     on = wavelet_study.sea_case(runs, np.random.default_rng(seed))
     literal = wavelet_study.literal(on, wavelet_study.SEA, False, marine_table.PERIOD)
     progress(parts, parts)
     return Result(figures, [*claims_of_accuracy(errors), *claims_of_equations(
-        errors, literal, block_end(literal.mean - on.truth)), claim_at_sea(sea, sea_imm)], [
-        Picture(name, size, paint) for name, size, paint in pictures(errors, sea, sea_imm)])
+        errors, literal, block_end(literal.mean - on.truth)), claim_at_sea(sea, sea_imm)],
+                  pictures(errors, sea, sea_imm))
 
 
 def filters(on: Case) -> dict[str, Array]:
@@ -83,7 +83,7 @@ def block_end(error) -> float:
     return float(np.sqrt(np.mean(ends[:, SETTLED // SIZE:, POSITION] ** 2)))
 
 
-def equivalence(on: Case, seed: int, runs: int = 5, plots: int = 200) -> list[report.Figure]:
+def equivalence(on: Case, runs: int = 5, plots: int = 200) -> list[report.Figure]:
     """The whole block against filter and smoother; both radars in turn against them fused."""
     part = on._replace(plots=[(z[:runs, :plots], r[:runs, :plots]) for z, r in on.plots],
                        position=on.position[:runs, :plots], noise=on.noise[:runs, :plots],
@@ -165,6 +165,17 @@ def sea_figures(sea, sea_imm) -> list[report.Figure]:
         report.at_most('sea, a_max 1: position over CS-Kalman', ours / plain, 0.9, '', CS),
         report.at_most('sea, a_max .1: position', sea[CAUSAL, 0.1][0], 25.0, 'm', 'prototype')]
     return figures
+
+
+def circles(runs: int, seed: int) -> list[report.Figure]:
+    """Where it is weak: turning on and on, by how many of the plots are seen."""
+    leg = marine_table.TRACKS['turns']._replace(turning=marine_table.SCANS)
+    ship = cs_kalman.PRESETS['ship']
+    rivals = {CS: cs_kalman.cs_kalman(ship, 30.0), CAUSAL: wavelet_cs.wavelet_cs(ship, 30.0),
+              'imm': imm.imm(imm.PRESETS['ship'], 30.0)}
+    return [report.Figure(f'sea, circles, {100 * seen:g} % of the plots, {name}: position',
+                          marine_table.errors(filter_, leg, runs, seed, seen)[0], 'm')
+            for seen in (1.0, 0.5) for name, filter_ in rivals.items()]
 
 
 def noise_figures(runs: int, seed: int) -> list[report.Figure]:

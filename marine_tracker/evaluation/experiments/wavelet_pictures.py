@@ -4,19 +4,20 @@ from functools import partial
 
 import numpy as np
 
+from .result import Picture
 from .wavelet_study import SCENES, SIZE
 
 CS_COLOUR, OURS_COLOUR, LATE_COLOUR, OTHER = '#c2571a', '#1f5fa8', '#009e73', '0.35'
 SMOOTH = 20                     # s over which the curves are averaged, to be told apart
 
 
-def pictures(errors, sea, sea_imm):
-    """(name, size, paint) of each."""
-    return [('wavelet_fig1', (9, 6.0), partial(standard_deviation, errors=errors)),
-            ('wavelet_a_max', (9, 3.8), partial(limits, sea=sea, sea_imm=sea_imm))]
+def pictures(errors, sea, sea_imm) -> list[Picture]:
+    """Both."""
+    return [Picture('wavelet_fig1', (9, 6.0), partial(over_time, errors=errors)),
+            Picture('wavelet_a_max', (9, 3.8), partial(limits, sea=sea, sea_imm=sea_imm))]
 
 
-def standard_deviation(figure, errors):
+def over_time(figure, errors):
     """Fig 1: error of x over time."""
     figure.suptitle(f'RMS error along x, mean of {SMOOTH} s (Fig 1, reconstructed scenes)')
     styles = {'CS-Kalman': (CS_COLOUR, '-'), 'CS-Kalman + RTS': (CS_COLOUR, '--'),
