@@ -31,9 +31,9 @@ marine_tracker/evaluation/own_waters.py).
 """
 ROUGH = """Train the network of `cs_rough_nn`, or that of `cs_bp_nn`.
 
-It learns by which share of its process noise the estimating filter is to follow the other one, from
-a grid of samples: no tracks are drawn, some seconds suffice. The shipped weights are those of seed 1.
-A .json file beside the weights tells how they came about.
+It learns what share of the other filter's process noise the estimating one is to have, from a grid
+of samples: no tracks are drawn, some seconds suffice. The shipped weights are those of seed 1. A
+.json file beside the weights tells how they came about.
 """
 STAGES = {'tracks': 'making tracks', 'fusion': 'training to weigh the filters',
           'spread': 'training to know the error'}

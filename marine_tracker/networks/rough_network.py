@@ -32,13 +32,16 @@ class Network(NamedTuple):
     outer_theta: Array
 
 
-def shapes(inputs: int, hidden: int, neurons: int) -> Network:
+Shapes = tuple[tuple[int, ...], ...]
+
+
+def shapes(inputs: int, hidden: int, neurons: int) -> Shapes:
     """The shapes of a network's arrays."""
-    return Network((inputs, neurons, hidden, neurons), (hidden, neurons),
-                   (hidden, neurons, neurons), (neurons,))
+    return ((inputs, neurons, hidden, neurons), (hidden, neurons), (hidden, neurons, neurons),
+            (neurons,))
 
 
-def from_vector(vector, form: Network) -> Network:
+def from_vector(vector, form: Shapes) -> Network:
     """The network whose arrays have the shapes `form` and stand in the vector one after another."""
     ends = np.cumsum([np.prod(shape, dtype=int) for shape in form])
     return Network._make(part.reshape(shape)
@@ -50,7 +53,7 @@ def to_vector(network: Network):
     return np.concatenate([array.ravel() for array in network])
 
 
-def draw(form: Network, rng, scale: float = 0.35) -> Network:
+def draw(form: Shapes, rng, scale: float = 0.35) -> Network:
     """Random weights of that deviation."""
     return Network._make(rng.normal(0, scale, shape) for shape in form)
 

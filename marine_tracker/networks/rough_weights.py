@@ -27,6 +27,9 @@ class Quiet(NamedTuple):
     variance: Array
 
 
+NAMES = Network._fields + Quiet._fields     # of the arrays in a file
+
+
 class Weights(NamedTuple):
     """manifest: how they came about; made known to people, not used."""
 
@@ -57,12 +60,10 @@ def load(path, kind: str) -> Weights:
     """
     what = f'rough network weights {path}'
     arrays, manifest = weight_file.read(path, 'rough network', 'marine_tracker train rough_nn',
-                                        FORMAT, Network._fields + Quiet._fields)
-    form = shapes(INPUTS, HIDDEN, NEURONS[kind])
+                                        FORMAT, NAMES)
     gammas, ys = arrays['log_gamma'].size, arrays['log_y'].size
-    table = Quiet((gammas,), (ys,), (gammas, ys, INPUTS))       # type: ignore[arg-type]
-    network, quiet = (
-        kind_of._make(weight_file.checked(arrays[name].astype(float), name, shape, what)
-                      for name, shape in wanted._asdict().items())
-        for kind_of, wanted in ((Network, form), (Quiet, table)))
-    return Weights(network, quiet, manifest)                    # type: ignore[arg-type]
+    form = (*shapes(INPUTS, HIDDEN, NEURONS[kind]), (gammas,), (ys,), (gammas, ys, INPUTS))
+    found = [weight_file.checked(arrays[name].astype(float), name, shape, what)
+             for name, shape in zip(NAMES, form)]
+    parts = len(Network._fields)
+    return Weights(Network._make(found[:parts]), Quiet._make(found[parts:]), manifest)

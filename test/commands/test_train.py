@@ -3,6 +3,7 @@
 import pytest
 
 from marine_tracker.estimators import gwnn
+from marine_tracker.networks import rough_weights
 from marine_tracker.networks import wavelet_network as net
 
 
@@ -42,3 +43,15 @@ def test_wrong_options_are_told(tmp_path, command):
                           (('--scenario', 'busy_street'), 'did you mean busy_strait?')):
         done = command('train', 'gwnn', *options)
         assert done.returncode == 2 and text in done.stderr
+
+
+def test_training_the_plain_network_of_cs_bp_nn_gives_the_shipped_weights(tmp_path, command):
+    file = tmp_path / 'w.npz'
+    done = command('train', 'rough_nn', '--network', 'bp', '--seed', 1, '--out', file)
+    assert done.returncode == 0, done.stderr
+    assert 'RMS error of the share O' in done.stdout
+    shipped = rough_weights.shipped('bp')
+    assert file.read_bytes() == shipped.read_bytes()
+    assert file.with_suffix('.json').read_text() == shipped.with_suffix('.json').read_text()
+    wrong = command('train', 'rough_nn', '--seed', -1)
+    assert wrong.returncode == 2 and '--seed is -1' in wrong.stderr

@@ -102,8 +102,8 @@ def claims(found: Found) -> list[report.Claim]:
     """What the paper says, what was found, and the verdict."""
     air = SETTINGS['air'].steps
     return [
-        _better(found, 'paper 001, Figs 3-5', 'the rough network tracks every manoeuvre, weak, strong '
-                'and changing, better than the BP network', ROUGH, BP),
+        _better(found, 'paper 001, Figs 3-5', 'the rough network tracks every manoeuvre (weak, '
+                'strong, changing) better than the BP network', ROUGH, BP),
         _delay(found, air), _growing(found, air), _stable(found), _parallel(found),
         _better(found, 'ours', 'an IMM of the same two filters beats the rough network', IMM,
                 ROUGH),

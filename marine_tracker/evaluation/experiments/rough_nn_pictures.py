@@ -1,4 +1,4 @@
-"""The mean acceleration by each filter as it answers a step: Figs 3 to 5 of paper 001, and at sea."""
+"""How the filters answer a step of the acceleration: Figs 3 to 5 of paper 001, and at sea."""
 
 from functools import partial
 
@@ -22,7 +22,7 @@ def pictures(found) -> list[Picture]:
 
 
 def paint(figure, found, name: str) -> None:
-    """Above the mean acceleration, below the mean share O (of the IMM: its wide filter's weight)."""
+    """Above the mean acceleration, below the mean O (of the IMM: the weight of its F1)."""
     setting = SETTINGS[name]
     above, below = figure.subplots(2, len(setting.steps), sharex=True, height_ratios=(3, 1.3))
     time = (np.arange(setting.scans) - setting.change) * setting.period

@@ -31,7 +31,6 @@ class Setting(NamedTuple):
     sigma        m
     change       scan at which the acceleration changes
     scans        in all
-    transition   scans after the change that count as the answer to it
     steps        acceleration before and after, m/s^2, by name
     """
 
@@ -41,14 +40,13 @@ class Setting(NamedTuple):
     sigma: float
     change: int
     scans: int
-    transition: int
     steps: dict[str, tuple[float, float]]
 
 
 SETTINGS = {
-    'air': Setting(cs_kalman.Manoeuvre(60.0, 1 / 20), 300.0, 1.0, 100.0, 40, 80, 10, {
+    'air': Setting(cs_kalman.Manoeuvre(60.0, 1 / 20), 300.0, 1.0, 100.0, 40, 80, {
         '0 -> 5': (0.0, 5.0), '0 -> 40': (0.0, 40.0), '5 -> 25': (5.0, 25.0)}),
-    'sea': Setting(cs_kalman.Manoeuvre(1.0, 1 / 60), 8.0, 60 / 22, 20.0, 60, 110, 11, {
+    'sea': Setting(cs_kalman.Manoeuvre(1.0, 1 / 60), 8.0, 60 / 22, 20.0, 60, 110, {
         '0 -> .1': (0.0, 0.1), '0 -> .5': (0.0, 0.5), '.05 -> .25': (0.05, 0.25),
         '0 -> 1': (0.0, 1.0)}),
 }
@@ -90,7 +88,6 @@ class Answer(NamedTuple):
     overshoot     greatest mean acceleration after the step, in steps
     acceleration  RMSE after the first scans, m/s^2; likewise velocity m/s and position m
     quiet_velocity, quiet_position  RMSE before the step
-    answering     RMSE of the acceleration in the transition after the step
     of_runs       [runs]   mean squared error of the acceleration after the first scans
     mean          [scans]  mean acceleration
     share         [scans]  mean O, or weight of the wide filter; nan where there is none
@@ -103,7 +100,6 @@ class Answer(NamedTuple):
     position: float
     quiet_velocity: float
     quiet_position: float
-    answering: float
     of_runs: Array
     mean: Array
     share: Array
@@ -212,7 +208,7 @@ def answer(setting: Setting, step: tuple[float, float], filter_: Filter, runs: i
     found = list(filter_(setting, plots_of(setting, x[:, 0], runs, np.random.default_rng(seed))))
     estimates = np.stack([estimate for estimate, _ in found], 1)
     off = estimates - x
-    change, until = setting.change, setting.change + setting.transition
+    change = setting.change
     mean = estimates[..., 2].mean(0)
     done = (mean[change:] - step[0]) / (step[1] - step[0])
     there = np.flatnonzero(done >= 0.63)
@@ -220,10 +216,12 @@ def answer(setting: Setting, step: tuple[float, float], filter_: Filter, runs: i
 
     def rms(values):
         return float(np.sqrt(np.mean(values ** 2)))
-    return Answer(there[0] * setting.period if len(there) else np.nan, float(done.max()),
-                  *(rms(whole[..., i]) for i in (2, 1, 0)), rms(quiet[..., 1]), rms(quiet[..., 0]),
-                  rms(off[:, change:until, 2]), (whole[..., 2] ** 2).mean(1), mean,
-                  np.array([share for _, share in found]))
+    return Answer(
+        delay=float(there[0] * setting.period) if len(there) else np.nan,
+        overshoot=float(done.max()), acceleration=rms(whole[..., 2]), velocity=rms(whole[..., 1]),
+        position=rms(whole[..., 0]), quiet_velocity=rms(quiet[..., 1]),
+        quiet_position=rms(quiet[..., 0]), of_runs=(whole[..., 2] ** 2).mean(1), mean=mean,
+        share=np.array([share for _, share in found]))
 
 
 def answers(runs: int, seed: int, progress: Progress) -> dict[tuple[str, str, str], Answer]:
