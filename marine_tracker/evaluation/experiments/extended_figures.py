@@ -7,18 +7,19 @@ import numpy as np
 from ...extent import gaussian_process
 from ...extent.gaussian_process import Model
 from ...extent.input_noise import VARIANTS
+from ...geometry import unit_vector
 from ..report import Figure, at_least, at_most
 from .extended_trials import (
     NOISE,
     PRIOR,
     RANDOM_MATRIX,
+    SHAPES,
     SIGMA,
     START,
     START_VARIANCE,
     TURN_NOISE,
     Case,
     Trial,
-    scene,
 )
 
 SPARSE, DENSE = 'complex, .8 a frame', 'complex, .8 a metre'
@@ -114,13 +115,16 @@ def costs() -> list[Figure]:
 
 
 def _start(runs: int, variant: str):
-    """Filters at the start, cells [runs, CELLS, 2] of the first scan, their noise, the model."""
-    seen = scene(Case('complex', 4.0, per_metre=True), runs, np.random.default_rng(runs))
+    """Filters at the start, cells [runs, CELLS, 2] m of a scan, their noise, the model."""
+    rng = np.random.default_rng(runs)
+    angle = rng.uniform(0, 2 * np.pi, (runs, CELLS))
+    cells = START[:2] + SHAPES['complex'](angle)[..., None] * unit_vector(angle + START[4])
+    cells += SIGMA * rng.standard_normal(cells.shape)
     model = Model(PRIOR, variant, NOISE, TURN_NOISE)
-    radii = np.full((runs, len(PRIOR.angle)), 4.0)
-    state = gaussian_process.start(model, np.zeros(runs), np.tile(START, (runs, 1)),
-                                   np.diag(START_VARIANCE), radii, np.ones((runs, 2)))
-    return state, seen.cells[0, :, :CELLS], np.tile(SIGMA ** 2 * np.eye(2), (runs, 1, 1)), model
+    state = gaussian_process.start(
+        model, np.zeros(runs), np.tile(START, (runs, 1)), np.diag(START_VARIANCE),
+        np.full((runs, len(PRIOR.angle)), 4.0), np.ones((runs, 2)))
+    return state, cells, np.tile(SIGMA ** 2 * np.eye(2), (runs, 1, 1)), model
 
 
 def _above(name: str, value: float, unit: str = '') -> Figure:

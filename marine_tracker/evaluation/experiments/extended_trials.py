@@ -16,7 +16,6 @@ from ...extent import contour, gaussian_process, random_matrix
 from ...extent.gaussian_process import OUTLINE, GpState, Model
 from ...extent.pcrlb import bound_step
 from ...extent.radial_function import contour as contour_prior
-from ...extent.random_matrix import RandomMatrixState
 from ...geometry import unit_vector
 from ...types import Array
 
@@ -152,7 +151,7 @@ def gaussian_process_trial(case: Case, variant: str, runs: int, seed: int,
 def _drawn(state: GpState, found: contour.Outline, at_angles, seen: Scene) -> Drawn:
     middle, centre = state.mean[0, :2], seen.truth[-1, 0, :2]
     share = 3 * (found.radius_sd[0] / found.radius[0])[:, None]
-    inner, outer = (found.points[0] + side * share * (found.points[0] - middle) - centre
+    inner, outer = (middle - centre + np.maximum(1 + side * share, 0) * (found.points[0] - middle)
                     for side in (-1, 1))
     at = contour.of_gaussian_process(state, PRIOR, PRIOR.angle)
     return Drawn(found.points[0] - centre, inner, outer, at.radius[0] - at_angles[0],
@@ -167,9 +166,11 @@ def random_matrix_trial(case: Case, runs: int, seed: int) -> Trial:
     state = random_matrix.start(np.zeros(runs), guess[:, :2], spread[0],
                                 Velocity(guess[:, 2:4], spread[1]),
                                 np.tile(np.eye(2), (runs, 1, 1)), weight=4.0)
+    noise = np.tile(SIGMA ** 2 * np.eye(2), (runs, 1, 1))
     for k in range(SCANS):
         state = random_matrix.predict(state, np.full(runs, (k + 1) * PERIOD), ELLIPSE)
-        state = _take_clusters(state, seen.cells[k], seen.number[k])
+        rows, centroid, scatter, count = cluster_of(seen.cells[k], seen.number[k])
+        state = random_matrix.update(state, rows, centroid, scatter, count, noise[rows], ELLIPSE)
     found = contour.of_random_matrix(state)
     shape, place = _against(found, case, seen, state.mean)
     return Trial(np.nan, np.nan, np.nan, np.nan, shape, place,
@@ -187,11 +188,14 @@ def _against(found: contour.Outline, case: Case, seen: Scene, mean):
     return _rms(shape), _rms(np.hypot(*(mean[:, :2] - truth[:, :2]).T))
 
 
-def _take_clusters(state: RandomMatrixState, cells, count) -> RandomMatrixState:
-    rows = (count > 0).nonzero()[0]
-    counts = (np.arange(cells.shape[1]) < count[rows, None])[..., None]
-    centroid = (cells[rows] * counts).sum(1) / count[rows, None]
-    off = (cells[rows] - centroid[:, None]) * counts
-    noise = np.tile(SIGMA ** 2 * np.eye(2), (len(rows), 1, 1))
-    return random_matrix.update(state, rows, centroid, off.swapaxes(1, 2) @ off, count[rows],
-                                noise, ELLIPSE)
+def cluster_of(cells, number):
+    """The rows [K] that have cells at all, and centroid, scatter and count of each.
+
+    cells [N, C, 2] m, of which the first `number` [N] of each row are some.
+    """
+    rows = (number > 0).nonzero()[0]
+    cells, count = cells[rows], number[rows]
+    some = (np.arange(cells.shape[1]) < count[:, None])[..., None]
+    centroid = (cells * some).sum(1) / count[:, None]
+    off = (cells - centroid[:, None]) * some
+    return rows, centroid, off.swapaxes(1, 2) @ off, count
