@@ -3,7 +3,7 @@
 Only the side that faces the radar gives cells, so the centroid lies towards it, and how wide a ship
 is can hardly be told: moved away and made wider, she would give the same cells. Small errors of the
 model, always of one sign, would drive an outline that way for hundreds of cells. So it starts half
-a beam behind the centroid, half as wide as ships of that length are, and is stiff: a few per cent.
+a beam behind the centroid, as wide as ships of that length are, and is stiff: a few per cent.
 """
 
 import numpy as np
@@ -59,6 +59,6 @@ def blur_over_half_beam(found: Measures, noise):
 
 
 def off_course(state: GpState):
-    """Angle [N] rad in [0, pi] between heading and course: where it is large, the outline lies."""
+    """Angle [N] rad in [0, pi] between heading and course: where it is large, the outline is wrong."""
     course = to_range_bearing(state.mean[:, 2:4])[1]
     return np.abs(wrap_angle(state.mean[:, HEADING] - course))

@@ -48,9 +48,9 @@ class Case(NamedTuple):
 class Scene(NamedTuple):
     """Truth and points of all scans and N runs.
 
-    truth  [scans, N, 6]     e n ve vn psi psi'
-    cells  [scans, N, C, 2]  m, the first count of each
-    number [scans, N]
+    truth   [scans, N, 6]     e n ve vn psi psi'
+    cells   [scans, N, C, 2]  m, of which the first `number` are some
+    number  [scans, N]
     """
 
     truth: Array
