@@ -59,6 +59,6 @@ def blur_over_half_beam(found: Measures, noise):
 
 
 def off_course(state: GpState):
-    """Angle [N] rad in [0, pi] between heading and course: where it is large, the outline is wrong."""
+    """Angle [N] rad in [0, pi] between heading and course; large where the outline is wrong."""
     course = to_range_bearing(state.mean[:, 2:4])[1]
     return np.abs(wrap_angle(state.mean[:, HEADING] - course))
