@@ -8,6 +8,7 @@ from types import ModuleType
 from . import (
     alpha_beta,
     compare,
+    extended,
     gwnn,
     gwnn_monte_carlo,
     gwnn_paper,
@@ -20,4 +21,5 @@ from . import (
 EXPERIMENTS: dict[str, ModuleType] = {
     'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo,
     'marine_table': marine_table, 'rough_nn': rough_nn, 'wavelet': wavelet,
-    'alpha_beta': alpha_beta, 'two_radars': two_radars, 'compare': compare}
+    'alpha_beta': alpha_beta, 'two_radars': two_radars, 'extended': extended,
+    'compare': compare}
