@@ -44,9 +44,9 @@ class Samples(NamedTuple):
 def quiet(gamma: float, y: float):
     """Of a target at rest in noise, plots without gaps: c [3], and (sqrt p1 + sqrt p2) / sqrt(c s).
 
-    Units in which T, alpha's inverse apart, and sigma_plot are 1. The filters are at rest (their
-    Riccati equations solved), F2 with the share NARROW; their errors are one linear system driven
-    by the plot noise, whose covariance solves a Lyapunov equation.
+    In units of T and sigma_plot; y = alpha T. The filters have settled (their Riccati equations
+    solved), F2 with the share NARROW; their errors are one linear system driven by the plot noise,
+    whose covariance solves a Lyapunov equation.
     """
     phi, q = (part[:, 0] for part in model(y, np.ones(1)))
     decaying = np.array([[1, 1, phi[2]], [0, 1, phi[1]], [0, 0, phi[0]]])

@@ -8,8 +8,9 @@ from .result import Picture
 from .rough_nn_trials import BP, CS, IMM, ROUGH, SETTINGS
 
 # Colours of Okabe and Ito, as in `gwnn_pictures`.
-STYLES = {CS: ('#000000', '--', 'CS filter alone'), IMM: ('#009e73', '-', IMM),
-          BP: ('#e69f00', '-', 'BP network'), ROUGH: ('#0072b2', '-', 'rough network')}
+# The BP network's line is wide: the other one hides it.
+STYLES = {CS: ('#000000', '--', 1.5, 'CS filter alone'), IMM: ('#009e73', '-', 1.5, IMM),
+          BP: ('#e69f00', '-', 4.0, 'BP network'), ROUGH: ('#0072b2', '-', 1.5, 'rough network')}
 PAPER = {'0 -> 5': 'weak (Fig 3)', '0 -> 40': 'strong (Fig 4)', '5 -> 25': 'step (Fig 5)'}
 BEFORE = 10                     # scans shown before the step
 
@@ -30,11 +31,11 @@ def paint(figure, found, name: str) -> None:
         before, after = setting.steps[step]
         top.step(time, np.where(time < 0, before, after), where='post', color='0.6', linewidth=1,
                  label='truth')
-        for rival, (colour, line, text) in STYLES.items():
+        for rival, (colour, line, width, text) in STYLES.items():
             cell = found[name, step, rival]
-            top.plot(time, cell.mean, line, color=colour, linewidth=1.5, label=text)
+            top.plot(time, cell.mean, line, color=colour, linewidth=width, label=text)
             if rival != CS:
-                bottom.plot(time, cell.share, line, color=colour, linewidth=1.5)
+                bottom.plot(time, cell.share, line, color=colour, linewidth=width)
         size = after - before
         top.set(title=f'{step} m/s² {PAPER.get(step, "")}'.rstrip(),
                 xlim=(-BEFORE * setting.period, time[-1]),
