@@ -42,7 +42,7 @@ BOUNDS = {
     'leave_loud': (0.01, 0.45),
     'leave_turn': (0.01, 0.45),
     'max_acceleration': (0.05, 5.0),    # m/s^2, of CS-Kalman
-    'frequency': (1 / 300, 2.0),        # 1/s, likewise
+    'frequency': (1 / 300, 20.0),       # 1/s, likewise
 }
 
 Settings = imm.Modes | cs_kalman.Manoeuvre
