@@ -229,11 +229,13 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
             at = look(rows.bank, frame[heard],
                       filters.look(bank, rows.bank, (near - begun)[heard]), near[heard])
             shift, ratio = correct(rows, at), rows.output[:, OUTPUTS:]
-            # Were a large correction wrong, no plot would come near enough to tell.
+            # After a missed plot the base says how sure the position is: were the network too
+            # sure and wrong, no plot would come near enough to tell; were it too unsure, plots of
+            # what else is there would.
+            missed = (near - begun)[heard] > MISSED * period
             size = np.hypot(*shift[:2])
-            cut = ((near - begun)[heard] > MISSED * period) & (size > SURE)
-            shift = shift * np.where(cut, SURE / np.maximum(size, SURE), 1.0)
-            ratio = np.where(cut[:, None], np.maximum(ratio, 0.0), ratio)
+            shift = shift * np.where(missed, SURE / np.maximum(size, SURE), 1.0)
+            ratio = np.where(missed[:, None], 0.0, ratio)
             shift = gwnn_inputs.from_sigma(frame[heard], shift).T
             # Beyond what it was trained for, the network's correction is carried on straight.
             shift[:, :2] += (time - near)[heard, None] * shift[:, 2:]

@@ -173,9 +173,9 @@ def _turn(bank: Bank, step):
     """sin and cos [J, N] of the angles turned; metres along and across per m/s of velocity."""
     angle = bank.rates * step
     sin, cos = np.sin(angle), np.cos(angle)
-    straight = bank.rates == 0
-    divisor = np.where(straight, 1.0, bank.rates)
-    along, across = np.where(straight, step, sin / divisor), (1 - cos) / divisor
+    none = bank.rates == 0
+    divisor = np.where(none, 1.0, bank.rates)
+    along, across = np.where(none, step, sin / divisor), (1 - cos) / divisor
     side = np.sign(bank.turn_rate)
     return side * sin[bank.size], cos[bank.size], along[bank.size], side * across[bank.size]
 

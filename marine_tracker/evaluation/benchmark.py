@@ -85,7 +85,7 @@ def traffic(targets: int, clutter: int, scans: int, seed: int) -> Traffic:
 
 
 class Clock:
-    """CPU time spent, s, in an estimator's functions."""
+    """CPU time spent, s, in extrapolation and update."""
 
     def __init__(self):
         self.spent = 0.0
@@ -99,7 +99,7 @@ class Clock:
                 self.spent += time.process_time() - begin
                 return found
             return run
-        return Estimator(*map(timed, estimator))
+        return Estimator(estimator.init, timed(estimator.extrapolate), timed(estimator.update))
 
 
 def run_tracker(scene: Traffic, estimator: str) -> Iterator[Found]:

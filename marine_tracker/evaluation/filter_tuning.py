@@ -21,7 +21,7 @@ from ..types import take
 from . import gwnn_samples, ship_tracks, track_trials, training_tracks
 from .report import Figure
 
-# Weight of a cell where ships keep course and speed, by what the IMM is tuned for.
+# Weight of a cell where ships keep course and speed, by what the filter is tuned for.
 STRAIGHT_WEIGHT = {'training': 1.0, 'manoeuvre': 0.0}
 PERIOD = 60 / 22                # s, to which the settings refer
 LEAST_TRACKS = 10 * len(ship_tracks.KINDS)          # every vessel class has as many kinds
@@ -42,7 +42,7 @@ BOUNDS = {
     'leave_loud': (0.01, 0.45),
     'leave_turn': (0.01, 0.45),
     'max_acceleration': (0.05, 5.0),    # m/s^2, of CS-Kalman
-    'frequency': (1 / 300, 2.0),        # 1/s, likewise
+    'frequency': (1 / 300, 20.0),       # 1/s, likewise
 }
 
 Settings = imm.Modes | cs_kalman.Manoeuvre
@@ -84,8 +84,9 @@ IMM = FAMILIES['imm']
 
 def filter_of(settings: Settings) -> Estimator:
     """The filter with these settings."""
-    make = cs_kalman.cs_kalman if isinstance(settings, cs_kalman.Manoeuvre) else imm.imm
-    return make(settings, training_tracks.SPEED)            # type: ignore[operator]
+    if isinstance(settings, cs_kalman.Manoeuvre):
+        return cs_kalman.cs_kalman(settings, training_tracks.SPEED)
+    return imm.imm(settings, training_tracks.SPEED)
 
 
 class Course(NamedTuple):

@@ -14,9 +14,8 @@ from ..types import Array, Plots
 
 SUB_STEPS = 4
 LONGEST_PHASE = 8               # scans: a manoeuvre's phase ends so many scans after it
-# Where on a hull the plot lies: a slow wander, of a pace that every track has for itself, and jumps
-# to another part or what lies beside it.
-WANDER, WANDER_KEEP = 0.7, (0.7, 0.97)  # deviation, of the hull's; part kept a scan
+# Where on a hull the plot lies: a slow wander, and jumps to another part or what lies beside it.
+WANDER, WANDER_KEEP = 0.7, 0.85         # deviation, of the hull's; part kept a scan
 JUMP, FAR, BACK = 0.07, 2.5, 0.6        # chance a scan; deviation, of the hull's; chance to be home
 
 
@@ -216,9 +215,8 @@ def _on_hull(shape, rng):
     jumps = rng.random(shape) < JUMP
     place = FAR * rng.standard_normal((2, *shape)) * (rng.random(shape) > BACK)
     place[..., 0] = 0.0
-    # Of a generator of its own: tracks of a seed without a hull stay what they were.
-    keep = rng.spawn(1)[0].uniform(*WANDER_KEEP, shape[0])
     for k in range(1, shape[1]):
-        wander[..., k] = keep * wander[..., k - 1] + np.sqrt(1 - keep ** 2) * wander[..., k]
+        wander[..., k] = (WANDER_KEEP * wander[..., k - 1]
+                          + np.sqrt(1 - WANDER_KEEP ** 2) * wander[..., k])
         place[..., k] = np.where(jumps[:, k], place[..., k], place[..., k - 1])
     return WANDER * wander + place

@@ -18,7 +18,7 @@ SPEED = 25.0                    # m/s, the fastest target the tracker is told of
 # Radars under hard conditions: least and most of what is drawn evenly, and in what part of them.
 DETECTION = (0.7, 1.0)
 OUTLIERS, WITH_OUTLIERS = (0.0, 0.06), 0.5
-TRULY, WRONGLY_STATED = (0.5, 2.2), 0.4             # unless the radars' own say otherwise
+TRULY, WRONGLY_STATED = (0.5, 2.2), 0.4             # by its logarithm
 JITTER = (0.0, 0.06)            # deviation of a scan's time over the time
 TRIES = 50                      # moments at which stretches of a scenario begin
 TURNING = 0.04                  # m/s^2, acceleration that counts as manoeuvre
@@ -38,8 +38,6 @@ class Radars(NamedTuple):
     fastest        m/s, of the ships at most
     hull           m, how far the plots wander and jump over the ship
     detection      chance of a plot a scan, but under hard conditions
-    truly          under those, the true deviation over the stated one, drawn by its logarithm ...
-    wrongly        ... in this part of them
     """
 
     share: float
@@ -53,8 +51,6 @@ class Radars(NamedTuple):
     fastest: tuple[float, float] = (100.0, 100.0)
     hull: tuple[float, float] = (0.0, 0.0)
     detection: tuple[float, float] = (1.0, 1.0)
-    truly: tuple[float, float] = TRULY
-    wrongly: float = WRONGLY_STATED
 
 
 class Waters(NamedTuple):
@@ -79,13 +75,11 @@ WATERS = {
                (20.0, 26.0)),
         Radars(0.15, (2.0, 15.0), (0.3, 1.0), (60.0, 2500.0), 30.0, (22.0, 22.0), 1.0,
                (20.0, 40.0), (3.0, 18.0)))),
-    # Near a radar what is stated of its plots covers their wander over the hull: from scan to scan
-    # they scatter by less.
     'small_craft': Waters(ship_tracks.SMALL_CRAFT, (
-        Radars(0.45, (2.0, 15.0), (0.3, 1.2), (60.0, 5000.0), 20.0, (20.0, 48.0), 0.3,
+        Radars(0.5, (2.0, 15.0), (0.3, 1.2), (60.0, 5000.0), 20.0, (20.0, 48.0), 0.3,
                (20.0, 48.0)),
-        Radars(0.55, (2.0, 15.0), (0.3, 1.2), (40.0, 5000.0), 20.0, (20.0, 48.0), 1.0,
-               (20.0, 48.0), hull=(0.0, 5.0), truly=(0.2, 1.3), wrongly=0.9))),
+        Radars(0.5, (2.0, 15.0), (0.3, 1.2), (60.0, 5000.0), 20.0, (20.0, 48.0), 1.0,
+               (20.0, 48.0), hull=(0.0, 5.0)))),
 }
 
 
@@ -115,15 +109,15 @@ def draw(waters: Waters, kind, scans: int, rng) -> Traffic:
     def by_log(low, high):
         return np.exp(rng.uniform(np.log(low), np.log(high)))
     own = {name: np.array([getattr(one, name) for one in waters.radars])[sort]
-           for name in ('hard', 'nearest', 'ranges', 'truly', 'wrongly')}
+           for name in ('hard', 'nearest', 'ranges')}
     hard = rng.random(count) < own['hard']
-    some = rng.random((2, count)) < np.stack([np.full(count, WITH_OUTLIERS), own['wrongly']])
+    some = rng.random((2, count)) < np.array([[WITH_OUTLIERS], [WRONGLY_STATED]])
     period = 60 / np.where(hard, drawn('hard_rpm'), drawn('rpm'))
     radar = Radar(
         range_sigma=drawn('range_sigma'), bearing_sigma=np.radians(drawn('bearing_sigma')),
         detection=np.where(hard, rng.uniform(*DETECTION, count), drawn('detection')),
         outliers=np.where(hard & some[0], rng.uniform(*OUTLIERS, count), 0.0),
-        truly=np.where(hard & some[1], by_log(*own['truly'].T), 1.0),
+        truly=np.where(hard & some[1], by_log(*np.full((count, 2), TRULY).T), 1.0),
         period=period)
     jitter = np.where(hard, rng.uniform(*JITTER, count), 0.0)[:, None]
     steps = period[:, None] * (1 + jitter * np.clip(rng.standard_normal((count, scans)), -3, 3))
