@@ -63,3 +63,17 @@ def test_the_picture_is_drawn(tmp_path):
     pytest.importorskip('matplotlib')
     file, = draw(tmp_path, [compare_pictures.picture(FOUND)])
     assert file.name == 'compare.png' and file.stat().st_size > 10_000
+
+
+@pytest.mark.slow
+def test_a_run_tells_every_estimator_in_every_scene_and_of_the_encounters(monkeypatch, tmp_path):
+    monkeypatch.setattr(compare.imazu_encounters, 'IMAZU', ((180,),))
+    monkeypatch.setattr(compare, 'ESTIMATORS', {name: ESTIMATORS[name]
+                                                for name in ('cs_kalman', 'imm')})
+    page = tmp_path / 'page.md'
+    page.write_text(f'{compare.BEGIN}\n{compare.END}')
+    found = compare.run(4, 1, page=str(page), processes=1)
+    names = {figure.name for figure in found.figures}
+    assert {'imm, busy strait: held', 'cs_kalman, boat: velocity',
+            'imm, Imazu: warned with 6 minutes left'} <= names
+    assert 'busy strait' in page.read_text() and len(found.pictures) == 1

@@ -41,7 +41,7 @@ def paint(figure, found, scenes) -> None:
         axes.minorticks_off()
         axes.grid(axis='x', color='0.9')
         axes.set_axisbelow(True)
-        axes.set_xlabel(f'{what} error over that of `{BESIDE}`')
+        axes.set_xlabel(f'{what} error over that of {BESIDE}')
         axes.tick_params(axis='y', length=0)
     panels[0].set_yticks(range(len(scenes)), [scene.replace('_', ' ') for scene in scenes])
     for place, name in enumerate(others):

@@ -139,6 +139,6 @@ def _claim(figures) -> report.Claim:
     found = ', '.join(f'{named[f"{way}: position, RMS"]:.1f} m {way}' for way in WAYS[:4])
     late = named['both, as plots come: position, RMS'] / named['both: position, RMS'] - 1
     return report.Claim(
-        'paper 003', 'the fused track of two radars is better than that of each',
+        'two radars', 'the fused track is better than that of each radar alone',
         f'{found}. Late plots taken as they come cost {100 * late:+.1f} %.',
         BORNE_OUT if highest < 1 else NOT_BORNE_OUT)
