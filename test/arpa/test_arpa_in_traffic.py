@@ -54,7 +54,8 @@ def watch():
         if k == 0:
             targets = acquisition.acquire(targets, truth.position[truth.target == 1][0], now)
         memory, report = tracker.step(memory, scan)
-        plots = locate(scan.plots, scan.own_ship, 10.0, tracker.bearing_sigma)
+        plots = locate(scan.plots, scan.own_ship, 10.0,
+                       np.radians(tracker.parameters.bearing_sigma_deg))
         moving = motion.step(moving, report, plots, motion.Settings())
         shown = motion.at(moving, now)
         own = own_motion(scan.own_ship, now, 0.0)
