@@ -4,7 +4,7 @@ A scan is known when its revolution ends; by then another radar's later plots ma
 already. So each track remembers its last few updates. A plot that is late is put in its place:
 later updates are undone, it is taken, and they are taken again. Estimators see time go forward
 only, nothing waits, and the outcome is that of all plots sorted by time (for association it is
-not: what was decided stands). A plot later than all that is remembered meets an estimator that
+not: what was decided stands). A plot older than all that is remembered meets an estimator that
 must step back in time, as its contract allows.
 """
 

@@ -19,8 +19,9 @@ from ..parameters import TrackerParameters
 from ..types import Scan
 
 TOPIC = 'radar/plots'
-OWN = ('range_sigma_m', 'bearing_sigma_deg', 'scan_period_s', 'min_range_m', 'max_range_m',
-       'detection_probability')         # parameters that a radar may have for itself
+# Parameters that a radar may have for itself.
+OWN = ('range_sigma_m', 'bearing_sigma_deg', 'radial_speed_sigma_mps', 'scan_period_s',
+       'min_range_m', 'max_range_m', 'detection_probability')
 HELD_REVOLUTIONS = 1.5      # of another radar: so long its plot shows that the target is there
 
 

@@ -12,8 +12,11 @@ from sensor_msgs.msg import PointCloud2
 from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.radar_simulator_node import RadarSimulatorNode
 from marine_tracker.nodes.tracker_node import TrackerNode
+from marine_tracker.parameters import TrackerParameters, from_mapping
 from marine_tracker.simulation import radar, scenario
+from marine_tracker.tracking.lifecycle import LOST
 from marine_tracker.tracking.radars import fused, merged
+from marine_tracker.tracking.tracker import Tracker
 
 X, S = scenario.load('two_radars_x'), scenario.load('two_radars_s')
 TOGETHER = fused([X.tracker_parameters(), S.tracker_parameters()], ['radar_x', 'radar_s'])
@@ -93,6 +96,28 @@ def test_one_radar_fails_and_returns_and_no_target_is_lost(bridge):
     assert set(NAMES) <= here.names()
     assert here.tracker.inputs[1].taken == len([scan for scan in s if scan.end < 60]) + len(late)
     assert not here.tracker.inputs[1].bad.counts['clock re-based']
+
+
+def test_over_dds_the_tracks_are_those_of_the_core(bridge, graph, node_helpers):
+    """So what the Monte Carlo runs show of the core holds for the node."""
+    here = bridge()
+    ears = node_helpers[1](graph.nodes[-1], Odometry, topics.TRACKS)
+    here.wait(lambda: here.tracker.count_subscribers('/tracks') and ears.connected)
+    scans = list(merged(*scans_of(90)))
+    core = Tracker(from_mapping(TrackerParameters, TOGETHER))
+    memory, expected = core.start(), []
+    for scan in scans:
+        memory, report = core.step(memory, scan)
+        shown = np.flatnonzero((report.tracks.number > 0) & (report.tracks.status != LOST))
+        now = core.extrapolate(report.tracks, report.time)
+        expected += [(f'track_{report.tracks.number[row]:02d}', now.position[row])
+                     for row in shown[np.argsort(report.tracks.number[shown])]]
+    here.play(scans)
+    here.wait(lambda: len(ears) >= len(expected))
+    assert [message.child_frame_id for message in ears.messages] == [n for n, _ in expected]
+    found = [[m.pose.pose.position.x, m.pose.pose.position.y] for m in ears.messages]
+    # Plots go as float32; own ship between her samples is a straight line both times.
+    np.testing.assert_allclose(found, [position for _, position in expected], atol=0.5)
 
 
 def test_diagnostics_tell_of_each_radar_by_its_name(bridge):
