@@ -3,7 +3,7 @@
 import sys
 
 from ..evaluation import report
-from ..evaluation.experiments import EXPERIMENTS
+from ..evaluation.experiments.registry import EXPERIMENTS
 from ..evaluation.experiments.result import draw
 from .progress_bar import progress_bar
 

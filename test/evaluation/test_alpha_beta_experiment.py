@@ -4,12 +4,8 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_are
 
-from marine_tracker.evaluation.experiments import (
-    EXPERIMENTS,
-    alpha_beta,
-    hf_trials,
-    polar_kalman,
-)
+from marine_tracker.evaluation.experiments import alpha_beta, hf_trials, polar_kalman
+from marine_tracker.evaluation.experiments.registry import EXPERIMENTS
 from marine_tracker.evaluation.experiments.result import draw
 from marine_tracker.simulation import scenario
 

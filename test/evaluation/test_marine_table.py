@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from marine_tracker import cli
-from marine_tracker.evaluation.experiments import EXPERIMENTS, marine_table
+from marine_tracker.evaluation.experiments import marine_table
+from marine_tracker.evaluation.experiments.registry import EXPERIMENTS
 
 
 @pytest.fixture(scope='module')
