@@ -108,6 +108,16 @@ class TrackerParameters:
         0.0, 'Standard deviation of the point of a target that echoes, about its middle, along '
         'each axis: some 0.15 of the length of large ships.', unit='m', low=0.0, high=100.0,
         live=True)
+    extent: str = parameter(
+        'off', 'Whether echoes that touch are taken as one target with length and heading: off, by '
+        'an ellipse (random_matrix), or close by also by a contour (gp). See doc/extended_targets.md.',
+        choices=('off', 'random_matrix', 'gp'), live=True)
+    range_resolution_m: float = parameter(
+        30.0, 'Depth of a radar cell: echoes of one target lie no farther apart; for extent.',
+        unit='m', low=1.0, high=1000.0, live=True)
+    beam_width_deg: float = parameter(
+        1.0, 'Horizontal beam width of the antenna, which is that of a cell; for extent.',
+        unit='deg', low=0.1, high=30.0, live=True)
     max_target_speed_mps: float = parameter(
         25.0, 'Fastest target over ground that initiation accepts.', unit='m/s', low=0.5,
         high=100.0, live=True)

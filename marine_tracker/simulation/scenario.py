@@ -21,6 +21,17 @@ speed as `_mps` or `_kn`. Only `duration_s` and one target are needed:
           - turn: {angle_deg: -40, radius_m: 500}     # to port; or rate_deg_per_s
           - speed: {to_kn: 8, duration_s: 60}         # or acceleration_mps2
 
+A ship may have a hull, which the radar then sees as cells in place of one plot, and there may be
+land, whose shore does so too (hull.py, land.py); both take the radar's range resolution and beam
+width as the size of a cell:
+
+    targets:
+      - {name: tanker, start: {range_nm: 1, bearing_deg: 30}, course_deg: 250, speed_kn: 11,
+         length_m: 200, hull: {beam_m: 32}}       # heading_deg, else the course; snr_db, else 25
+    land:
+      - {name: mole, corners_m: [[900, -400], [1200, 800]]}       # north, east; or corners_nm
+      - {name: islet, corners_m: [[0, 600], [50, 700], [-80, 650]], closed: true, snr_db: 35}
+
 Ships can be driven by AIS reports instead, or besides (the file is looked for beside the
 scenario's; its form stands in ais.py); own ship is then one of the vessels, or lies at a place:
 
@@ -41,13 +52,13 @@ from .. import config
 from ..geometry import NAUTICAL_MILE
 from ..parameters import VESSEL_CLASSES, read_yaml_mapping
 from ..types import OwnShip, Truth
-from . import motion, sensor_errors, ships
+from . import land, motion, sensor_errors, ships
 from .fields import Section
 from .standard_scenarios import STANDARD
 
 MAX_RANGE = 200_000.0                     # m
 
-TOP_KEYS = 'description duration_s origin radar clutter tracker ais own_ship targets'
+TOP_KEYS = 'description duration_s origin radar clutter tracker ais own_ship targets land'
 RADAR_KEYS = ('rotation_rpm max_range_m|max_range_nm blind_range_m|blind_range_nm '
               'range_sigma_m|range_sigma_nm bearing_sigma_deg range_bias_m|range_bias_nm '
               'bearing_bias_deg range_resolution_m|range_resolution_nm beam_width_deg '
@@ -113,6 +124,7 @@ class Scenario:
     duration  s
     radar, clutter
     fleet     own ship and the T targets
+    shores    of the land
     stated    tracker parameters that the scenario states
     """
 
@@ -122,12 +134,18 @@ class Scenario:
     radar: Radar
     clutter: Clutter
     fleet: ships.Fleet
+    shores: tuple[land.Shore, ...]
     stated: dict[str, Any]
 
     @property
     def scans(self) -> int:
         """Number of whole revolutions in the scenario."""
         return int(self.duration / self.radar.scan_period + 1e-9)
+
+    @property
+    def in_cells(self) -> bool:
+        """Whether there are hulls or land, of which the radar sees cells."""
+        return bool(np.isfinite(self.fleet.hulls.beam).any() or self.shores)
 
     def own_ship_at(self, times) -> OwnShip:
         """Own ship's true motion at the times [K]."""
@@ -146,7 +164,7 @@ class Scenario:
     def tracker_parameters(self) -> dict[str, Any]:
         """What a tracker is told of this radar and its waters: fields of TrackerParameters.
 
-        The sigmas are the radar's, but not below the smallest that a tracker takes; with the
+        Sigmas and cell are the radar's, but not below the smallest that a tracker takes; with the
         sensor errors of the IMO the glint is that of the largest target.
         """
         range_sigma, bearing_sigma = self.radar.range_sigma, self.radar.bearing_sigma
@@ -157,6 +175,8 @@ class Scenario:
         return {'range_sigma_m': max(range_sigma, 0.1),
                 'bearing_sigma_deg': max(math.degrees(bearing_sigma), 0.01),
                 'glint_sigma_m': glint,
+                'range_resolution_m': max(self.radar.range_resolution, 1.0),
+                'beam_width_deg': max(math.degrees(self.radar.beam_width), 0.1),
                 'min_range_m': self.radar.blind_range,
                 'max_range_m': self.radar.max_range,
                 'scan_period_s': self.radar.scan_period,
@@ -211,10 +231,26 @@ def build(values: dict[str, Any], name: str, folder=Path()) -> Scenario:
     if duration < radar.scan_period:
         raise ValueError(f'duration_s is {duration:g}; it must not be less than a revolution, '
                          f'{radar.scan_period:.3g} s')
-    return Scenario(name, top.text('description', ''), duration, radar,
+    made = Scenario(name, top.text('description', ''), duration, radar,
                     _clutter(top.section('clutter', CLUTTER_KEYS), radar),
-                    ships.read(top, folder, duration),
+                    ships.read(top, folder, duration), land.read(top),
                     _stated(top.section('tracker', TRACKER_KEYS)))
+    if made.in_cells:
+        _check_cells(radar)
+    return made
+
+
+def _check_cells(radar):
+    """ValueError unless the radar has cells, and no errors but those of cells."""
+    if radar.sensor_errors != 'none':
+        raise ValueError(f'radar.sensor_errors is {radar.sensor_errors!r} in a scenario with hulls '
+                         'or land; these are seen as cells, which have no other error: it must be '
+                         "'none'")
+    for key, value, least in (('range_resolution', radar.range_resolution, 1.0),
+                              ('beam_width', math.degrees(radar.beam_width), 0.1)):
+        if value < least:
+            raise ValueError(f'radar.{key} is {value:g} in a scenario with hulls or land; it must '
+                             f'be at least {least:g}')
 
 
 def _radar(section):
