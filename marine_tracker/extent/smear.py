@@ -1,0 +1,23 @@
+"""How far a radar's pulse and beam smear a point echo: the noise of a single cell's place.
+
+A cell stands anywhere in what pulse and beam light up at once, weighed by their shapes. The
+factors are the deviations of cells about a point target at 25 dB, over resolution and beam width.
+"""
+
+import numpy as np
+
+from ..geometry import unit_vector
+
+ALONG, ACROSS = 0.55, 0.4       # of the range resolution, of the beam's width
+
+
+def smear(range_, bearing, range_resolution: float, beam_width: float):
+    """Covariances [..., 2, 2] m^2, east and north, of cells about a point target.
+
+    range_, bearing [...] m, rad; range_resolution m; beam_width rad.
+    """
+    line = unit_vector(np.asarray(bearing))
+    square = line[..., :, None] * line[..., None, :]
+    along = (ALONG * range_resolution) ** 2
+    across = (ACROSS * beam_width * np.asarray(range_))[..., None, None] ** 2
+    return along * square + across * (np.eye(2) - square)
