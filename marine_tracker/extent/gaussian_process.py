@@ -1,0 +1,152 @@
+"""Motion and outline of extended targets: Gaussian-process contour with noisy input (paper 004).
+
+The state is x = [e n ve vn psi psi' f_1 .. f_M]: centre, velocity, heading and its rate, outline
+(see `radial_function`). A cell z lies on the outline as seen from the centre c:
+
+    z = c + p s r(b) + e,   b = theta - psi,   theta = bearing of z - c
+
+with p along and t across theta, e ~ N(0, R). s is 1 for cells on the outline; where they lie
+inside it, it is random (Wahlstroem and Oezkan 2015, section V). Only the distance |z - c| says
+something, so each cell is one number:
+
+    nu = |z - c| - s mu,  H_c = p' - (s mu' / |z - c|) t',  H_psi = -s mu',  H_f = s h
+    S = H P H' + p' R p + s^2 V + var(s) (mu^2 + v)
+
+mu, mu', h and V are those of `input_noise`. Cells are taken one after the other, each linearised
+where the one before left the state.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry import to_range_bearing, unit_vector
+from ..types import Array, put, take
+from .input_noise import VARIANTS, input_variance, noisy_radius
+from .radial_function import Contour, radius
+from .random_matrix import constant_velocity
+
+HEADING, RATE, OUTLINE = 4, 5, 6        # where they begin in the state
+PLACE = np.array([0, 1, HEADING])       # on which the angle depends
+NEAREST = 0.5                           # of mu: cells nearer to the centre turn no further
+TINY = 1e-6                             # m
+
+
+class Model(NamedTuple):
+    """What is assumed of a class of targets, and how.
+
+    contour     prior of the outline
+    variant     one of VARIANTS
+    noise       m^2/s^3, density of the white acceleration of each axis
+    turn_noise  rad^2/s^3, the same of the heading
+    full        whether the input variance counts the state's own besides the cell's
+    inside      mean and deviation of s
+    gate        cells whose nu^2 / S exceeds it are left out
+    """
+
+    contour: Contour
+    variant: str
+    noise: float
+    turn_noise: float
+    full: bool = True
+    inside: tuple[float, float] = (1.0, 0.0)
+    gate: float = np.inf
+
+
+class GpState(NamedTuple):
+    """One row a target; n = 6 + M.
+
+    time        [N]        s
+    mean        [N, n]     x
+    covariance  [N, n, n]
+    semi_axes   [N, 2]     m, of the base ellipse, ahead and abeam
+    """
+
+    time: Array
+    mean: Array
+    covariance: Array
+    semi_axes: Array
+
+
+class Measurement(NamedTuple):
+    """A cell as one number: innovation nu [N] m, jacobian H [N, n], noise [N] m^2 beside H P H'."""
+
+    innovation: Array
+    jacobian: Array
+    noise: Array
+
+
+def start(model: Model, time, motion, covariance, f, semi_axes) -> GpState:
+    """New rows of time [N] s, motion [N, 6] = [e n ve vn psi psi'] with covariance [N, 6, 6].
+
+    f [N, M], in units of the base ellipse with semi_axes [N, 2] m, has the prior's covariance.
+    ValueError where the variant is none of VARIANTS.
+    """
+    if model.variant not in VARIANTS:
+        raise ValueError(f'variant is {model.variant!r}; it must be one of {", ".join(VARIANTS)}')
+    n = OUTLINE + len(model.contour.angle)
+    joint = np.zeros((len(time), n, n))
+    joint[:, :OUTLINE, :OUTLINE] = covariance
+    joint[:, OUTLINE:, OUTLINE:] = model.contour.covariance
+    return GpState(np.array(time, float), np.concatenate([motion, f], 1), joint,
+                   np.array(semi_axes, float))
+
+
+def predict(state: GpState, time, model: Model) -> GpState:
+    """All rows at the times [N] s: straight on, turning evenly, the outline as it is."""
+    step = time - state.time
+    _, kick = constant_velocity(step)
+    mean, covariance = state.mean.copy(), state.covariance.copy()
+    for moved, speed, noise in ((0, 2, model.noise), (1, 3, model.noise),
+                                (HEADING, RATE, model.turn_noise)):
+        mean[:, moved] += step * mean[:, speed]
+        covariance[:, moved] += step[:, None] * covariance[:, speed]
+        covariance[:, :, moved] += step[:, None] * covariance[:, :, speed]
+        pair = np.array([moved, speed])
+        covariance[:, pair[:, None], pair] += noise * kick
+    return GpState(np.array(time, float), mean, covariance, state.semi_axes)
+
+
+def measure(state: GpState, cell, noise, model: Model, rng=None) -> Measurement:
+    """How cells [N, 2] m with noise [N, 2, 2] m^2, one of each row, stand to the state."""
+    distance, bearing = to_range_bearing(cell - state.mean[:, :2])
+    along = unit_vector(bearing)
+    across = np.stack([along[:, 1], -along[:, 0]], -1)              # t = dp / dtheta
+    angle, f = bearing - state.mean[:, HEADING], state.mean[:, OUTLINE:]
+    distance = np.maximum(distance, TINY)
+    known = radius(model.contour, state.semi_axes, f, angle[:, None]).mean[:, 0]
+    at = noisy_radius(model.contour, state.semi_axes, f, angle, input_variance(
+        across, np.maximum(distance, NEAREST * np.abs(known)), noise,
+        state.covariance[:, PLACE[:, None], PLACE] if model.full else None), model.variant, rng)
+    inside, spread = model.inside
+    jacobian = np.zeros_like(state.mean)
+    jacobian[:, :2] = along - (inside * at.slope / distance)[:, None] * across
+    jacobian[:, HEADING] = -inside * at.slope
+    jacobian[:, OUTLINE:] = inside * at.weight
+    radial = ((along[:, None] @ noise)[:, 0] * along).sum(-1)
+    return Measurement(distance - inside * at.mean, jacobian,
+                       radial + inside ** 2 * at.variance
+                       + spread ** 2 * (at.mean ** 2 + at.variance))
+
+
+def update(state: GpState, rows, cells, count, noise, model: Model, rng=None):
+    """The K named rows, predicted to their cells' times, take their cells; the new state and the
+    mean nu^2 / S [K] of the cells, about 1 where the model holds, nan without cells.
+
+    cells [K, C, 2] m, of which the first count [K] count; noise [K, 2, 2] m^2, R of one cell.
+    """
+    now = take(state, rows)
+    total = np.zeros(len(rows))
+    for j in range(int(count.max(initial=0))):
+        has = (count > j).nonzero()[0]
+        here = take(now, has)
+        seen = measure(here, cells[has, j], noise[has], model, rng)
+        cross = (here.covariance @ seen.jacobian[..., None])[..., 0]            # P H'
+        spread = (cross * seen.jacobian).sum(-1) + seen.noise                   # S
+        squared = seen.innovation ** 2 / spread
+        total[has] += squared
+        gain = cross / spread[:, None] * (squared <= model.gate)[:, None]
+        now.mean[has] += gain * seen.innovation[:, None]
+        now.covariance[has] -= gain[:, :, None] * cross[:, None, :]
+    nis = np.divide(total, count, out=np.full(len(rows), np.nan), where=count > 0)
+    return put(state, rows, now), nis
