@@ -10,6 +10,7 @@ from . import echoes, hull, land
 from .scenario import Scenario
 
 SHORE_SPACING = 0.5         # of the range resolution
+EDGE_SPACING = 2.0          # m
 HIDES = 2.0                 # range resolutions behind which a shore hides what is farther
 
 
@@ -19,11 +20,13 @@ class Scene(NamedTuple):
     hulls  those of ships
     shore  [L, 2]  m, east and north
     power  [L]     of the shore's, mean, over that of noise
+    edge   [E, 2]  m, points along the shores that hide what is behind them
     """
 
     hulls: hull.Scatterers
     shore: Array
     power: Array
+    edge: Array
 
 
 def scene(scenario: Scenario, random: np.random.Generator) -> Scene:
@@ -32,13 +35,14 @@ def scene(scenario: Scenario, random: np.random.Generator) -> Scene:
     Rocks differ: the power of those of a shore is exponential about its mean.
     """
     spacing = SHORE_SPACING * scenario.radar.range_resolution
-    shore, power = [np.empty((0, 2))], [np.empty(0)]
+    shore, power, edge = [np.empty((0, 2))], [np.empty(0)], [np.empty((0, 2))]
     for line in scenario.shores:
         places, _ = hull.along(line.corners, spacing, random)
         shore.append(places)
+        edge.append(hull.along(line.corners, EDGE_SPACING, random)[0])
         power.append(10 ** (0.1 * line.snr_db) * random.exponential(size=len(places)))
     return Scene(hull.scatterers(scenario.fleet, random), np.concatenate(shore),
-                 np.concatenate(power))
+                 np.concatenate(power), np.concatenate(edge))
 
 
 def plots(of: Scene, scenario: Scenario, start: float, truth: Truth,
@@ -47,7 +51,7 @@ def plots(of: Scene, scenario: Scenario, start: float, truth: Truth,
     own = scenario.own_ship_at(np.append(truth.time, start + 0.5 * scenario.radar.scan_period))
     offset, power = _hulls(of.hulls, scenario, start, truth, own)
     shore = of.shore - own.position[-1]
-    shown = land.lit(shore, scenario.radar.beam_width, HIDES * scenario.radar.range_resolution)
+    shown = land.lit(shore, of.edge - own.position[-1], HIDES * scenario.radar.range_resolution)
     # The shore is seen as the beam comes by, own ship meanwhile here and there.
     shore = shore[shown]
     shore -= (_passed(scenario, start, shore) - own.time[-1])[:, None] * own.velocity[-1]

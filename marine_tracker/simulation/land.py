@@ -12,6 +12,7 @@ from .fields import Section
 SHORE_KEYS = 'name corners_m|corners_nm closed snr_db'
 SNR_DB = 30.0
 MAX_COORDINATE = 200_000.0      # m
+SECTORS = 3600                  # of the horizon, in each of which the nearest shore is looked for
 
 
 class Shore(NamedTuple):
@@ -65,14 +66,19 @@ def _corner(corner, where, unit):
     return east * unit, north * unit
 
 
-def lit(offset: Array, beam_width: float, depth: float):
-    """Which of the scatterers at offsets [S, 2] m from the radar are not hidden by nearer ones.
+def lit(offset: Array, edge: Array, depth: float):
+    """Which of the scatterers at offsets [S, 2] m from the radar are not hidden by nearer land.
 
-    beam_width  rad: within so much bearing the nearest one hides those
-    depth       m farther off than itself
+    edge   [E, 2]  m, offsets of points along all shores, close to each other
+    depth  m behind an edge from which on it hides what is farther
     """
-    distance, bearing = to_range_bearing(offset)
-    sector = (bearing / beam_width).astype(np.int64)
-    nearest = np.full(sector.max(initial=0) + 1, np.inf)
+    nearest = np.full(SECTORS, np.inf)
+    distance, sector = _polar(edge)
     np.minimum.at(nearest, sector, distance)
+    distance, sector = _polar(offset)
     return distance <= nearest[sector] + depth
+
+
+def _polar(offset):
+    distance, bearing = to_range_bearing(offset)
+    return distance, (bearing * (SECTORS / (2 * np.pi))).astype(np.int64) % SECTORS

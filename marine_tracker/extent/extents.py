@@ -1,0 +1,171 @@
+"""Extended targets around a point tracker: one plot a cluster in, sizes and headings out.
+
+    extents = Extents(parameters)                       # with extent random_matrix or gp
+    memory = extents.start()
+    plain, seen = extents.reduce(memory, scan, ids, ahead)          # one plot a cluster
+    ... a step of the tracker with the scan `plain` ...
+    memory = extents.step(memory, seen, ids, time, plot, estimate)
+
+What is longer than any ship and stays where it is, is land: its clusters give no plots.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import locate, own_ship_at, polar_to_position, to_range_bearing, unit_vector
+from ..parameters import TrackerParameters
+from ..types import Array, Extrapolation, Plots, PolarPlots, Scan, row_of, take
+from ..estimators.linear import invert_2x2, squared_distance
+from . import hulls, land_map
+from .clustering import Clusters, Gates, cluster, in_gates
+from .hulls import OUTLINE, Hulls, Shapes
+from .land_map import LONGEST, LandMap
+from .random_matrix import SHIP, cell_covariance
+from .smear import smear
+
+# Of a ship's length: how far the centroid strays along her axis; and across, as the lit side changes.
+STRAY_ALONG, STRAY_ACROSS = 0.1, 0.04
+RAMP = 0.1                  # of the way to an outline's centre that the plots move each scan
+BOX = 12.0                  # length^2 over variance of a rod
+# A gate is so many times the extent, the smear and the expectation's covariance: half again the
+# half length, and 2.8 deviations.
+OF_EXTENT, OF_NOISE = 1.5, 8.0
+ALIKE, DRIFT = 9.0, 2.0     # squared distance of velocities, and m/s, of two parts of one hull
+
+
+class Memory(NamedTuple):
+    """All that is known between two scans.
+
+    hulls  one row a track
+    shift  [N, 2]  m, from the centroid of its cells to where each track is led
+    land   where it lies
+    """
+
+    hulls: Hulls
+    shift: Array
+    land: LandMap
+
+
+class Seen(NamedTuple):
+    """One scan in clusters.
+
+    cells     M plots, as they came
+    clusters  C rows
+    chosen    [P]  the clusters that gave plots, in the order of the plots
+    land      how many were land
+    own       [2] m, own ship in the middle of the scan
+    map       of the land, this scan included
+    """
+
+    cells: Plots
+    clusters: Clusters
+    chosen: NDArray[np.int64]
+    land: int
+    own: Array
+    map: LandMap
+
+
+class Extents:
+    """The pure core: parameters in, no state of its own. ValueError with extent off."""
+
+    def __init__(self, parameters: TrackerParameters):
+        if parameters.extent == 'off':
+            raise ValueError("parameter extent is 'off'; there is nothing to estimate")
+        self.parameters = parameters
+        self.beam_width = float(np.radians(parameters.beam_width_deg))
+
+    def start(self) -> Memory:
+        """No targets yet."""
+        return Memory(hulls.begin(self.parameters.extent == 'gp'), np.zeros((0, 2)),
+                      land_map.empty())
+
+    def reduce(self, memory: Memory, scan: Scan, ids, ahead: Extrapolation) -> tuple[Scan, Seen]:
+        """The scan with one plot a cluster, land left out.
+
+        ids [N] of the tracks that are surely targets, and where they are expected.
+        """
+        p = self.parameters
+        cells = locate(scan.plots, scan.own_ship, p.range_sigma_m,
+                       float(np.radians(p.bearing_sigma_deg)))
+        own, _ = own_ship_at(scan.own_ship, 0.5 * (scan.start + scan.end))
+        gates, row = self._gates(memory, ids, ahead, own)
+        place = in_gates(cells, gates)
+        loose = place.gate < 0
+        along = unit_vector(cells.bearing)
+        width = (self.beam_width * cells.range)[:, None] * np.stack([along[:, 1], -along[:, 0]], -1)
+        land = land_map.learn(memory.land, cells.position[loose], width[loose])
+        found = cluster(cells, p.range_resolution_m, self.beam_width, place._replace(
+            land=loose & land_map.on_land(land, cells.position)), gates.alike)
+        dry = found.land | ((found.size > LONGEST) & (found.gate < 0))
+        chosen = (~dry).nonzero()[0]
+        plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan, cells)
+        return scan._replace(plots=plots), Seen(cells, found, chosen, int(dry.sum()), own, land)
+
+    def step(self, memory: Memory, seen: Seen, ids, time, plot, estimate: Extrapolation) -> Memory:
+        """After the tracker's step: ids [N] of its tracks, time [N] s, plot [N] rows of the
+        reduced scan or -1, and its estimate then."""
+        taken = np.where(plot >= 0, np.append(seen.chosen, -1)[plot], -1)
+        known = hulls.step(memory.hulls, ids, time, estimate, seen.clusters, taken,
+                           seen.cells.position)
+        shift = np.zeros((len(ids), 2))
+        was = row_of(memory.hulls.id, ids)
+        shift[was >= 0] = memory.shift[was[was >= 0]]
+        wanted = np.zeros_like(shift)
+        if known.outline is not None:
+            lined = known.method == OUTLINE
+            wanted[lined] = known.outline.mean[lined, :2] - known.matrix.mean[lined, :2]
+        return Memory(known, shift + RAMP * (wanted - shift), seen.map)
+
+    def shapes(self, memory: Memory, own) -> Shapes:
+        """Of all tracks of the last step; own [2] m: own ship."""
+        return hulls.shapes(memory.hulls, self._noise(memory.hulls.matrix.mean[:, :2] - own))
+
+    def _noise(self, offset):
+        range_, bearing = to_range_bearing(offset)
+        return smear(range_, bearing, self.parameters.range_resolution_m, self.beam_width)
+
+    def _gates(self, memory, ids, ahead, own):
+        """Where hulls are expected, and their rows of the memory."""
+        row = row_of(memory.hulls.id, ids)
+        row, ahead = row[row >= 0], take(ahead, row >= 0)
+        matrix = memory.hulls.matrix
+        area = (OF_EXTENT * matrix.extent[row]
+                + OF_NOISE * (self._noise(ahead.position - own) + ahead.covariance[:, :2, :2]))
+        young = memory.hulls.scans[row] < hulls.SCANS
+        alike = moving_alike(ahead) & (young[:, None] | young)
+        gates = Gates(ahead.time, ahead.position - memory.shift[row], ahead.velocity, area, alike)
+        return gates, row
+
+    def _plots(self, memory, chosen, row, scan, cells):
+        """One plot a cluster: the centroid, with (z_s X + R) / n and what it strays along the hull.
+
+        A cluster of a single cell is a plot like any other.
+        """
+        p = self.parameters
+        count = chosen.count[:, None, None]
+        extent = hulls.first_extent(chosen.scatter, chosen.count, chosen.noise)
+        shift = np.zeros((len(chosen.count), 2))
+        own = (chosen.gate >= 0).nonzero()[0]
+        of = row[chosen.gate[own]]
+        extent[own], shift[own] = memory.hulls.matrix.extent[of], memory.shift[of]
+        value, vector = np.linalg.eigh(extent)
+        length = np.sqrt(BOX * SHIP.spread * value[:, 1])
+        stray = (vector * np.square([STRAY_ACROSS, STRAY_ALONG])) @ vector.swapaxes(1, 2)
+        covariance = (cell_covariance(extent, chosen.noise) / count
+                      + np.square(length)[:, None, None] * stray)
+        origin, _ = own_ship_at(scan.own_ship, chosen.time)
+        range_, bearing = to_range_bearing(chosen.position + shift - origin)
+        _, single = polar_to_position(range_, bearing, p.range_sigma_m,
+                                      np.radians(p.bearing_sigma_deg))
+        covariance = np.where(count > 1, covariance, single)
+        return PolarPlots(chosen.time, range_, bearing, chosen.amplitude, covariance=covariance)
+
+
+def moving_alike(ahead: Extrapolation):
+    """Which of H targets [H, H] have one velocity, as far as is known."""
+    differ = ahead.velocity[:, None] - ahead.velocity
+    covariance = ahead.covariance[:, 2:, 2:]
+    certain, _ = invert_2x2(covariance[:, None] + covariance)
+    return (squared_distance(differ, certain) < ALIKE) & (np.square(differ).sum(-1) < DRIFT ** 2)
