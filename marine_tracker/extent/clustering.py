@@ -1,6 +1,7 @@
 """Cells that touch make one cluster: one target, or several close together, or land.
 
-Two cells touch when they lie within LINK cells of each other in range and in bearing. Where hulls
+Two cells touch when they lie within LINK cells of each other in range and in bearing, or within GAP:
+fine cells tell the parts of a ship apart. Where hulls
 are expected, of targets already tracked, their gates come first: a cell inside one belongs to it,
 whatever it touches, so a hull that breaks up stays one cluster, ships side by side stay two, and a
 ship that passes close to land is not drawn into it.
@@ -19,6 +20,7 @@ from ..types import Array, Plots
 from .smear import smear
 
 LINK = 1.5                  # range resolutions, and beam widths
+GAP = 40.0                  # m
 TURN = 2 * np.pi
 REACH = 225.0               # m from a hull's middle: so far what touches it is still its own
 
@@ -30,14 +32,12 @@ class Gates(NamedTuple):
     middle    [H, 2]     m, at that time
     velocity  [H, 2]     m/s
     area      [H, 2, 2]  m^2
-    alike     [H, H]     two that touch are one ship: its parts were taken for two at first
     """
 
     time: Array
     middle: Array
     velocity: Array
     area: Array
-    alike: NDArray[np.bool_]
 
 
 class Clusters(NamedTuple):
@@ -77,11 +77,9 @@ class Place(NamedTuple):
     land: NDArray[np.bool_]
 
 
-def cluster(cells: Plots, range_resolution: float, beam_width: float, place: Place, alike
-            ) -> Clusters:
-    """The clusters of one scan's cells [M]; range_resolution m, beam_width rad; alike of Gates."""
+def cluster(cells: Plots, range_resolution: float, beam_width: float, place: Place) -> Clusters:
+    """The clusters of one scan's cells [M]; range_resolution m, beam_width rad."""
     first, second = _links(cells, range_resolution, beam_width)
-    place = place._replace(gate=_whole_ships(place.gate, first, second, alike))
     group, crowded = _groups(first, second, place)
     _, group = np.unique(group, return_inverse=True)
     return _summary(cells, group, crowded, place, range_resolution, beam_width)
@@ -95,7 +93,9 @@ def _links(cells, range_resolution, beam_width):
     places = np.column_stack([cells.range / (LINK * range_resolution),
                               np.minimum(cells.bearing * (turn / TURN), np.nextafter(turn, 0))])
     tree = cKDTree(places, boxsize=[0, turn], balanced_tree=False)
-    return tree.query_pairs(1.0 + 1e-9, p=np.inf, output_type='ndarray').T
+    near = cKDTree(cells.position, balanced_tree=False)
+    return np.concatenate([tree.query_pairs(1.0 + 1e-9, p=np.inf, output_type='ndarray'),
+                           near.query_pairs(GAP, output_type='ndarray')]).T
 
 
 def in_gates(cells: Plots, gates: Gates) -> Place:
@@ -114,20 +114,6 @@ def in_gates(cells: Plots, gates: Gates) -> Place:
                  np.hypot(*offset[nearest, every].T), dry)
 
 
-def _whole_ships(gate, first, second, alike):
-    """The gate [M] of each cell, where parts of one ship that touch share the first one's."""
-    one, other = gate[first], gate[second]
-    touch = ((one >= 0) & (other >= 0) & (one != other)).nonzero()[0]
-    touch = touch[alike[one[touch], other[touch]]]
-    if not len(touch):
-        return gate
-    ship = connected_components(coo_array(
-        (np.ones(len(touch), np.int8), (one[touch], other[touch])), shape=alike.shape),
-        directed=False)[1]
-    _, oldest = np.unique(ship, return_index=True)
-    return np.where(gate >= 0, oldest[ship][gate], -1)
-
-
 def _groups(first, second, place):
     """A label [M] of each cell's cluster; and whether [M] it touches another cluster.
 
@@ -139,7 +125,8 @@ def _groups(first, second, place):
     hulls = (gate >= 0).nonzero()[0]
     pairs = (np.concatenate([first[same], hulls]),
              np.concatenate([second[same], count + gate[hulls]]))
-    graph = coo_array((np.ones(len(pairs[0]), np.int8), pairs), shape=(2 * count + 1,) * 2)
+    graph = coo_array((np.ones(len(pairs[0]), np.int8), pairs),
+                      shape=(count + gate.max(initial=-1) + 1,) * 2)
     group = connected_components(graph, directed=False)[1]
     crowded = np.zeros(len(group), bool)
     if same.all():

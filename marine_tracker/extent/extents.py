@@ -1,15 +1,17 @@
 """Extended targets around a point tracker: one plot a cluster in, sizes and headings out.
 
     extents = Extents(parameters)                       # with extent random_matrix or gp
-    memory = extents.start()
-    plain, seen = extents.reduce(memory, scan, ids, ahead)          # one plot a cluster
-    ... a step of the tracker with the scan `plain` ...
-    memory = extents.step(memory, seen, ids, time, plot, estimate)
+    tracks, known = tracker.start(), extents.start()
+    for scan in scans:
+        (tracks, known), report, plain, shapes = extents.track(tracker, tracks, known, scan)
+
+`track` is a step of the tracker between `reduce`, which makes the scan `plain` with one plot a
+cluster, and `step`. The tracker is handed in: it knows nothing of extents.
 
 What is longer than any ship and stays where it is, is land: its clusters give no plots.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,6 +83,21 @@ class Extents:
         return Memory(hulls.begin(self.parameters.extent == 'gp'), np.zeros((0, 2)),
                       land_map.empty())
 
+    def track(self, tracker: Any, tracks: Any, known: Memory, scan: Scan
+              ) -> tuple[tuple[Any, Memory], Any, Scan, Shapes]:
+        """One antenna revolution: a step of a `tracking.tracker.Tracker` and of this.
+
+        Returns the tracker's memory and this one's, the tracker's report, the scan that it refers
+        to, and the shapes of all tracks in it.
+        """
+        sure = take(tracks.tracks, tracks.tracks.number > 0)
+        plain, seen = self.reduce(known, scan, sure.id, tracker.extrapolate(
+            sure, 0.5 * (scan.start + scan.end)))
+        tracks, report = tracker.step(tracks, plain)
+        known = self.step(known, seen, report.tracks.id, report.time, report.plot,
+                          tracker.extrapolate(report.tracks, report.time))
+        return (tracks, known), report, plain, self.shapes(known, seen.own)
+
     def reduce(self, memory: Memory, scan: Scan, ids, ahead: Extrapolation) -> tuple[Scan, Seen]:
         """The scan with one plot a cluster, land left out.
 
@@ -97,7 +114,7 @@ class Extents:
         width = (self.beam_width * cells.range)[:, None] * np.stack([along[:, 1], -along[:, 0]], -1)
         land = land_map.learn(memory.land, cells.position[loose], width[loose])
         found = cluster(cells, p.range_resolution_m, self.beam_width, place._replace(
-            land=loose & land_map.on_land(land, cells.position)), gates.alike)
+            land=loose & land_map.on_land(land, cells.position)))
         dry = found.land | ((found.size > LONGEST) & (found.gate < 0))
         chosen = (~dry).nonzero()[0]
         plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan, cells)
@@ -133,10 +150,10 @@ class Extents:
         matrix = memory.hulls.matrix
         area = (OF_EXTENT * matrix.extent[row]
                 + OF_NOISE * (self._noise(ahead.position - own) + ahead.covariance[:, :2, :2]))
-        young = memory.hulls.scans[row] < hulls.SCANS
-        alike = moving_alike(ahead) & (young[:, None] | young)
-        gates = Gates(ahead.time, ahead.position - memory.shift[row], ahead.velocity, area, alike)
-        return gates, row
+        gates, kept = one_a_ship(
+            Gates(ahead.time, ahead.position - memory.shift[row], ahead.velocity, area),
+            ahead.covariance[:, 2:, 2:], memory.hulls.scans[row] < hulls.SCANS)
+        return gates, row[kept]
 
     def _plots(self, memory, chosen, row, scan, cells):
         """One plot a cluster: the centroid, with (z_s X + R) / n and what it strays along the hull.
@@ -163,9 +180,25 @@ class Extents:
         return PolarPlots(chosen.time, range_, bearing, chosen.amplitude, covariance=covariance)
 
 
-def moving_alike(ahead: Extrapolation):
-    """Which of H targets [H, H] have one velocity, as far as is known."""
-    differ = ahead.velocity[:, None] - ahead.velocity
-    covariance = ahead.covariance[:, 2:, 2:]
-    certain, _ = invert_2x2(covariance[:, None] + covariance)
-    return (squared_distance(differ, certain) < ALIKE) & (np.square(differ).sum(-1) < DRIFT ** 2)
+def one_a_ship(gates: Gates, velocity_covariance, young) -> tuple[Gates, NDArray[np.int64]]:
+    """The gates without those of parts of a hull that has another; and their rows.
+
+    Two that overlap and move alike, as far as velocities with covariances [H, 2, 2] m^2/s^2 tell,
+    are one hull in two pieces, unless both are known for long; young [H] tells which are not. The
+    gate of the older track, which comes first, grows over both; the other gets no more plots.
+    """
+    apart = gates.middle[:, None] - gates.middle
+    way = np.hypot(*np.moveaxis(apart, -1, 0))
+    inverse, _ = invert_2x2(gates.area)
+    # From the middle of each row's gate to its edge, towards each column's.
+    edge = way / np.sqrt(np.maximum(squared_distance(apart, inverse[:, None]), 1e-12))
+    differ = gates.velocity[:, None] - gates.velocity
+    certain, _ = invert_2x2(velocity_covariance[:, None] + velocity_covariance)
+    one = np.triu((way <= edge + edge.T) & (squared_distance(differ, certain) < ALIKE)
+                  & (np.square(differ).sum(-1) < DRIFT ** 2) & (young[:, None] | young), 1)
+    area = gates.area.copy()
+    for older, younger in zip(*one.nonzero()):
+        reach = 1 + edge[younger, older] / max(way[older, younger], 1.0)
+        area[older] += reach ** 2 * np.outer(apart[older, younger], apart[older, younger])
+    kept = (~one.any(0)).nonzero()[0]
+    return take(gates._replace(area=area), kept), kept

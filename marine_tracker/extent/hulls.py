@@ -30,6 +30,7 @@ NIS = 3.0                           # mean nu^2 / S of an outline's cells: they 
 RECENT = 5.0                        # scans that the means of cells and NIS remember
 FIRST_WEIGHT = 6.0                  # of a random matrix's first cluster
 LOST_TOUCH = 16.0                   # squared distance of the random matrix from the track
+FRINGE = 1.1                        # deviations of a cell, measured on simulated hulls
 SLENDER = 6.3                       # length over beam of ships, by which outlines start
 SLOW = 1.0                          # m/s: slower, a course says little about the heading
 PRIOR: Contour = contour_prior(24, 0.2, 0.1, np.pi / 14, folds=2, mean=1.0)
@@ -182,7 +183,9 @@ def _keep_touch(matrix, rows, own, estimate):
 def _outlines(hulls, time, rows, taken, own, clusters, cells):
     """The outlines of the rows that may have one: predicted, started, updated, given up."""
     matrix, outline = hulls.matrix, hulls.outline
-    found = size(hulls.matrix)
+    noise = np.zeros_like(matrix.extent)
+    noise[rows] = own.noise
+    found = size(hulls.matrix, noise)
     velocity = matrix.mean[:, 2:]
     course = np.arctan2(*velocity.T)
     moving = np.hypot(*velocity.T) > SLOW
@@ -236,10 +239,17 @@ def _padded(clusters, chosen, cells):
     return cells[order[np.minimum(place, len(order) - 1)]], count
 
 
-def size(matrix: RandomMatrixState, noise=None) -> random_matrix.Measures:
-    """Of the random matrices; noise [N, 2, 2] m^2 of a cell widens the deviations."""
-    noise = np.zeros_like(matrix.extent) if noise is None else noise
-    return random_matrix.measures(matrix, noise, size=BOX)
+def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
+    """Length, beam and axis of the random matrices; noise [N, 2, 2] m^2, R of a single cell.
+
+    A radar shows cells wherever an echo reaches, none stronger than the others: those of a hull lie
+    evenly over its length L and F = FRINGE deviations of R beyond either end, not as a sum of both. So a
+    random matrix, which takes R off in squares, is left with L^2 + 4 L F; here F goes.
+    """
+    found = random_matrix.measures(matrix, noise, size=BOX)
+    line = unit_vector(found.axis)
+    fringe = FRINGE * np.sqrt(np.einsum('ni,nij,nj->n', line, noise, line))
+    return found._replace(length=np.sqrt(found.length ** 2 + 4 * fringe ** 2) - 2 * fringe)
 
 
 def shapes(hulls: Hulls, noise) -> Shapes:
