@@ -35,6 +35,9 @@ def check(parameters) -> None:
         if kind is float and type(value) is int:
             value = float(value)
             object.__setattr__(parameters, field.name, value)
+        if value is False and 'off' in about['choices']:        # how YAML reads it
+            value = 'off'
+            object.__setattr__(parameters, field.name, value)
         if type(value) is not kind:
             raise ValueError(f'parameter {field.name} is {value!r}, a {type(value).__name__}; '
                              f'it must be a {kind.__name__}')
@@ -109,8 +112,8 @@ class TrackerParameters:
         'each axis: some 0.15 of the length of large ships.', unit='m', low=0.0, high=100.0,
         live=True)
     extent: str = parameter(
-        'off', 'Whether echoes that touch are taken as one target with length and heading: off, by '
-        'an ellipse (random_matrix), or close by also by a contour (gp). See doc/extended_targets.md.',
+        'off', 'Whether echoes that touch are one target with length and heading: off, by an '
+        'ellipse (random_matrix), close by also by an outline (gp); see doc/extended_targets.md.',
         choices=('off', 'random_matrix', 'gp'), live=True)
     range_resolution_m: float = parameter(
         30.0, 'Depth of a radar cell: echoes of one target lie no farther apart; for extent.',

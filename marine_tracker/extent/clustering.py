@@ -1,10 +1,10 @@
 """Cells that touch make one cluster: one target, or several close together, or land.
 
-Two cells touch when they lie within LINK cells of each other in range and in bearing, or within GAP:
-fine cells tell the parts of a ship apart. Where hulls
-are expected, of targets already tracked, their gates come first: a cell inside one belongs to it,
-whatever it touches, so a hull that breaks up stays one cluster, ships side by side stay two, and a
-ship that passes close to land is not drawn into it.
+Two cells touch when they lie within LINK cells of each other in range and in bearing, or within
+GAP, for fine cells tell the parts of a ship apart. Where hulls are expected, of targets already
+tracked, their gates come first: a cell inside one belongs to it, whatever it touches, so a hull
+that breaks up stays one cluster, ships side by side stay two, and a ship that passes close to land
+is not drawn into it.
 """
 
 from typing import NamedTuple
@@ -46,7 +46,7 @@ class Clusters(NamedTuple):
     time       [C]        s, mean of the cells'
     position   [C, 2]     m, east and north: the centroid
     scatter    [C, 2, 2]  m^2, sum over the cells of d d' with d from the centroid
-    count      [C]        cells
+    cells      [C]        how many
     noise      [C, 2, 2]  m^2, R of a single cell
     size       [C]        m, between the farthest cells along the longer of two axes
     amplitude  [C]        dB, of the strongest cell
@@ -58,7 +58,7 @@ class Clusters(NamedTuple):
     time: Array
     position: Array
     scatter: Array
-    count: NDArray[np.int64]
+    cells: NDArray[np.int64]
     noise: Array
     size: Array
     amplitude: Array

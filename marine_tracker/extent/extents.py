@@ -1,6 +1,6 @@
 """Extended targets around a point tracker: one plot a cluster in, sizes and headings out.
 
-    extents = Extents(parameters)                       # with extent random_matrix or gp
+    extents = Extents(parameters)
     tracks, known = tracker.start(), extents.start()
     for scan in scans:
         (tracks, known), report, plain, shapes = extents.track(tracker, tracks, known, scan)
@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..estimators.linear import invert_2x2, squared_distance
 from ..geometry import locate, own_ship_at, polar_to_position, to_range_bearing, unit_vector
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, PolarPlots, Scan, row_of, take
-from ..estimators.linear import invert_2x2, squared_distance
 from . import hulls, land_map
 from .clustering import Clusters, Gates, cluster, in_gates
 from .hulls import OUTLINE, Hulls, Shapes
@@ -27,7 +27,7 @@ from .land_map import LONGEST, LandMap
 from .random_matrix import SHIP, cell_covariance
 from .smear import smear
 
-# Of a ship's length: how far the centroid strays along her axis; and across, as the lit side changes.
+# Of a ship's length: how far the centroid strays along her axis; across, as the lit side changes.
 STRAY_ALONG, STRAY_ACROSS = 0.1, 0.04
 RAMP = 0.1                  # of the way to an outline's centre that the plots move each scan
 BOX = 12.0                  # length^2 over variance of a rod
@@ -43,11 +43,13 @@ class Memory(NamedTuple):
     hulls  one row a track
     shift  [N, 2]  m, from the centroid of its cells to where each track is led
     land   where it lies
+    shores  clusters of land in the last scan
     """
 
     hulls: Hulls
     shift: Array
     land: LandMap
+    shores: int
 
 
 class Seen(NamedTuple):
@@ -56,7 +58,7 @@ class Seen(NamedTuple):
     cells     M plots, as they came
     clusters  C rows
     chosen    [P]  the clusters that gave plots, in the order of the plots
-    land      how many were land
+    shores    how many were land
     own       [2] m, own ship in the middle of the scan
     map       of the land, this scan included
     """
@@ -64,39 +66,46 @@ class Seen(NamedTuple):
     cells: Plots
     clusters: Clusters
     chosen: NDArray[np.int64]
-    land: int
+    shores: int
     own: Array
     map: LandMap
 
 
 class Extents:
-    """The pure core: parameters in, no state of its own. ValueError with extent off."""
+    """The pure core: parameters in, no state of its own. With extent off, plots pass untouched."""
 
     def __init__(self, parameters: TrackerParameters):
-        if parameters.extent == 'off':
-            raise ValueError("parameter extent is 'off'; there is nothing to estimate")
         self.parameters = parameters
         self.beam_width = float(np.radians(parameters.beam_width_deg))
 
     def start(self) -> Memory:
         """No targets yet."""
         return Memory(hulls.begin(self.parameters.extent == 'gp'), np.zeros((0, 2)),
-                      land_map.empty())
+                      land_map.empty(), 0)
+
+    def adopt(self, known: Memory, previous: 'Extents') -> Memory:
+        """The memory of another; sizes are found anew where it was asked for something else."""
+        same = self.parameters.extent == previous.parameters.extent
+        return known if same else self.start()
 
     def track(self, tracker: Any, tracks: Any, known: Memory, scan: Scan
-              ) -> tuple[tuple[Any, Memory], Any, Scan, Shapes]:
+              ) -> tuple[tuple[Any, Memory], Any, Scan, Shapes | None]:
         """One antenna revolution: a step of a `tracking.tracker.Tracker` and of this.
 
         Returns the tracker's memory and this one's, the tracker's report, the scan that it refers
-        to, and the shapes of all tracks in it.
+        to, and the shapes of all tracks in it, None with extent off.
         """
+        if self.parameters.extent == 'off':
+            tracks, report = tracker.step(tracks, scan)
+            return (tracks, known), report, scan, None
         sure = take(tracks.tracks, tracks.tracks.number > 0)
         plain, seen = self.reduce(known, scan, sure.id, tracker.extrapolate(
             sure, 0.5 * (scan.start + scan.end)))
         tracks, report = tracker.step(tracks, plain)
-        known = self.step(known, seen, report.tracks.id, report.time, report.plot,
-                          tracker.extrapolate(report.tracks, report.time))
-        return (tracks, known), report, plain, self.shapes(known, seen.own)
+        estimate = tracker.extrapolate(report.tracks, report.time)
+        known = self.step(known, seen, report.tracks.id, report.time, report.plot, estimate)
+        noise = self._noise(known.hulls.matrix.mean[:, :2] - seen.own)
+        return (tracks, known), report, plain, hulls.shapes(known.hulls, noise, estimate.position)
 
     def reduce(self, memory: Memory, scan: Scan, ids, ahead: Extrapolation) -> tuple[Scan, Seen]:
         """The scan with one plot a cluster, land left out.
@@ -133,11 +142,7 @@ class Extents:
         if known.outline is not None:
             lined = known.method == OUTLINE
             wanted[lined] = known.outline.mean[lined, :2] - known.matrix.mean[lined, :2]
-        return Memory(known, shift + RAMP * (wanted - shift), seen.map)
-
-    def shapes(self, memory: Memory, own) -> Shapes:
-        """Of all tracks of the last step; own [2] m: own ship."""
-        return hulls.shapes(memory.hulls, self._noise(memory.hulls.matrix.mean[:, :2] - own))
+        return Memory(known, shift + RAMP * (wanted - shift), seen.map, seen.shores)
 
     def _noise(self, offset):
         range_, bearing = to_range_bearing(offset)
@@ -161,9 +166,9 @@ class Extents:
         A cluster of a single cell is a plot like any other.
         """
         p = self.parameters
-        count = chosen.count[:, None, None]
-        extent = hulls.first_extent(chosen.scatter, chosen.count, chosen.noise)
-        shift = np.zeros((len(chosen.count), 2))
+        count = chosen.cells[:, None, None]
+        extent = hulls.first_extent(chosen.scatter, chosen.cells, chosen.noise)
+        shift = np.zeros((len(chosen.cells), 2))
         own = (chosen.gate >= 0).nonzero()[0]
         of = row[chosen.gate[own]]
         extent[own], shift[own] = memory.hulls.matrix.extent[of], memory.shift[of]

@@ -69,7 +69,7 @@ class Shapes(NamedTuple):
     heading_sd          [N]  rad
     source              [N]  of the heading: index into SOURCES
     method              [N]  RANDOM_MATRIX or OUTLINE
-    outline             [N, CORNERS, 2]  m, east and north
+    outline             [N, CORNERS, 2]  m, east and north of where the tracker has the target
     """
 
     extended: NDArray[np.bool_]
@@ -119,9 +119,9 @@ def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, 
     rows = whole.nonzero()[0]
     own = take_clusters(clusters, taken[rows])
     matrix = _keep_touch(matrix, rows, own, take(estimate, rows))
-    matrix = random_matrix.update(matrix, rows, own.position, own.scatter, own.count, own.noise)
+    matrix = random_matrix.update(matrix, rows, own.position, own.scatter, own.cells, own.noise)
     count = np.zeros(len(ids))
-    count[has] = clusters.count[taken[has]]
+    count[has] = clusters.cells[taken[has]]
     late = np.where(has, 1 / np.minimum(hulls.scans + 1.0, RECENT), 0.0)
     hulls = hulls._replace(matrix=matrix, scans=hulls.scans + whole,
                            cells=hulls.cells + late * (count - hulls.cells))
@@ -132,7 +132,8 @@ def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, 
 
 def take_clusters(clusters: Clusters, rows) -> Clusters:
     """The chosen clusters; of_cell is left as it is."""
-    return Clusters(*take(clusters[:-1], rows), clusters.of_cell)      # type: ignore[arg-type]
+    return take(clusters._replace(of_cell=clusters.cells), rows)._replace(
+        of_cell=clusters.of_cell)
 
 
 def first_extent(scatter, count, noise):
@@ -146,15 +147,18 @@ def first_extent(scatter, count, noise):
 def _start(ids, estimate, clusters, taken, outlines):
     count = len(ids)
     own = take_clusters(clusters, taken)
-    cells = own.scatter / own.count[:, None, None] + own.noise
+    # A track that was there before extents were asked for may have no cluster.
+    none = taken < 0
+    position = np.where(none[:, None], estimate.position, own.position)
+    spread = np.where(none[:, None, None], estimate.covariance[:, :2, :2],
+                      own.scatter / own.cells[:, None, None] + own.noise)
     matrix = random_matrix.start(
-        estimate.time, own.position, cells / own.count[:, None, None],
+        estimate.time, position, spread / own.cells[:, None, None],
         Velocity(estimate.velocity, estimate.covariance[:, 2:, 2:]),
-        first_extent(own.scatter, own.count, own.noise),
-        NO_MEMORY + np.minimum(own.count, FIRST_WEIGHT))
-    none = np.zeros(count, np.int64)
-    return Hulls(ids, matrix, _no_outline(count) if outlines else None, none.astype(np.int8),
-                 none + 1, own.count.astype(float), np.ones(count))
+        first_extent(own.scatter, own.cells, own.noise),
+        NO_MEMORY + np.minimum(own.cells, FIRST_WEIGHT))
+    return Hulls(ids, matrix, _no_outline(count) if outlines else None, np.zeros(count, np.int8),
+                 np.where(none, 0, 1), np.where(none, 1.0, own.cells), np.ones(count))
 
 
 def _no_outline(count):
@@ -170,7 +174,7 @@ def _keep_touch(matrix, rows, own, estimate):
     """
     ahead = take(matrix, rows)
     off = own.position - ahead.mean[:, :2]
-    cells = random_matrix.cell_covariance(ahead.extent, own.noise) / own.count[:, None, None]
+    cells = random_matrix.cell_covariance(ahead.extent, own.noise) / own.cells[:, None, None]
     inverse, _ = invert_2x2(ahead.covariance[:, :2, :2] + cells)
     lost = (squared_distance(off, inverse) > LOST_TOUCH).nonzero()[0]
     if not len(lost):
@@ -233,8 +237,8 @@ def _first_outline(matrix, course, length, half):
 def _padded(clusters, chosen, cells):
     """Cells [K, C, 2] m of the chosen clusters, and how many [K] each has."""
     order = np.argsort(clusters.of_cell, kind='stable')
-    first = np.concatenate([[0], np.cumsum(clusters.count)])[chosen]
-    count = clusters.count[chosen]
+    first = np.concatenate([[0], np.cumsum(clusters.cells)])[chosen]
+    count = clusters.cells[chosen]
     place = first[:, None] + np.arange(count.max())
     return cells[order[np.minimum(place, len(order) - 1)]], count
 
@@ -242,8 +246,8 @@ def _padded(clusters, chosen, cells):
 def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
     """Length, beam and axis of the random matrices; noise [N, 2, 2] m^2, R of a single cell.
 
-    A radar shows cells wherever an echo reaches, none stronger than the others: those of a hull lie
-    evenly over its length L and F = FRINGE deviations of R beyond either end, not as a sum of both. So a
+    A radar shows cells wherever an echo reaches, and they count alike: those of a hull lie evenly
+    over its length L and F = FRINGE deviations of R beyond either end, not as a sum of both. So a
     random matrix, which takes R off in squares, is left with L^2 + 4 L F; here F goes.
     """
     found = random_matrix.measures(matrix, noise, size=BOX)
@@ -252,8 +256,11 @@ def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
     return found._replace(length=np.sqrt(found.length ** 2 + 4 * fringe ** 2) - 2 * fringe)
 
 
-def shapes(hulls: Hulls, noise) -> Shapes:
-    """What is shown of the targets; noise [N, 2, 2] m^2, R of a single cell where each is."""
+def shapes(hulls: Hulls, noise, position) -> Shapes:
+    """What is shown of the targets.
+
+    noise [N, 2, 2] m^2, R of a single cell where each is; position [N, 2] m of the point tracker.
+    """
     matrix, found = hulls.matrix, size(hulls.matrix, noise)
     velocity = matrix.mean[:, 2:]
     speed, course = np.hypot(*velocity.T), np.arctan2(*velocity.T)
@@ -276,4 +283,5 @@ def shapes(hulls: Hulls, noise) -> Shapes:
         heading[lined], heading_sd[lined] = outline.mean[:, HEADING], of.axis_sd
         source[lined] = BY_OUTLINE
     return Shapes((hulls.cells >= 3) & (length > 3 * length_sd), length, length_sd, beam,
-                  np.mod(heading, 2 * np.pi), heading_sd, source, hulls.method, points)
+                  np.mod(heading, 2 * np.pi), heading_sd, source, hulls.method,
+                  points - position[:, None])

@@ -57,8 +57,8 @@ def plots(of: Scene, scenario: Scenario, start: float, truth: Truth,
     shore -= (_passed(scenario, start, shore) - own.time[-1])[:, None] * own.velocity[-1]
     power = np.concatenate([power, of.power[shown]])
     echo = np.sqrt(0.5 * power) * (random.standard_normal((2, len(power))).T @ [1, 1j])
-    return echoes.cells(scenario.radar, start, *to_range_bearing(np.concatenate([offset, shore])),
-                        echo, random)
+    distance, bearing = to_range_bearing(np.concatenate([offset, shore]))
+    return echoes.cells(scenario.radar, start, distance, bearing, echo, random)
 
 
 def _passed(scenario, start, offset):

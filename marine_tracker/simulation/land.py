@@ -1,4 +1,4 @@
-"""Land: shores as many scatterers at rest, of which the radar sees the nearest in each direction."""
+"""Land: shores as scatterers at rest, of which the radar sees the nearest in each direction."""
 
 import math
 from typing import NamedTuple
@@ -60,7 +60,7 @@ def _corner(corner, where, unit):
     if not (isinstance(corner, list) and len(corner) == 2
             and all(type(value) in (int, float) and math.isfinite(value)
                     and abs(value) * unit <= MAX_COORDINATE for value in corner)):
-        raise ValueError(f'{where} is {corner!r}; it must be [north, east], numbers that lie within '
+        raise ValueError(f'{where} is {corner!r}; it must be [north, east], numbers within '
                          f'{MAX_COORDINATE / unit:g}')
     north, east = corner
     return east * unit, north * unit

@@ -1,5 +1,6 @@
 """One scan in, tracks out: the whole way of the data on one page."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -70,7 +71,9 @@ class Tracker:
     """
 
     def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
-        self.parameters = parameters
+        # Clusters tell what their middle strays.
+        self.parameters = (parameters if parameters.extent == 'off'
+                           else replace(parameters, glint_sigma_m=0.0))
         self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
         self.bearing_sigma = float(np.radians(parameters.bearing_sigma_deg))
         self.glint = parameters.glint_sigma_m ** 2 * np.eye(2)
@@ -106,7 +109,8 @@ class Tracker:
             covariance = covariance + self.glint
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
-                                         p.range_sigma_m, self.bearing_sigma, self.gate_size)
+                                         p.range_sigma_m, self.bearing_sigma, self.gate_size,
+                                         _widest(scan.plots.covariance))
         if p.glint_sigma_m:
             plots = plots._replace(covariance=plots.covariance + self.glint)
         seam = track.searchsorted(count)
@@ -213,3 +217,10 @@ class Tracker:
                       score=np.zeros(count), age=none + 1, first_time=plots.time,
                       last_time=plots.time, bearing=plots.bearing,
                       state=self.estimator.init(plots))
+
+
+def _widest(covariance) -> float:
+    """Deviation m of the least certain of plots with covariances [M, 2, 2] m^2, 0 for None."""
+    if covariance is None:
+        return 0.0
+    return float(np.sqrt(np.trace(covariance, axis1=1, axis2=2).max(initial=0.0)))

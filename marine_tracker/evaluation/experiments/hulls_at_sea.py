@@ -11,7 +11,6 @@ from ...parameters import TrackerParameters
 from ...simulation import radar, scenario
 from ...tracking.lifecycle import CONFIRMED
 from ...tracking.tracker import Tracker
-from ...types import take
 
 SPEED = 6.0                     # m/s
 SCANS = 44                      # two minutes
