@@ -71,6 +71,7 @@ def run(case: Case, extent: str, seed: int) -> Found:
     off, lined, last = [], [], (np.nan,) * 3
     for k, (scan, truth) in enumerate(radar.simulate(loaded, seed)):
         (memory, known), report, _, shapes = extents.track(tracker, memory, known, scan)
+        assert shapes is not None
         estimate = tracker.extrapolate(report.tracks, report.time)
         there = truth.position[0] + (report.time - truth.time[0])[:, None] * truth.velocity[0]
         away = np.hypot(*(estimate.position - there).T)
