@@ -24,12 +24,13 @@ from . import hulls, land_map
 from .clustering import Clusters, Gates, cluster, in_gates
 from .hulls import OUTLINE, Hulls, Shapes
 from .land_map import LONGEST, LandMap
+from .lit_edge import lit_edge
 from .random_matrix import SHIP, cell_covariance
 from .smear import smear
 
 # Of a ship's length: how far the centroid strays along her axis; across, as the lit side changes.
 STRAY_ALONG, STRAY_ACROSS = 0.1, 0.04
-RAMP = 0.1                  # of the way to an outline's centre that the plots move each scan
+RAMP = 0.2                  # of the way to an outline's centre that the plots move each scan
 BOX = 12.0                  # length^2 over variance of a rod
 # A gate is so many times the extent, the smear and the expectation's covariance: half again the
 # half length, and 2.8 deviations.
@@ -133,8 +134,10 @@ class Extents:
         """After the tracker's step: ids [N] of its tracks, time [N] s, plot [N] rows of the
         reduced scan or -1, and its estimate then."""
         taken = np.where(plot >= 0, np.append(seen.chosen, -1)[plot], -1)
-        known = hulls.step(memory.hulls, ids, time, estimate, seen.clusters, taken,
-                           seen.cells.position)
+        edge = (lit_edge(seen.cells, seen.clusters.of_cell, seen.clusters.noise,
+                         self.parameters.range_resolution_m, self.beam_width)
+                if self.parameters.extent == 'gp' else None)
+        known = hulls.step(memory.hulls, ids, time, estimate, seen.clusters, taken, edge)
         shift = np.zeros((len(ids), 2))
         was = row_of(memory.hulls.id, ids)
         shift[was >= 0] = memory.shift[was[was >= 0]]

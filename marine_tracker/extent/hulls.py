@@ -19,6 +19,7 @@ from ..types import Array, Extrapolation, append, put, take, where
 from . import contour, gaussian_process, random_matrix
 from .clustering import Clusters
 from .gaussian_process import HEADING, GpState
+from .lit_edge import FRINGE, Edge
 from .radial_function import Contour
 from .radial_function import contour as contour_prior
 from .random_matrix import BOX, NO_MEMORY, RandomMatrixState
@@ -27,15 +28,15 @@ RANDOM_MATRIX, OUTLINE = 0, 1       # methods
 SCANS, CELLS, SMEAR = 10, 10.0, 0.4     # for an outline: scans; mean cells; smear over half beam
 OFF_COURSE = np.radians(15)         # of an outline's heading: it is wrong
 NIS = 3.0                           # mean nu^2 / S of an outline's cells: they contradict it
+CENTRED = 0.02                      # of the length: a centroid's deviation along it
+EDGE_CELLS = 6                      # of the lit edge that an outline needs to start
 RECENT = 5.0                        # scans that the means of cells and NIS remember
 FIRST_WEIGHT = 6.0                  # of a random matrix's first cluster
 LOST_TOUCH = 16.0                   # squared distance of the random matrix from the track
-FRINGE = 1.1                        # deviations of a cell, measured on simulated hulls
 SLENDER = 6.3                       # length over beam of ships, by which outlines start
 SLOW = 1.0                          # m/s: slower, a course says little about the heading
-PRIOR: Contour = contour_prior(24, 0.2, 0.1, np.pi / 14, folds=2, mean=1.0)
-SHIP = gaussian_process.Model(PRIOR, 'gp_q15', noise=0.0025, turn_noise=1e-8,
-                              inside=(0.85, 0.25), gate=16.0)
+PRIOR: Contour = contour_prior(24, 0.05, 0.01, np.pi / 14, folds=2, mean=1.0)
+SHIP = gaussian_process.Model(PRIOR, 'gp_q15', noise=0.0025, turn_noise=1e-8, gate=16.0)
 
 
 class Hulls(NamedTuple):
@@ -100,12 +101,12 @@ def begin(outlines: bool) -> Hulls:
                  none.astype(np.int8), none.astype(np.int64), none, none)
 
 
-def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, taken, cells
-         ) -> Hulls:
+def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, taken,
+         edge: Edge | None = None) -> Hulls:
     """One scan.
 
     ids [N] of the tracks, time [N] s when the beam passed them, estimate of the point tracker
-    then; taken [N]: the cluster of each, -1 for none; cells [M, 2] m, as clustered.
+    then; taken [N]: the cluster of each, -1 for none; edge of the clusters, for outlines.
     """
     new = ~np.isin(ids, before.id)
     hulls = append(take(before, np.isin(before.id, ids)),
@@ -125,9 +126,9 @@ def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, 
     late = np.where(has, 1 / np.minimum(hulls.scans + 1.0, RECENT), 0.0)
     hulls = hulls._replace(matrix=matrix, scans=hulls.scans + whole,
                            cells=hulls.cells + late * (count - hulls.cells))
-    if hulls.outline is None or not len(rows):
+    if hulls.outline is None or edge is None or not len(rows):
         return hulls
-    return _outlines(hulls, time, rows, taken, own, clusters, cells)
+    return _outlines(hulls, time, rows, taken, own, edge)
 
 
 def take_clusters(clusters: Clusters, rows) -> Clusters:
@@ -184,22 +185,24 @@ def _keep_touch(matrix, rows, own, estimate):
         mean=mean, covariance=estimate.covariance[lost]))
 
 
-def _outlines(hulls, time, rows, taken, own, clusters, cells):
+def _outlines(hulls, time, rows, taken, own, edge):
     """The outlines of the rows that may have one: predicted, started, updated, given up."""
     matrix, outline = hulls.matrix, hulls.outline
-    noise = np.zeros_like(matrix.extent)
+    noise, cells = np.zeros_like(matrix.extent), np.zeros(len(time), np.int64)
     noise[rows] = own.noise
+    cells[rows] = np.bincount(edge.cluster, minlength=taken.max() + 1)[taken[rows]]
     found = size(hulls.matrix, noise)
     velocity = matrix.mean[:, 2:]
     course = np.arctan2(*velocity.T)
     moving = np.hypot(*velocity.T) > SLOW
     active = hulls.method == OUTLINE
     outline = where(active, gaussian_process.predict(outline, time, SHIP), outline)
-    half = 0.5 * np.minimum(found.beam, found.length / SLENDER)
+    half = 0.5 * found.length / SLENDER
     abeam = unit_vector(course + np.pi / 2)
     blur = np.full(len(time), np.inf)
     blur[rows] = np.sqrt(np.einsum('ni,nij,nj->n', abeam[rows], own.noise, abeam[rows]))
-    fit = (hulls.scans >= SCANS) & (hulls.cells >= CELLS) & (blur <= SMEAR * half) & moving
+    fit = ((hulls.scans >= SCANS) & (hulls.cells >= CELLS) & (cells >= EDGE_CELLS)
+           & (blur <= SMEAR * half) & moving)
     fresh = (fit & ~active).nonzero()[0]
     if len(fresh):
         outline = put(outline, fresh, _first_outline(
@@ -210,9 +213,9 @@ def _outlines(hulls, time, rows, taken, own, clusters, cells):
     nis[fresh] = 1.0
     lined = rows[method[rows] == OUTLINE]
     if len(lined):
-        padded, count = _padded(clusters, taken[lined], cells)
+        padded, count = _padded(edge, taken[lined])
         outline, found_nis = gaussian_process.update(
-            outline, lined, padded, count, clusters.noise[taken[lined]], SHIP)
+            outline, lined, padded, count, edge.noise[taken[lined]], SHIP)
         nis[lined] += (found_nis - nis[lined]) / RECENT
     turned = np.abs(wrap_angle(outline.mean[:, HEADING] - course)) > OFF_COURSE
     failed = (method == OUTLINE) & ((moving & turned) | (nis > NIS))
@@ -222,11 +225,15 @@ def _outlines(hulls, time, rows, taken, own, clusters, cells):
 
 
 def _first_outline(matrix, course, length, half):
-    """Outlines from random matrices: the lit side has drawn the centroid, by up to half a beam."""
+    """Outlines from random matrices: the lit side has drawn the centroid, by up to half a beam;
+    along the axis it is good to a few per cent of the length."""
     count = len(course)
     covariance = np.zeros((count, 6, 6))
     covariance[:, :4, :4] = matrix.covariance
-    covariance[:, [0, 1], [0, 1]] += (half ** 2)[:, None]
+    ahead = unit_vector(course)
+    along = ahead[:, :, None] * ahead[:, None, :]
+    covariance[:, :2, :2] += (np.square(half)[:, None, None] * (np.eye(2) - along)
+                              + np.square(CENTRED * length)[:, None, None] * along)
     covariance[:, 4, 4], covariance[:, 5, 5] = np.radians(3) ** 2, 1e-6
     motion = np.column_stack([matrix.mean, course, np.zeros(count)])
     return gaussian_process.start(SHIP, matrix.time, motion, covariance,
@@ -234,13 +241,12 @@ def _first_outline(matrix, course, length, half):
                                   np.column_stack([0.5 * length, half]))
 
 
-def _padded(clusters, chosen, cells):
-    """Cells [K, C, 2] m of the chosen clusters, and how many [K] each has."""
-    order = np.argsort(clusters.of_cell, kind='stable')
-    first = np.concatenate([[0], np.cumsum(clusters.cells)])[chosen]
-    count = clusters.cells[chosen]
+def _padded(edge, chosen):
+    """Cells [K, C, 2] m of the chosen clusters' edges, and how many [K] each has."""
+    first, last = (np.searchsorted(edge.cluster, chosen, side) for side in ('left', 'right'))
+    count = last - first
     place = first[:, None] + np.arange(count.max())
-    return cells[order[np.minimum(place, len(order) - 1)]], count
+    return edge.position[np.minimum(place, len(edge.cluster) - 1)], count
 
 
 def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
