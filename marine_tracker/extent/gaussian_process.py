@@ -59,7 +59,7 @@ class GpState(NamedTuple):
     time        [N]        s
     mean        [N, n]     x
     covariance  [N, n, n]
-    semi_axes   [N, 2]     m, of the base ellipse, ahead and abeam
+    semi_axes   [N, 2]     m, of the base, ahead and abeam
     """
 
     time: Array
@@ -79,7 +79,7 @@ class Measurement(NamedTuple):
 def start(model: Model, time, motion, covariance, f, semi_axes) -> GpState:
     """New rows of time [N] s, motion [N, 6] = [e n ve vn psi psi'] with covariance [N, 6, 6].
 
-    f [N, M], in units of the base ellipse with semi_axes [N, 2] m, has the prior's covariance.
+    f [N, M], in units of the base with semi_axes [N, 2] m, has the prior's covariance.
     ValueError where the variant is none of VARIANTS.
     """
     if model.variant not in VARIANTS:

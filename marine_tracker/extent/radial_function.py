@@ -6,9 +6,9 @@ clockwise from the bow, is known by its values f at M angles U:
     r(b) = base(b) [m + h(b) (f - m) + e],  h(b) = k(b, U) K^-1,  e ~ N(0, v(b))
     k(a, b) = sf^2 exp(-2 sin^2(|a - b| / 2) / l^2) + sr^2
 
-base is the radius of an ellipse: a circle of 1 m in the paper, where m = 0; for ships the hull as
-known before, about which f stays near m = 1. With folds = 2 the angle counts twice, and what is
-abaft is like what is ahead.
+base is the radius of a plain outline (`lame`): a circle of 1 m in the paper, where m = 0; for ships
+a rounded box of the size known before, about which f stays near m = 1. With folds = 2 the angle
+counts twice, and what is abaft is like what is ahead.
 """
 
 from typing import NamedTuple
@@ -29,6 +29,7 @@ class Contour(NamedTuple):
     scale               rad, l
     folds               1, or 2 for outlines that look the same from bow and stern
     mean                m
+    power               p of the base, see `lame`
     covariance  [M, M]  K
     precision   [M, M]  K^-1
     """
@@ -39,6 +40,7 @@ class Contour(NamedTuple):
     scale: float
     folds: int
     mean: float
+    power: float
     covariance: Array
     precision: Array
 
@@ -59,7 +61,7 @@ class Radius(NamedTuple):
 
 
 def contour(points: int, deviation: float, mean_deviation: float, scale: float, folds: int = 1,
-            mean: float = 0.0) -> Contour:
+            mean: float = 0.0, power: float = 2.0) -> Contour:
     """The prior over `points` angles; ValueError unless there are 3 or more and folds is 1 or 2."""
     if points < 3:
         raise ValueError(f'an outline of {points} points; it must have at least 3')
@@ -67,7 +69,7 @@ def contour(points: int, deviation: float, mean_deviation: float, scale: float, 
         raise ValueError(f'folds is {folds}; it must be 1 or 2')
     angle = np.arange(points) * 2 * np.pi / (folds * points)
     empty = np.empty((0, 0))
-    prior = Contour(angle, deviation, mean_deviation, scale, folds, mean, empty, empty)
+    prior = Contour(angle, deviation, mean_deviation, scale, folds, mean, power, empty, empty)
     covariance = kernel(prior, angle)[0] + JITTER * deviation ** 2 * np.eye(points)
     return prior._replace(covariance=covariance, precision=np.linalg.inv(covariance))
 
@@ -85,12 +87,12 @@ def kernel(prior: Contour, angle):
 
 
 def radius(prior: Contour, semi_axes, f, angle) -> Radius:
-    """Radii at the angles [N, S] rad of N targets with f [N, M] and base ellipses of the
-    semi-axes [N, 2] m, ahead and abeam."""
+    """Radii at the angles [N, S] rad of N targets with f [N, M] and bases of the semi-axes
+    [N, 2] m, ahead and abeam."""
     k, dk = kernel(prior, angle)
     h = k @ prior.precision
     off = f - prior.mean
-    base, base_slope = ellipse(semi_axes[:, None], angle)
+    base, base_slope = lame(semi_axes[:, None], prior.power, angle)
     relative = prior.mean + _dot(h, off)
     relative_slope = _dot(dk, off @ prior.precision)
     left = prior.deviation ** 2 + prior.mean_deviation ** 2 - (h * k).sum(-1)
@@ -98,12 +100,18 @@ def radius(prior: Contour, semi_axes, f, angle) -> Radius:
                   base[..., None] * h, base * base * np.maximum(left, 0.0))
 
 
-def ellipse(semi_axes, angle):
-    """Radius m and slope m/rad [...] of ellipses, semi-axes [..., 2] m, at angles off the first."""
-    ahead, abeam = 1 / semi_axes[..., 0] ** 2, 1 / semi_axes[..., 1] ** 2
-    sine = np.sin(angle)
-    size = 1 / np.sqrt(ahead + (abeam - ahead) * sine * sine)
-    return size, (ahead - abeam) * sine * np.cos(angle) * size ** 3
+def lame(semi_axes, power, angle):
+    """Radius m and slope m/rad [...] of |x / a|^p + |y / b|^p = 1 (Lame's curve) at the angles
+    [...] off the first of its semi-axes [..., 2] m; power p > 1: 2 for an ellipse, more for boxes.
+    """
+    cosine, sine = np.cos(angle), np.sin(angle)
+    ahead = np.abs(cosine / semi_axes[..., 0]) ** (power - 1)
+    abeam = np.abs(sine / semi_axes[..., 1]) ** (power - 1)
+    ahead, abeam = (np.copysign(ahead, cosine) / semi_axes[..., 0],
+                    np.copysign(abeam, sine) / semi_axes[..., 1])
+    total = ahead * cosine + abeam * sine
+    size = total ** (-1 / power)
+    return size, (ahead * sine - abeam * cosine) * size / total
 
 
 def _dot(rows, vector):

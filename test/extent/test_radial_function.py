@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from marine_tracker.extent.radial_function import contour, ellipse, kernel, radius
+from marine_tracker.extent.radial_function import contour, kernel, lame, radius
 
 PAPER = contour(36, 2.0, 2.0, np.pi / 18)
-SHIP = contour(24, 0.2, 0.1, np.pi / 14, folds=2, mean=1.0)
+SHIP = contour(24, 0.2, 0.1, np.pi / 14, folds=2, mean=1.0, power=4.0)
 
 
 def direct(prior, a, b):
@@ -19,7 +19,7 @@ def direct(prior, a, b):
 @pytest.mark.parametrize('prior', [PAPER, SHIP], ids=['paper', 'ship'])
 def test_the_radius_is_the_posterior_of_the_process_given_f(prior):
     """Conditioned on f in one joint Gaussian of f and the radii asked for."""
-    rng = np.random.default_rng(1)
+    rng, prior = np.random.default_rng(1), prior._replace(power=2.0)     # the base is a circle
     f = prior.mean + rng.multivariate_normal(np.zeros(len(prior.angle)), prior.covariance)
     asked = rng.uniform(-10, 10, 20)
     found = radius(prior, np.ones((1, 2)), f[None], asked[None])
@@ -59,11 +59,12 @@ def test_outlines_repeat_after_a_turn_and_those_of_two_folds_after_half_a_turn()
     assert abs(half[0] - half[1]).max() > 1
 
 
-def test_an_ellipse_is_met_where_its_equation_says():
-    axes, angle = np.array([[100.0, 16.0]]), np.linspace(0, 2 * np.pi, 40)[None]
-    size, _ = ellipse(axes[:, None], angle)
-    np.testing.assert_allclose(
-        (size * np.cos(angle) / 100) ** 2 + (size * np.sin(angle) / 16) ** 2, 1)
+@pytest.mark.parametrize('power', [2.0, 4.0, 7.5])
+def test_the_base_is_met_where_its_equation_says(power):
+    axes, angle = np.array([[100.0, 16.0]]), np.linspace(0, 2 * np.pi, 41)[None]
+    size, _ = lame(axes[:, None], power, angle)
+    np.testing.assert_allclose(np.abs(size * np.cos(angle) / 100) ** power
+                               + np.abs(size * np.sin(angle) / 16) ** power, 1)
 
 
 def test_bad_priors_are_refused():

@@ -9,13 +9,13 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...estimators.contract import Velocity
 from ...extent import contour, gaussian_process, random_matrix
 from ...extent.gaussian_process import OUTLINE, GpState, Model
 from ...extent.pcrlb import bound_step
 from ...extent.radial_function import contour as contour_prior
-from ...extent.random_matrix import RandomMatrixState
 from ...geometry import unit_vector
 from ...types import Array
 
@@ -27,6 +27,7 @@ NOISE, TURN_NOISE = 0.01 ** 2, 1e-4 ** 2        # m^2/s^3, rad^2/s^3
 PRIOR = contour_prior(points=36, deviation=2.0, mean_deviation=2.0, scale=np.pi / 18)
 ELLIPSE = random_matrix.Model(NOISE, memory=1e9, spread=random_matrix.CONTOUR)
 RANDOM_MATRIX = 'rm'
+NOTHING = np.empty(0)
 FINE = 2000                                     # points of an outline, to measure it by
 
 SHAPES: dict[str, Callable[[Array], Array]] = {
@@ -49,32 +50,47 @@ class Scene(NamedTuple):
 
     truth  [scans, N, 6]     e n ve vn psi psi'
     cells  [scans, N, C, 2]  m, the first count of each
-    count  [scans, N]
+    number [scans, N]
     """
 
     truth: Array
     cells: Array
-    count: Array
+    number: NDArray[np.int64]
+
+
+class Drawn(NamedTuple):
+    """The first run after its last scan, about the true centre.
+
+    outline, inner, outer  [A, 2]  m, east and north; 3 deviations within and without it
+    error, deviation       [M]     m, of the radii at the angles of f
+    The random matrix has an outline only.
+    """
+
+    outline: Array
+    inner: Array = NOTHING
+    outer: Array = NOTHING
+    error: Array = NOTHING
+    deviation: Array = NOTHING
 
 
 class Trial(NamedTuple):
-    """What became of N runs of one filter.
+    """What became of N runs of one filter; nan what a random matrix does not tell.
 
-    rmse, mahalanobis, coverage  [N]  as in `contour.Error`, after the last scan; nan for the
-                                      random matrix, which knows no angles
-    shape  [N]  m, RMS off the true outline where it truly lies
-    place  [N]  m, centre off the truth
-    bound       m, PCRLB of the outline, RMS over its angles; nan for the random matrix
-    drawn       outline of the first run, points [A, 2] m, deviations [A] m
+    rmse         m, of the outline in its own frame, RMS over angles and runs
+    mahalanobis  mean of the runs
+    coverage     part of the truth within 3 deviations
+    bound        m, PCRLB of the outline, RMS over its angles
+    shape        m, RMS off the true outline where it truly lies
+    place        m, RMS of the centre off the truth
     """
 
-    rmse: Array
-    mahalanobis: Array
-    coverage: Array
-    shape: Array
-    place: Array
+    rmse: float
+    mahalanobis: float
+    coverage: float
     bound: float
-    drawn: tuple[Array, Array]
+    shape: float
+    place: float
+    drawn: Drawn
 
 
 def scene(case: Case, runs: int, rng) -> Scene:
@@ -109,8 +125,7 @@ def gaussian_process_trial(case: Case, variant: str, runs: int, seed: int,
     """All runs of one variant, on the scenes of the seed, with its bound."""
     rng = np.random.default_rng(seed)
     seen, guess = scene(case, runs, rng), first_guess(runs, drawn, rng)
-    true_radius = SHAPES[case.shape]
-    at_angles = np.tile(true_radius(PRIOR.angle), (runs, 1))
+    at_angles = np.tile(SHAPES[case.shape](PRIOR.angle), (runs, 1))
     model = Model(PRIOR, variant, NOISE, TURN_NOISE, full)
     state = gaussian_process.start(model, np.zeros(runs), guess, np.diag(START_VARIANCE),
                                    np.ones((runs, len(PRIOR.angle))), np.ones((runs, 2)))
@@ -121,17 +136,26 @@ def gaussian_process_trial(case: Case, variant: str, runs: int, seed: int,
         state = gaussian_process.predict(state, time, model)
         known = GpState(time, np.concatenate([seen.truth[k], at_angles], 1), state.covariance,
                         state.semi_axes)
-        bound = bound_step(bound, k * PERIOD, known, seen.cells[k], seen.count[k], noise, model,
+        bound = bound_step(bound, k * PERIOD, known, seen.cells[k], seen.number[k], noise, model,
                            rng)
-        state, _ = gaussian_process.update(state, every, seen.cells[k], seen.count[k], noise,
+        state, _ = gaussian_process.update(state, every, seen.cells[k], seen.number[k], noise,
                                            model, rng)
     off = contour.error(state, PRIOR, at_angles)
     found = contour.of_gaussian_process(state, PRIOR)
-    truth = seen.truth[-1]
-    return Trial(
-        *off, contour.shape_error(found.points, truth[:, :2], truth[:, 4], true_radius),
-        np.hypot(*(state.mean[:, :2] - truth[:, :2]).T),
-        float(np.sqrt(np.diag(bound)[OUTLINE:].mean())), (found.points[0], found.radius_sd[0]))
+    shape, place = _against(found, case, seen, state.mean)
+    return Trial(_rms(off.rmse), float(off.mahalanobis.mean()), float(off.coverage.mean()),
+                 _rms(np.sqrt(np.diag(bound)[OUTLINE:])), shape, place,
+                 _drawn(state, found, at_angles, seen))
+
+
+def _drawn(state: GpState, found: contour.Outline, at_angles, seen: Scene) -> Drawn:
+    middle, centre = state.mean[0, :2], seen.truth[-1, 0, :2]
+    share = 3 * (found.radius_sd[0] / found.radius[0])[:, None]
+    inner, outer = (middle - centre + np.maximum(1 + side * share, 0) * (found.points[0] - middle)
+                    for side in (-1, 1))
+    at = contour.of_gaussian_process(state, PRIOR, PRIOR.angle)
+    return Drawn(found.points[0] - centre, inner, outer, at.radius[0] - at_angles[0],
+                 at.radius_sd[0])
 
 
 def random_matrix_trial(case: Case, runs: int, seed: int) -> Trial:
@@ -142,22 +166,36 @@ def random_matrix_trial(case: Case, runs: int, seed: int) -> Trial:
     state = random_matrix.start(np.zeros(runs), guess[:, :2], spread[0],
                                 Velocity(guess[:, 2:4], spread[1]),
                                 np.tile(np.eye(2), (runs, 1, 1)), weight=4.0)
+    noise = np.tile(SIGMA ** 2 * np.eye(2), (runs, 1, 1))
     for k in range(SCANS):
         state = random_matrix.predict(state, np.full(runs, (k + 1) * PERIOD), ELLIPSE)
-        state = _take_clusters(state, seen.cells[k], seen.count[k])
+        rows, centroid, scatter, count = cluster_of(seen.cells[k], seen.number[k])
+        state = random_matrix.update(state, rows, centroid, scatter, count, noise[rows], ELLIPSE)
     found = contour.of_random_matrix(state)
-    truth, unknown = seen.truth[-1], np.full(runs, np.nan)
-    return Trial(unknown, unknown, unknown,
-                 contour.shape_error(found.points, truth[:, :2], truth[:, 4], SHAPES[case.shape]),
-                 np.hypot(*(state.mean[:, :2] - truth[:, :2]).T), np.nan,
-                 (found.points[0], found.radius_sd[0]))
+    shape, place = _against(found, case, seen, state.mean)
+    return Trial(np.nan, np.nan, np.nan, np.nan, shape, place,
+                 Drawn(found.points[0] - seen.truth[-1, 0, :2]))
 
 
-def _take_clusters(state: RandomMatrixState, cells, count) -> RandomMatrixState:
-    rows = (count > 0).nonzero()[0]
-    counts = (np.arange(cells.shape[1]) < count[rows, None])[..., None]
-    centroid = (cells[rows] * counts).sum(1) / count[rows, None]
-    off = (cells[rows] - centroid[:, None]) * counts
-    noise = np.tile(SIGMA ** 2 * np.eye(2), (len(rows), 1, 1))
-    return random_matrix.update(state, rows, centroid, off.swapaxes(1, 2) @ off, count[rows],
-                                noise, ELLIPSE)
+def _rms(values) -> float:
+    return float(np.sqrt(np.square(values).mean()))
+
+
+def _against(found: contour.Outline, case: Case, seen: Scene, mean):
+    """`shape` and `place` of a `Trial`."""
+    truth = seen.truth[-1]
+    shape = contour.shape_error(found.points, truth[:, :2], truth[:, 4], SHAPES[case.shape])
+    return _rms(shape), _rms(np.hypot(*(mean[:, :2] - truth[:, :2]).T))
+
+
+def cluster_of(cells, number):
+    """The rows [K] that have cells at all, and centroid, scatter and count of each.
+
+    cells [N, C, 2] m, of which the first `number` [N] of each row are some.
+    """
+    rows = (number > 0).nonzero()[0]
+    cells, count = cells[rows], number[rows]
+    some = (np.arange(cells.shape[1]) < count[:, None])[..., None]
+    centroid = (cells * some).sum(1) / count[:, None]
+    off = (cells - centroid[:, None]) * some
+    return rows, centroid, off.swapaxes(1, 2) @ off, count

@@ -1,0 +1,64 @@
+"""Outlines of ships at sea: where they start from, and when they are worth having.
+
+Only the side that faces the radar gives cells, so the centroid lies towards it, and how wide a ship
+is can hardly be told: moved away and made wider, she would give the same cells. Small errors of the
+model, always of one sign, would drive an outline that way for hundreds of cells. So it starts half
+a beam behind the centroid, half as wide as ships of that length are, and is stiff: a few per cent.
+"""
+
+import numpy as np
+
+from ..geometry import to_range_bearing, unit_vector, wrap_angle
+from .gaussian_process import HEADING, GpState, Model, start
+from .radial_function import contour
+from .random_matrix import Measures, RandomMatrixState
+
+PRIOR = contour(24, 0.03, 0.01, np.pi / 8, folds=2, mean=1.0, power=4.0)
+SHIP = Model(PRIOR, 'gp_q15', noise=0.0025, turn_noise=1e-7, gate=16.0)
+SLENDER = 6.3                       # length over beam of ships
+ALONG, ACROSS = 0.015, 0.25         # deviations of the first centre, of length and half beam
+HEADING_SD = np.radians(2.0)        # at least, of the first heading
+RATE_SD = np.radians(0.1)           # rad/s
+
+
+def from_random_matrix(matrix: RandomMatrixState, found: Measures, own) -> GpState:
+    """Outlines of N ships, all as known by their random matrices; model SHIP.
+
+    found: their measures; own [2] or [N, 2] m: the radar.
+    """
+    bow = heading_of(matrix, found)
+    ahead, abeam = unit_vector(bow), unit_vector(bow + np.pi / 2)
+    semi_axes = 0.5 * found.length[:, None] * [1.0, 1 / SLENDER]
+    sight = unit_vector(to_range_bearing(matrix.mean[:, :2] - own)[1])
+    away = np.sign((abeam * sight).sum(1))
+    motion = np.column_stack([matrix.mean, bow, np.zeros(len(bow))])
+    motion[:, :2] += (away * semi_axes[:, 1])[:, None] * abeam
+    covariance = np.zeros((len(bow), 6, 6))
+    covariance[:, :4, :4] = matrix.covariance
+    for axis, deviation in ((ahead, ALONG * found.length), (abeam, ACROSS * semi_axes[:, 1])):
+        off = deviation[:, None] * axis
+        covariance[:, :2, :2] += off[:, :, None] * off[:, None, :]
+    covariance[:, 4, 4] = np.maximum(found.axis_sd, HEADING_SD) ** 2
+    covariance[:, 5, 5] = RATE_SD ** 2
+    return start(SHIP, matrix.time, motion, covariance, np.ones((len(bow), len(PRIOR.angle))),
+                 semi_axes)
+
+
+def heading_of(matrix: RandomMatrixState, found: Measures):
+    """Bearing [N] rad of the bow: the end of the axis that is nearer to the course."""
+    astern = (unit_vector(found.axis) * matrix.mean[:, 2:]).sum(1) < 0
+    return found.axis + np.pi * astern
+
+
+def blur_over_half_beam(found: Measures, noise):
+    """Deviation of a cell across the ship over half her beam [N]: above 0.4 an outline does not
+    pay. noise [N, 2, 2] m^2, R of a cell."""
+    abeam = unit_vector(found.axis + np.pi / 2)
+    half = 0.5 * np.minimum(found.beam, found.length / SLENDER)
+    return np.sqrt(((abeam[:, None] @ noise)[:, 0] * abeam).sum(1)) / half
+
+
+def off_course(state: GpState):
+    """Angle [N] rad in [0, pi] between heading and course: where it is large, the outline lies."""
+    course = to_range_bearing(state.mean[:, 2:4])[1]
+    return np.abs(wrap_angle(state.mean[:, HEADING] - course))
