@@ -137,7 +137,8 @@ class Extents:
         edge = (lit_edge(seen.cells, seen.clusters.of_cell, seen.clusters.noise,
                          self.parameters.range_resolution_m, self.beam_width)
                 if self.parameters.extent == 'gp' else None)
-        known = hulls.step(memory.hulls, ids, time, estimate, seen.clusters, taken, edge)
+        known = hulls.step(memory.hulls, ids, time, estimate, seen.clusters, taken, edge,
+                           seen.own)
         shift = np.zeros((len(ids), 2))
         was = row_of(memory.hulls.id, ids)
         shift[was >= 0] = memory.shift[was[was >= 0]]

@@ -14,29 +14,24 @@ from numpy.typing import NDArray
 
 from ..estimators.contract import Velocity
 from ..estimators.linear import invert_2x2, squared_distance
-from ..geometry import unit_vector, wrap_angle
+from ..geometry import unit_vector
 from ..types import Array, Extrapolation, append, put, take, where
 from . import contour, gaussian_process, random_matrix
 from .clustering import Clusters
 from .gaussian_process import HEADING, GpState
 from .lit_edge import FRINGE, Edge
-from .radial_function import Contour
-from .radial_function import contour as contour_prior
 from .random_matrix import BOX, NO_MEMORY, RandomMatrixState
+from .ship_outline import SHIP, SLENDER, from_random_matrix, off_course
 
 RANDOM_MATRIX, OUTLINE = 0, 1       # methods
 SCANS, CELLS, SMEAR = 10, 10.0, 0.4     # for an outline: scans; mean cells; smear over half beam
 OFF_COURSE = np.radians(15)         # of an outline's heading: it is wrong
 NIS = 3.0                           # mean nu^2 / S of an outline's cells: they contradict it
-CENTRED = 0.02                      # of the length: a centroid's deviation along it
 EDGE_CELLS = 6                      # of the lit edge that an outline needs to start
 RECENT = 5.0                        # scans that the means of cells and NIS remember
 FIRST_WEIGHT = 6.0                  # of a random matrix's first cluster
 LOST_TOUCH = 16.0                   # squared distance of the random matrix from the track
-SLENDER = 6.3                       # length over beam of ships, by which outlines start
 SLOW = 1.0                          # m/s: slower, a course says little about the heading
-PRIOR: Contour = contour_prior(24, 0.05, 0.01, np.pi / 14, folds=2, mean=1.0)
-SHIP = gaussian_process.Model(PRIOR, 'gp_q15', noise=0.0025, turn_noise=1e-8, gate=16.0)
 
 
 class Hulls(NamedTuple):
@@ -102,11 +97,12 @@ def begin(outlines: bool) -> Hulls:
 
 
 def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, taken,
-         edge: Edge | None = None) -> Hulls:
+         edge: Edge | None, own_ship) -> Hulls:
     """One scan.
 
     ids [N] of the tracks, time [N] s when the beam passed them, estimate of the point tracker
-    then; taken [N]: the cluster of each, -1 for none; edge of the clusters, for outlines.
+    then; taken [N]: the cluster of each, -1 for none; edge of the clusters, None for no
+    outlines; own_ship [2] m.
     """
     new = ~np.isin(ids, before.id)
     hulls = append(take(before, np.isin(before.id, ids)),
@@ -128,7 +124,7 @@ def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, 
                            cells=hulls.cells + late * (count - hulls.cells))
     if hulls.outline is None or edge is None or not len(rows):
         return hulls
-    return _outlines(hulls, time, rows, taken, own, edge)
+    return _outlines(hulls, time, rows, taken, own, edge, own_ship)
 
 
 def take_clusters(clusters: Clusters, rows) -> Clusters:
@@ -165,7 +161,7 @@ def _start(ids, estimate, clusters, taken, outlines):
 def _no_outline(count):
     none = np.zeros(count)
     return gaussian_process.start(SHIP, none, np.zeros((count, 6)), np.zeros((count, 6, 6)),
-                                  np.ones((count, len(PRIOR.angle))), np.ones((count, 2)))
+                                  np.ones((count, len(SHIP.contour.angle))), np.ones((count, 2)))
 
 
 def _keep_touch(matrix, rows, own, estimate):
@@ -185,7 +181,7 @@ def _keep_touch(matrix, rows, own, estimate):
         mean=mean, covariance=estimate.covariance[lost]))
 
 
-def _outlines(hulls, time, rows, taken, own, edge):
+def _outlines(hulls, time, rows, taken, own, edge, own_ship):
     """The outlines of the rows that may have one: predicted, started, updated, given up."""
     matrix, outline = hulls.matrix, hulls.outline
     noise, cells = np.zeros_like(matrix.extent), np.zeros(len(time), np.int64)
@@ -205,8 +201,8 @@ def _outlines(hulls, time, rows, taken, own, edge):
            & (blur <= SMEAR * half) & moving)
     fresh = (fit & ~active).nonzero()[0]
     if len(fresh):
-        outline = put(outline, fresh, _first_outline(
-            take(matrix, fresh), course[fresh], found.length[fresh], half[fresh]))
+        outline = put(outline, fresh, from_random_matrix(
+            take(matrix, fresh), take(found, fresh), own_ship))
     method = hulls.method.copy()
     method[fresh] = OUTLINE
     nis = hulls.nis.copy()
@@ -217,28 +213,10 @@ def _outlines(hulls, time, rows, taken, own, edge):
         outline, found_nis = gaussian_process.update(
             outline, lined, padded, count, edge.noise[taken[lined]], SHIP)
         nis[lined] += (found_nis - nis[lined]) / RECENT
-    turned = np.abs(wrap_angle(outline.mean[:, HEADING] - course)) > OFF_COURSE
-    failed = (method == OUTLINE) & ((moving & turned) | (nis > NIS))
+    failed = (method == OUTLINE) & ((moving & (off_course(outline) > OFF_COURSE)) | (nis > NIS))
     method[failed] = RANDOM_MATRIX
     return hulls._replace(outline=outline, method=method, nis=nis,
                           scans=np.where(failed, 0, hulls.scans))
-
-
-def _first_outline(matrix, course, length, half):
-    """Outlines from random matrices: the lit side has drawn the centroid, by up to half a beam;
-    along the axis it is good to a few per cent of the length."""
-    count = len(course)
-    covariance = np.zeros((count, 6, 6))
-    covariance[:, :4, :4] = matrix.covariance
-    ahead = unit_vector(course)
-    along = ahead[:, :, None] * ahead[:, None, :]
-    covariance[:, :2, :2] += (np.square(half)[:, None, None] * (np.eye(2) - along)
-                              + np.square(CENTRED * length)[:, None, None] * along)
-    covariance[:, 4, 4], covariance[:, 5, 5] = np.radians(3) ** 2, 1e-6
-    motion = np.column_stack([matrix.mean, course, np.zeros(count)])
-    return gaussian_process.start(SHIP, matrix.time, motion, covariance,
-                                  np.ones((count, len(PRIOR.angle))),
-                                  np.column_stack([0.5 * length, half]))
 
 
 def _padded(edge, chosen):
@@ -283,8 +261,8 @@ def shapes(hulls: Hulls, noise, position) -> Shapes:
     lined = (hulls.method == OUTLINE).nonzero()[0]
     if len(lined):
         outline = take(hulls.outline, lined)
-        of = contour.measures(outline, PRIOR)
-        points[lined] = contour.of_gaussian_process(outline, PRIOR, _AROUND).points
+        of = contour.measures(outline, SHIP.contour)
+        points[lined] = contour.of_gaussian_process(outline, SHIP.contour, _AROUND).points
         length[lined], length_sd[lined], beam[lined] = of.length, of.length_sd, of.beam
         heading[lined], heading_sd[lined] = outline.mean[:, HEADING], of.axis_sd
         source[lined] = BY_OUTLINE

@@ -5,8 +5,8 @@ It may have OPTIONS, {name: how argparse is to read --name}: its `run` takes the
 
 from types import ModuleType
 
-from . import extended, gwnn, gwnn_monte_carlo, gwnn_paper, marine_table
+from . import extended, gwnn, gwnn_monte_carlo, gwnn_paper, hulls, marine_table
 
 EXPERIMENTS: dict[str, ModuleType] = {
     'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo,
-    'marine_table': marine_table, 'extended': extended}
+    'marine_table': marine_table, 'extended': extended, 'hulls': hulls}

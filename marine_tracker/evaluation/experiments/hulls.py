@@ -1,8 +1,8 @@
 """Ships as hulls: how long they are found to be, where their centre is, and land left out.
 
-A ship that passes at 1 and 2 NM, with cells of a short and of a long pulse; the handover from the
-ellipse to the outline, point by point; and the scenarios `hulls` and `coast` with and without
-extents. Ten runs take about three minutes.
+A ship that passes at 1 and 2 km, with cells of a short and of a long pulse; one close by, with and
+without an outline; and the scenarios `hulls` and `coast` with and without extents. Ten runs take
+about three minutes.
 """
 
 from functools import partial
@@ -10,8 +10,8 @@ from functools import partial
 import numpy as np
 
 from .. import report
-from .hulls_at_sea import COARSE, FINE, Case, Found, run as run_case
-from .hulls_handover import handover
+from .hulls_at_sea import COARSE, FINE, Case, Found
+from .hulls_at_sea import run as run_case
 from .hulls_pictures import paint
 from .hulls_traffic import track
 from .result import Picture, Progress, Result, silent
@@ -52,15 +52,6 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
                                       'prototype') if cell == FINE else
                        report.Figure(f'random matrix, {name}: course', course, 'deg'))
 
-    one_more()
-    change = handover(10 * runs, seed)
-    figures += [
-        report.at_most('handover: length', change.length, 5.0, 'm', 'prototype'),
-        report.at_most('handover: centre', change.centre, 6.0, 'm', 'prototype'),
-        report.at_most("handover: centre over the ellipse's", change.centre / change.ellipse, 0.5,
-                       '', f'{change.ellipse:.1f} m'),
-        report.Figure('handover: runs with an outline', change.outlined)]
-
     bias = {}
     for extent in ('random_matrix', 'gp'):
         parts = []
@@ -95,8 +86,9 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
         report.at_least('coast: held', float(coast.held.mean()),
                         float(tracked['coast', 'off'].held.mean()), '', 'extent off')]
     progress(whole, whole)
-    return Result(figures, (), [Picture('hulls', (11, 5.5), partial(
-        paint, hulls=tracked['hulls', 'gp'].snapshot, coast=coast.snapshot))])
+    pictures = [Picture('hulls', (11, 5.5), partial(
+        paint, hulls=tracked['hulls', 'gp'].snapshot, coast=coast.snapshot))]
+    return Result(figures, (), pictures)
 
 
 def _runs(case: Case, extent: str, runs: int, seed: int) -> list[Found]:

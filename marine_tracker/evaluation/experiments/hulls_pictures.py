@@ -7,8 +7,9 @@ from .hulls_traffic import Snapshot
 NEAR = 350.0            # m around a ship that is shown at large
 
 
-def paint(figure, hulls: Snapshot, coast: Snapshot) -> None:
+def paint(figure, hulls: Snapshot | None, coast: Snapshot | None) -> None:
     """Left all of the coast, right the ships of `hulls`, each at large."""
+    assert hulls is not None and coast is not None
     left, right = figure.subfigures(1, 2, width_ratios=(1, 1.25))
     axes = left.add_subplot(aspect='equal', title='coast: cells, tracks and their outlines',
                             xlabel='east, m', ylabel='north, m')

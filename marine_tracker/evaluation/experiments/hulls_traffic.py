@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...extent.extents import Extents
 from ...geometry import locate, unit_vector
@@ -25,7 +26,7 @@ class Snapshot(NamedTuple):
     cells: Array
     position: Array
     outline: Array
-    extended: Array
+    extended: NDArray[np.bool_]
     truth: Array
     true_outline: Array
     own: Array
