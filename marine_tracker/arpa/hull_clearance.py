@@ -21,7 +21,7 @@ def hull_clearance(outline: Array, position: Array, velocity: Array) -> Array:
     share = np.arange(STEPS) / STEPS
     following = np.roll(outline, -1, 1)
     points = (outline[:, :, None] + share[:, None] * (following - outline)[:, :, None])
-    points = points.reshape(len(outline), -1, 2) + position[:, None]
+    points = points.reshape(len(outline), STEPS * outline.shape[1], 2) + position[:, None]
     speed = np.hypot(*velocity.T)
     way = velocity / np.maximum(speed, 1e-9)[:, None]
     # Own ship lies at the origin; each point passes it along `way`, from where it is now.

@@ -254,7 +254,10 @@ def shapes(hulls: Hulls, noise, position) -> Shapes:
     by_course = (speed > SLOW) & (course_sd < found.axis_sd)
     axis = np.where(np.cos(found.axis - course) < 0, found.axis + np.pi, found.axis)
     heading = np.where(by_course, course, axis)
-    points = contour.of_random_matrix(matrix, _AROUND, 0.5 * BOX).points
+    line, across = unit_vector(found.axis), unit_vector(found.axis + np.pi / 2)
+    points = matrix.mean[:, None, :2] + 0.5 * (
+        found.length[:, None, None] * np.cos(_AROUND)[:, None] * line[:, None]
+        + found.beam[:, None, None] * np.sin(_AROUND)[:, None] * across[:, None])
     length, length_sd, beam = found.length, found.length_sd, found.beam
     heading_sd = np.where(by_course, course_sd, found.axis_sd)
     source = np.where(by_course, COURSE, AXIS).astype(np.int8)

@@ -45,3 +45,7 @@ def test_clearance_is_the_least_distance_in_time():
 
 def test_no_motion_known_no_clearance():
     assert np.isnan(clearance((np.nan, np.nan), (np.nan, np.nan)))
+
+
+def test_no_targets_no_clearance():
+    assert hull_clearance(np.empty((0, 36, 2)), np.empty((0, 2)), np.empty((0, 2))).shape == (0,)
