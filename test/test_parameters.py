@@ -142,3 +142,13 @@ def test_another_yaml_file_is_refused_by_name(tmp_path, text):
     file.write_text(text)
     with pytest.raises(ValueError, match='some.yaml'):
         read_yaml_mapping(file)
+
+
+def test_off_is_off_though_yaml_reads_it_as_false(tmp_path):
+    file = tmp_path / 'tracker.yaml'
+    file.write_text('extent: off')
+    values = read_yaml_mapping(file)
+    assert values == {'extent': False}
+    assert from_mapping(TrackerParameters, values).extent == 'off'
+    with pytest.raises(ValueError, match="extent is True, a bool; it must be a str"):
+        TrackerParameters(extent=True)

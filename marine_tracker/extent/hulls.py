@@ -122,7 +122,7 @@ def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, 
     late = np.where(has, 1 / np.minimum(hulls.scans + 1.0, RECENT), 0.0)
     hulls = hulls._replace(matrix=matrix, scans=hulls.scans + whole,
                            cells=hulls.cells + late * (count - hulls.cells))
-    if hulls.outline is None or edge is None or not len(rows):
+    if hulls.outline is None or edge is None:
         return hulls
     return _outlines(hulls, time, rows, taken, own, edge, own_ship)
 
@@ -186,7 +186,7 @@ def _outlines(hulls, time, rows, taken, own, edge, own_ship):
     matrix, outline = hulls.matrix, hulls.outline
     noise, cells = np.zeros_like(matrix.extent), np.zeros(len(time), np.int64)
     noise[rows] = own.noise
-    cells[rows] = np.bincount(edge.cluster, minlength=taken.max() + 1)[taken[rows]]
+    cells[rows] = np.bincount(edge.cluster, minlength=taken.max(initial=-1) + 1)[taken[rows]]
     found = size(hulls.matrix, noise)
     velocity = matrix.mean[:, 2:]
     course = np.arctan2(*velocity.T)
@@ -232,7 +232,7 @@ def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
 
     A radar shows cells wherever an echo reaches, and they count alike: those of a hull lie evenly
     over its length L and F = FRINGE deviations of R beyond either end, not as a sum of both. So a
-    random matrix, which takes R off in squares, is left with L^2 + 4 L F; here F goes.
+    random matrix, which takes R off in squares, is left with about L^2 + 4 L F; here F goes.
     """
     found = random_matrix.measures(matrix, noise, size=BOX)
     line = unit_vector(found.axis)

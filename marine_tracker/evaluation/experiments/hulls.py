@@ -71,7 +71,8 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
         tracked[name, extent] = now = track(name, extent, seed)
         figures += [
             report.Figure(f'{name}, extent {extent}: tracks confirmed', now.confirmed),
-            report.Figure(f'{name}, extent {extent}: least held ship', float(now.held.min()))]
+            report.Figure(f'{name}, extent {extent}: least held ship', float(now.held.min())),
+            report.Figure(f'{name}, extent {extent}: RMSE of the nearest track', now.nearest, 'm')]
     for extent in ('random_matrix', 'gp'):
         now, plain = tracked['hulls', extent], tracked['hulls', 'off']
         figures += [

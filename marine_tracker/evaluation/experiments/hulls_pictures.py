@@ -38,4 +38,5 @@ def _draw(axes, of: Snapshot, size: float) -> None:
     for place, outline in zip(of.truth, of.true_outline):
         if np.isfinite(outline).all():
             axes.plot(*(place + outline).T, color='0.35', linewidth=1, linestyle='--')
+    axes.plot([], [], color='#0072b2', linewidth=1.2, label='their hulls')
     axes.plot([], [], color='0.35', linewidth=1, linestyle='--', label='true hulls')

@@ -34,11 +34,13 @@ class Snapshot(NamedTuple):
 
 class Found(NamedTuple):
     """confirmed: tracks ever confirmed; held [T]: part of the scans in which each ship had a track;
-    rmse m: of the tracks that the ships kept; snapshot of one scan, None without extents."""
+    rmse m: of the tracks that the ships kept; nearest m: the same of whatever track was nearest;
+    snapshot of one scan, None without extents."""
 
     confirmed: int
     held: Array
     rmse: float
+    nearest: float
     snapshot: Snapshot | None
 
 
@@ -54,7 +56,9 @@ def track(name: str, extent: str, seed: int) -> Found:
     ships = len(loaded.fleet.names)
     holder, held, seen = np.full(ships, -1), np.zeros(ships), np.zeros(ships)
     confirmed: set[int] = set()
-    squares, snapshot = [], None
+    squares: list[float] = []
+    nearest: list[float] = []
+    snapshot = None
     for k, (scan, truth) in enumerate(radar.simulate(loaded, seed)):
         (memory, known), report, _, shapes = extents.track(tracker, memory, known, scan)
         tracks, estimate = report.tracks, tracker.extrapolate(report.tracks, report.time)
@@ -77,8 +81,9 @@ def track(name: str, extent: str, seed: int) -> Found:
                 holder[ship] = tracks.id[one]
                 held[ship] += 1
                 squares.append(away[one] ** 2)
-    return Found(len(confirmed), held / np.maximum(seen, 1), float(np.sqrt(np.mean(squares))),
-                 snapshot)
+                nearest.append(away.min() ** 2)
+    rmse, least = (float(np.sqrt(np.mean(of))) for of in (squares, nearest))
+    return Found(len(confirmed), held / np.maximum(seen, 1), rmse, least, snapshot)
 
 
 def _away(estimate: Extrapolation, time, truth, row) -> Array:
