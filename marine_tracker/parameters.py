@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 import yaml
 
 VESSEL_CLASSES = ('ship', 'small_craft')
+EXTENTS = ('off', 'random_matrix', 'gp')
 
 
 def parameter(default, text, *, unit='', low=None, high=None, choices=(), live=False):
@@ -114,7 +115,7 @@ class TrackerParameters:
     extent: str = parameter(
         'off', 'Whether echoes that touch are one target with length and heading: off, by an '
         'ellipse (random_matrix), close by also by an outline (gp); see doc/extended_targets.md.',
-        choices=('off', 'random_matrix', 'gp'), live=True)
+        choices=EXTENTS, live=True)
     range_resolution_m: float = parameter(
         30.0, 'Depth of a radar cell: echoes of one target lie no farther apart; for extent.',
         unit='m', low=1.0, high=1000.0, live=True)
