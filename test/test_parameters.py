@@ -150,5 +150,5 @@ def test_off_is_off_though_yaml_reads_it_as_false(tmp_path):
     values = read_yaml_mapping(file)
     assert values == {'extent': False}
     assert from_mapping(TrackerParameters, values).extent == 'off'
-    with pytest.raises(ValueError, match="extent is True, a bool; it must be a str"):
+    with pytest.raises(ValueError, match='extent is True, a bool; it must be a str'):
         TrackerParameters(extent=True)

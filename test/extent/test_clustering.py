@@ -34,7 +34,7 @@ def sets(labels):
 
 @pytest.mark.parametrize('seed', range(3))
 def test_clusters_are_the_connected_components_of_cells_that_touch(seed):
-    """Against a walk from cell to cell, pair by pair; at 1 and 4 km, where beams are narrow or wide."""
+    """Against a walk from cell to cell; at 1 and 4 km, where beams are narrow and wide."""
     rng = np.random.default_rng(seed)
     bearing = rng.uniform(-0.3, 0.3, 300)
     distance = rng.choice([1000.0, 4000.0], 300) + rng.uniform(0, 400, 300)

@@ -1,12 +1,14 @@
 """Whole scans through tracker and extents, on simulated hulls and land."""
 
+from itertools import islice
+
 import numpy as np
 import pytest
 
 from marine_tracker.evaluation.experiments import hulls_at_sea
 from marine_tracker.evaluation.experiments.hulls_at_sea import FINE, Case
-from marine_tracker.extent.extents import Extents, one_a_ship
 from marine_tracker.extent.clustering import Gates
+from marine_tracker.extent.extents import Extents, one_a_ship
 from marine_tracker.extent.hulls import OUTLINE, RANDOM_MATRIX
 from marine_tracker.parameters import TrackerParameters
 from marine_tracker.simulation import radar, scenario
@@ -58,8 +60,9 @@ def test_extent_off_passes_plots_untouched(one_ship):
 def test_ship_is_one_track_with_her_length_heading_and_centre(one_ship, extent, length, centre):
     loaded, scans = one_ship
     run = Run(loaded.tracker_parameters(), extent)
-    for scan, truth in scans:
+    for scan, _ in scans:
         report = run.step(scan)
+    truth = scans[-1][1]
     assert report.tracks.id.tolist() == [1] and len(run.plain.plots.time) == 1
     shapes = run.shapes
     assert shapes.extended.all() and shapes.length[0] == pytest.approx(200, abs=length)
@@ -118,15 +121,14 @@ def test_a_coast_gives_hardly_any_track_and_no_ship_is_lost_by_it():
     loaded = scenario.load('coast')
     runs = [Run(loaded.tracker_parameters(), extent) for extent in ('off', 'random_matrix')]
     confirmed = [set(), set()]
-    for k, (scan, truth) in enumerate(radar.simulate(loaded, 5)):
-        if k == 25:
-            break
+    scans = list(islice(radar.simulate(loaded, 5), 25))
+    for scan, _ in scans:
         for run, found in zip(runs, confirmed):
             report = run.step(scan)
             found.update(report.tracks.id[report.tracks.status == CONFIRMED].tolist())
     assert len(confirmed[0]) > 200 and len(confirmed[1]) <= 0.1 * len(confirmed[0])
     assert run.known.shores > 5
-    alive = report.tracks.status != LOST
+    truth, alive = scans[-1][1], report.tracks.status != LOST
     at = run.tracker.extrapolate(report.tracks, report.time).position[alive]
     for position, length in zip(truth.position, loaded.fleet.length):
         assert np.hypot(*(at - position).T).min() < 40 + 0.1 * length

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from marine_tracker.geometry import KNOT, own_ship_at, to_range_bearing, unit_vector
+from marine_tracker.geometry import KNOT, own_ship_at, unit_vector
 from marine_tracker.simulation import echoes, scenario
 from marine_tracker.simulation.radar import simulate
 

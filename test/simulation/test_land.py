@@ -41,7 +41,7 @@ def test_land_hides_what_is_behind_it(make_scenario):
     ({'corners_m': [[0, 0]]}, r'land\[0\].corners_m has 1 corners; it must have at least 2'),
     ({'corners_m': [[0, 0], [9, 9]], 'closed': True}, 'must have at least 3'),
     ({'corners_m': [[0, 0], [0, 0]]}, r'corners_m\[0\] is the same as the corner after it'),
-    ({'corners_m': [[0, 0], [1, 'x']]}, r"corners_m\[1\] is \[1, 'x'\]; it must be \[north, east\]"),
+    ({'corners_m': [[0, 0], [1, 'x']]}, r"corners_m\[1\] is \[1, 'x'\]; it must be"),
     ({'corners_nm': [[0, 0], [1, 999]]}, 'within 107.991'),
     ({'corners_m': [[0, 0], [1, 1]], 'closed': 'yes'}, "closed is 'yes'; it must be true or false"),
     ({'corners': [[0, 0], [1, 1]]}, 'write corners_m or corners_nm'),
