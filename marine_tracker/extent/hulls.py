@@ -79,6 +79,9 @@ class Shapes(NamedTuple):
     outline: Array
 
 
+NOTHING = Clusters(*np.zeros((1, 1)), np.zeros((1, 2)), np.zeros((1, 2, 2)),
+                   np.ones(1, np.int64), np.eye(2)[None], *np.zeros((2, 1)),
+                   np.full(1, -1), *np.zeros((2, 1), bool), np.zeros(0, np.int64))
 METHODS = ('random_matrix', 'gp')
 COURSE, AXIS, BY_OUTLINE = 0, 1, 2
 SOURCES = ('course', 'axis', 'outline')
@@ -143,17 +146,18 @@ def first_extent(scatter, count, noise):
 
 def _start(ids, estimate, clusters, taken, outlines):
     count = len(ids)
-    own = take_clusters(clusters, taken)
     # A track that was there before extents were asked for may have no cluster.
     none = taken < 0
+    own = take_clusters(clusters if len(clusters.cells) else NOTHING, taken)
+    scatter = np.where(none[:, None, None], 0.0, own.scatter)
     position = np.where(none[:, None], estimate.position, own.position)
     spread = np.where(none[:, None, None], estimate.covariance[:, :2, :2],
                       own.scatter / own.cells[:, None, None] + own.noise)
     matrix = random_matrix.start(
         estimate.time, position, spread / own.cells[:, None, None],
         Velocity(estimate.velocity, estimate.covariance[:, 2:, 2:]),
-        first_extent(own.scatter, own.cells, own.noise),
-        NO_MEMORY + np.minimum(own.cells, FIRST_WEIGHT))
+        first_extent(scatter, own.cells, own.noise),
+        NO_MEMORY + np.where(none, 0.0, np.minimum(own.cells, FIRST_WEIGHT)))
     return Hulls(ids, matrix, _no_outline(count) if outlines else None, np.zeros(count, np.int8),
                  np.where(none, 0, 1), np.where(none, 1.0, own.cells), np.ones(count))
 

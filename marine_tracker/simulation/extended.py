@@ -10,7 +10,7 @@ from . import echoes, hull, land
 from .scenario import Scenario
 
 SHORE_SPACING = 0.5         # of the range resolution
-EDGE_SPACING = 2.0          # m
+EDGE_SPACING = 1.0          # m
 HIDES = 2.0                 # range resolutions behind which a shore hides what is farther
 
 

@@ -12,7 +12,7 @@ from .fields import Section
 SHORE_KEYS = 'name corners_m|corners_nm closed snr_db'
 SNR_DB = 30.0
 MAX_COORDINATE = 200_000.0      # m
-SECTORS = 3600                  # of the horizon, in each of which the nearest shore is looked for
+SECTORS = 1800                  # of the horizon, in each of which the nearest shore is looked for
 
 
 class Shore(NamedTuple):

@@ -77,7 +77,7 @@ def test_ship_is_one_track_with_her_length_heading_and_centre(one_ship, extent, 
     assert np.hypot(*(0.5 * (corners.max(0) + corners.min(0)) - there)) < centre
 
 
-def test_empty_scan_holds_size_and_a_turn_of_the_clock_does_not(one_ship):
+def test_size_and_track_live_through_an_empty_scan(one_ship):
     loaded, scans = one_ship
     run = Run(loaded.tracker_parameters(), 'gp')
     for scan, _ in scans[:20]:
@@ -100,6 +100,19 @@ def test_extents_can_be_switched_while_tracks_live(one_ship):
         assert (run.shapes is None) == (12 <= k < 16)
     assert 1 in run.report.tracks.id.tolist()
     assert run.shapes.length[run.report.tracks.id == 1] > 100
+
+
+def test_extents_can_be_switched_on_in_an_empty_scan(one_ship):
+    loaded, scans = one_ship
+    run = Run(loaded.tracker_parameters(), 'off')
+    for scan, _ in scans[:6]:
+        run.step(scan)
+    run.become('gp')
+    none = np.zeros(0)
+    run.step(scans[6][0]._replace(plots=PolarPlots(none, none, none, none)))
+    for scan, _ in scans[7:16]:
+        run.step(scan)
+    assert run.shapes.length.max() > 150
 
 
 def test_cluster_plot_tells_a_covariance_that_its_error_bears_out(one_ship):
