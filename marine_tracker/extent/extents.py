@@ -41,9 +41,9 @@ ALIKE, DRIFT = 9.0, 2.0     # squared distance of velocities, and m/s, of two pa
 class Memory(NamedTuple):
     """All that is known between two scans.
 
-    hulls  one row a track
-    shift  [N, 2]  m, from the centroid of its cells to where each track is led
-    land   where it lies
+    hulls   one row a track
+    shift   [N, 2]  m, from the centroid of its cells to where each track is led
+    land    where it lies
     shores  clusters of land in the last scan
     """
 
@@ -127,7 +127,7 @@ class Extents:
             land=loose & land_map.on_land(land, cells.position)))
         dry = found.land | ((found.size > LONGEST) & (found.gate < 0))
         chosen = (~dry).nonzero()[0]
-        plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan, cells)
+        plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan)
         return scan._replace(plots=plots), Seen(cells, found, chosen, int(dry.sum()), own, land)
 
     def step(self, memory: Memory, seen: Seen, ids, time, plot, estimate: Extrapolation) -> Memory:
@@ -164,7 +164,7 @@ class Extents:
             ahead.covariance[:, 2:, 2:], memory.hulls.scans[row] < hulls.SCANS)
         return gates, row[kept]
 
-    def _plots(self, memory, chosen, row, scan, cells):
+    def _plots(self, memory, chosen, row, scan):
         """One plot a cluster: the centroid, with (z_s X + R) / n and what it strays along the hull.
 
         A cluster of a single cell is a plot like any other.

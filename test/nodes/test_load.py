@@ -111,12 +111,12 @@ def test_five_hulls_cost_at_most_fifteen_percent_of_one_core(graph, launch, node
     values = read_yaml_mapping(config.path('scenarios', 'hulls.yaml'))
     values['own_ship'] = {}
     sea = scenario.build(values, 'hulls')
-    hulls = [scan for (scan, _), _ in zip(radar.simulate(sea, 1), range(40))]
+    hulls = [scan for (scan, _), _ in zip(radar.simulate(sea, 1), range(34))]
     told = sea.tracker_parameters()
     load = Load(graph, launch, node_helpers, extent=extent, **{name: told[name] for name in (
         'range_sigma_m', 'bearing_sigma_deg', 'range_resolution_m', 'beam_width_deg')})
-    load.run(hulls[:20], 0.5)
-    share = load.share(hulls[20:])
+    load.run(hulls[:14], PERIOD)
+    share = load.share(hulls[14:])
     print(f'extent {extent}: {100 * share:.2f} % of one core')
     assert load.confirmed() == 5
     assert share <= 0.15
