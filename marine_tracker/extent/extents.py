@@ -35,6 +35,7 @@ BOX = 12.0                  # length^2 over variance of a rod
 # A gate is so many times the extent, the smear and the expectation's covariance: half again the
 # half length, and 2.8 deviations.
 OF_EXTENT, OF_NOISE = 1.5, 8.0
+AT_SEA = 10                 # scans clear of land, after which a track on land is a ship all the same
 ALIKE, DRIFT = 9.0, 2.0     # squared distance of velocities, and m/s, of two parts of one hull
 
 
@@ -43,12 +44,14 @@ class Memory(NamedTuple):
 
     hulls   one row a track
     shift   [N, 2]  m, from the centroid of its cells to where each track is led
+    at_sea  [N]     scans in which each track was clear of land
     land    where it lies
     shores  clusters of land in the last scan
     """
 
     hulls: Hulls
     shift: Array
+    at_sea: NDArray[np.int64]
     land: LandMap
     shores: int
 
@@ -82,7 +85,7 @@ class Extents:
     def start(self) -> Memory:
         """No targets yet."""
         return Memory(hulls.begin(self.parameters.extent == 'gp'), np.zeros((0, 2)),
-                      land_map.empty(), 0)
+                      np.zeros(0, np.int64), land_map.empty(), 0)
 
     def adopt(self, known: Memory, previous: 'Extents') -> Memory:
         """The memory of another; sizes are found anew where it was asked for something else."""
@@ -119,12 +122,12 @@ class Extents:
         own, _ = own_ship_at(scan.own_ship, 0.5 * (scan.start + scan.end))
         gates, row = self._gates(memory, ids, ahead, own)
         place = in_gates(cells, gates)
-        loose = place.gate < 0
+        loose = ~np.append(memory.at_sea[row] >= AT_SEA, False)[place.gate]
         along = unit_vector(cells.bearing)
         width = (self.beam_width * cells.range)[:, None] * np.stack([along[:, 1], -along[:, 0]], -1)
         land = land_map.learn(memory.land, cells.position[loose], width[loose])
         found = cluster(cells, p.range_resolution_m, self.beam_width, place._replace(
-            land=loose & land_map.on_land(land, cells.position)))
+            land=(place.gate < 0) & land_map.on_land(land, cells.position)))
         dry = found.land | ((found.size > LONGEST) & (found.gate < 0))
         chosen = (~dry).nonzero()[0]
         plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan)
@@ -139,23 +142,31 @@ class Extents:
                 if self.parameters.extent == 'gp' else None)
         known = hulls.step(memory.hulls, ids, time, estimate, seen.clusters, taken, edge,
                            seen.own)
-        shift = np.zeros((len(ids), 2))
+        shift, at_sea = np.zeros((len(ids), 2)), np.zeros(len(ids), np.int64)
         was = row_of(memory.hulls.id, ids)
-        shift[was >= 0] = memory.shift[was[was >= 0]]
+        shift[was >= 0], at_sea[was >= 0] = (of[was[was >= 0]] for of in (
+            memory.shift, memory.at_sea))
+        at_sea += ~land_map.on_land(seen.map, estimate.position)
         wanted = np.zeros_like(shift)
         if known.outline is not None:
             lined = known.method == OUTLINE
             wanted[lined] = known.outline.mean[lined, :2] - known.matrix.mean[lined, :2]
-        return Memory(known, shift + RAMP * (wanted - shift), seen.map, seen.shores)
+        return Memory(known, shift + RAMP * (wanted - shift), at_sea, seen.map, seen.shores)
 
     def _noise(self, offset):
         range_, bearing = to_range_bearing(offset)
         return smear(range_, bearing, self.parameters.range_resolution_m, self.beam_width)
 
     def _gates(self, memory, ids, ahead, own):
-        """Where hulls are expected, and their rows of the memory."""
+        """Where hulls are expected, and their rows of the memory.
+
+        What was never long at sea and lies on land is land that was taken for a target before it
+        was known: it has no gate.
+        """
         row = row_of(memory.hulls.id, ids)
         row, ahead = row[row >= 0], take(ahead, row >= 0)
+        kept = (memory.at_sea[row] >= AT_SEA) | ~land_map.on_land(memory.land, ahead.position)
+        row, ahead = row[kept], take(ahead, kept)
         matrix = memory.hulls.matrix
         area = (OF_EXTENT * matrix.extent[row]
                 + OF_NOISE * (self._noise(ahead.position - own) + ahead.covariance[:, :2, :2]))

@@ -80,7 +80,7 @@ def test_tracker_parameters_are_those_of_the_radar(make_scenario):
     assert loaded.tracker_parameters() == pytest.approx({
         'range_sigma_m': 9, 'bearing_sigma_deg': 0.7, 'min_range_m': 70, 'max_range_m': 6 * 1852,
         'glint_sigma_m': 0, 'scan_period_s': 2.5, 'max_target_speed_mps': 30 * KNOT,
-        'vessel_class': 'small_craft'})
+        'range_resolution_m': 30, 'beam_width_deg': 1, 'vessel_class': 'small_craft'})
 
 
 def test_detectable_is_between_blind_and_maximum_range(make_scenario):
