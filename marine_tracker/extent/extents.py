@@ -35,7 +35,7 @@ BOX = 12.0                  # length^2 over variance of a rod
 # A gate is so many times the extent, the smear and the expectation's covariance: half again the
 # half length, and 2.8 deviations.
 OF_EXTENT, OF_NOISE = 1.5, 8.0
-AT_SEA = 10                 # scans clear of land, after which a track on land is a ship all the same
+AT_SEA = 22                 # scans clear of land, after which a track on land is a ship all the same
 ALIKE, DRIFT = 9.0, 2.0     # squared distance of velocities, and m/s, of two parts of one hull
 
 
@@ -122,10 +122,9 @@ class Extents:
         own, _ = own_ship_at(scan.own_ship, 0.5 * (scan.start + scan.end))
         gates, row = self._gates(memory, ids, ahead, own)
         place = in_gates(cells, gates)
-        loose = ~np.append(memory.at_sea[row] >= AT_SEA, False)[place.gate]
         along = unit_vector(cells.bearing)
         width = (self.beam_width * cells.range)[:, None] * np.stack([along[:, 1], -along[:, 0]], -1)
-        land = land_map.learn(memory.land, cells.position[loose], width[loose])
+        land = land_map.learn(memory.land, cells.position, width)
         found = cluster(cells, p.range_resolution_m, self.beam_width, place._replace(
             land=(place.gate < 0) & land_map.on_land(land, cells.position)))
         dry = found.land | ((found.size > LONGEST) & (found.gate < 0))

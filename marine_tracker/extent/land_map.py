@@ -46,7 +46,7 @@ def empty() -> LandMap:
 
 
 def learn(before: LandMap, position, width) -> LandMap:
-    """The map after one more scan, with echoes of no known target.
+    """The map after one more scan.
 
     position [M, 2] m; width [M, 2] m: across the line of sight, what the beam is wide there. An
     echo fills all squares over which it may be smeared, so a far shore has no gaps.

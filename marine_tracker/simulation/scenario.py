@@ -21,6 +21,12 @@ speed as `_mps` or `_kn`. Only `duration_s` and one target are needed:
           - turn: {angle_deg: -40, radius_m: 500}     # to port; or rate_deg_per_s
           - speed: {to_kn: 8, duration_s: 60}         # or acceleration_mps2
 
+Ships can be driven by AIS reports instead, or besides (the file is looked for beside the
+scenario's; its form stands in ais.py); own ship is then one of the vessels, or lies at a place:
+
+    ais: {file: traffic.csv, start_s: 600, vessels: [3, 17]}      # all vessels, if none are named
+    own_ship: {vessel: 1}                                         # or {start: {lat_deg:, lon_deg:}}
+
 A ship may have a hull, which the radar then sees as cells in place of one plot, and there may be
 land, whose shore does so too (hull.py, land.py); both take the radar's range resolution and beam
 width as the size of a cell:
@@ -31,12 +37,6 @@ width as the size of a cell:
     land:
       - {name: mole, corners_m: [[900, -400], [1200, 800]]}       # north, east; or corners_nm
       - {name: islet, corners_m: [[0, 600], [50, 700], [-80, 650]], closed: true, snr_db: 35}
-
-Ships can be driven by AIS reports instead, or besides (the file is looked for beside the
-scenario's; its form stands in ais.py); own ship is then one of the vessels, or lies at a place:
-
-    ais: {file: traffic.csv, start_s: 600, vessels: [3, 17]}      # all vessels, if none are named
-    own_ship: {vessel: 1}                                         # or {start: {lat_deg:, lon_deg:}}
 """
 
 import difflib

@@ -187,6 +187,17 @@ def test_the_example_in_the_documentation_is_right(tmp_path):
     assert loaded.clutter.sea == 40
 
 
+def test_the_example_of_hulls_and_land_is_right(tmp_path):
+    example = textwrap.dedent(re.search(
+        r'(?s)\n\n(    targets:\n      - {name: tanker.*)\n', scenario.__doc__).group(1))
+    file = tmp_path / 'example.yaml'
+    file.write_text('duration_s: 60\n' + example)
+    loaded = scenario.load(file)
+    assert loaded.fleet.hulls.beam.tolist() == [32]
+    assert [(shore.name, len(shore.corners)) for shore in loaded.shores] == [
+        ('mole', 2), ('islet', 4)]
+
+
 def test_unknown_names_are_answered_with_the_nearest():
     with pytest.raises(ValueError, match='no scenario bussy_strait; did you mean busy_strait?'):
         scenario.load('bussy_strait')
