@@ -17,6 +17,7 @@ import yaml
 VESSEL_CLASSES = ('ship', 'small_craft')
 # m: how far the point of a target that echoes strays from its middle, each axis, by vessel class.
 GLINT_SIGMA = {'ship': 25.0, 'small_craft': 0.0}
+EXTENTS = ('off', 'random_matrix', 'gp')
 
 
 def parameter(default, text, *, unit='', low=None, high=None, choices=(), live=False):
@@ -36,6 +37,9 @@ def check(parameters) -> None:
         value, about = getattr(parameters, field.name), field.metadata
         if kind is float and type(value) is int:
             value = float(value)
+            object.__setattr__(parameters, field.name, value)
+        if value is False and 'off' in about['choices']:        # how YAML reads it
+            value = 'off'
             object.__setattr__(parameters, field.name, value)
         if type(value) is not kind:
             raise ValueError(f'parameter {field.name} is {value!r}, a {type(value).__name__}; '
@@ -122,6 +126,16 @@ class TrackerParameters:
     radars: str = parameter(
         '', 'Radars whose plots are fused: a list in YAML, see doc/two_radars.md; empty: one, on '
         '`radar/plots`.')
+    extent: str = parameter(
+        'off', 'Whether echoes that touch are one target with length and heading: off, by an '
+        'ellipse (random_matrix), close by also by an outline (gp); see doc/extended_targets.md.',
+        choices=EXTENTS, live=True)
+    range_resolution_m: float = parameter(
+        30.0, 'Depth of a radar cell: echoes of one target lie no farther apart; for extent.',
+        unit='m', low=1.0, high=1000.0, live=True)
+    beam_width_deg: float = parameter(
+        1.0, 'Horizontal beam width of the antenna, which is that of a cell; for extent.',
+        unit='deg', low=0.1, high=30.0, live=True)
     max_target_speed_mps: float = parameter(
         25.0, 'Fastest target over ground that initiation accepts.', unit='m/s', low=0.5,
         high=100.0, live=True)
@@ -177,6 +191,8 @@ class TrackerParameters:
         if self.min_range_m >= self.max_range_m:
             raise ValueError(f'parameter min_range_m is {self.min_range_m:g} m; it must be below '
                              f'max_range_m, {self.max_range_m:g} m')
+        if self.extent != 'off' and self.radars:
+            raise ValueError(f'parameter extent is {self.extent}; with several radars it must be off')
 
     @property
     def glint_sigma(self) -> float:

@@ -188,6 +188,16 @@ def put(into: Any, rows: Any, new: Any) -> Any:
     return _map(one, into, new)
 
 
+def row_of(ids, wanted) -> NDArray[np.int64]:
+    """Row [K] in ids [N], all different, of each wanted id [K]; -1 where it is not there."""
+    if not len(ids):
+        return np.full(len(wanted), -1)
+    order = np.argsort(ids)
+    place = np.minimum(np.searchsorted(ids, wanted, sorter=order), len(ids) - 1)
+    row = order[place]
+    return np.where(ids[row] == wanted, row, -1)
+
+
 def _map(f, *structures):
     first = structures[0]
     parts = [_map(f, *column) if isinstance(column[0], tuple)

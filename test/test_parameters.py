@@ -102,6 +102,7 @@ def test_the_choices_are_what_the_registry_holds():
     ({'min_range_m': 5000.0, 'max_range_m': 4000.0},
      ('min_range_m', '5000', 'max_range_m', '4000')),
     ({'min_range_m': 4000.0, 'max_range_m': 4000.0}, ('min_range_m', 'max_range_m')),
+    ({'extent': 'gp', 'radars': '- {topic: a}'}, ('extent is gp', 'several radars')),
 ])
 def test_parameters_that_contradict_each_other_are_refused(values, names):
     with pytest.raises(ValueError) as error:
@@ -142,3 +143,13 @@ def test_another_yaml_file_is_refused_by_name(tmp_path, text):
     file.write_text(text)
     with pytest.raises(ValueError, match='some.yaml'):
         read_yaml_mapping(file)
+
+
+def test_off_is_off_though_yaml_reads_it_as_false(tmp_path):
+    file = tmp_path / 'tracker.yaml'
+    file.write_text('extent: off')
+    values = read_yaml_mapping(file)
+    assert values == {'extent': False}
+    assert from_mapping(TrackerParameters, values).extent == 'off'
+    with pytest.raises(ValueError, match='extent is True, a bool; it must be a str'):
+        TrackerParameters(extent=True)

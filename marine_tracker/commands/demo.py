@@ -17,6 +17,7 @@ from typing import IO, Any, NamedTuple
 
 from ..estimators import ESTIMATORS
 from ..parameters import (
+    EXTENTS,
     RadarSimulatorParameters,
     RecordingPlayerParameters,
     TrackerParameters,
@@ -55,6 +56,8 @@ def add_arguments(parser) -> None:
     parser.add_argument('--rate', type=float, default=1.0, metavar='F',
                         help='simulated seconds in a second (default: 1)')
     parser.add_argument('--estimator', choices=sorted(ESTIMATORS), help='filter of the tracker')
+    parser.add_argument('--extent', choices=EXTENTS,
+                        help='whether the tracker takes cells that touch as one target')
     parser.add_argument('--seed', type=int, default=1, help='seed of the simulator (default: 1)')
     parser.add_argument('--duration', type=float, metavar='S', help='end after so many seconds')
     parser.add_argument('--domain', type=int, metavar='ID',
@@ -114,6 +117,8 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
         for_tracker = dict(scenario.load(name).tracker_parameters())
     if args.estimator:
         for_tracker['estimator'] = args.estimator
+    if args.extent:
+        for_tracker['extent'] = args.extent
     checked = from_mapping(TrackerParameters, for_tracker)
     for_tracker = {name: getattr(checked, name) for name in for_tracker}     # ints become floats
     if args.rate != 1:

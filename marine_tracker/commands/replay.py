@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..estimators import WANT_DOPPLER
+from ..extent.extents import Extents
 from ..heap import keep_freed_memory
 from ..recording import csv_folder, track_file
 from ..simulation import radar, scenario
@@ -109,11 +110,12 @@ def write_tracks(tracker: Tracker, scans: Iterable[tuple[int, Scan]], file) -> S
     """Run the tracker over numbered scans and write what it says after each of them."""
     names = np.array(STATUS_NAMES)
     confirmed: set[int] = set()
-    memory, count, cpu, doppler = tracker.start(), 0, 0.0, False
+    extents = Extents(tracker.parameters)
+    memory, known, count, cpu, doppler = tracker.start(), extents.start(), 0, 0.0, False
     track_file.write_header(file)
     for number, scan in scans:
         began = time.process_time()
-        memory, report = tracker.step(memory, scan)
+        (memory, known), report, _, _ = extents.track(tracker, memory, known, scan)
         estimate = tracker.extrapolate(report.tracks, report.time)
         cpu += time.process_time() - began
         tracks = report.tracks

@@ -116,6 +116,9 @@ def _conditions(loaded):
     yield (f'false plots a scan: {false.uniform:g} everywhere'
            + (f', {false.sea:g} near own ship ({false.sea_scale / NAUTICAL_MILE:.2g} NM)'
               if false.sea else ''))
+    if loaded.in_cells:
+        hulls = np.isfinite(loaded.fleet.hulls.beam).sum()
+        yield f'seen as cells: {hulls} hulls, {len(loaded.shores)} shores'
 
 
 def _target_rows(loaded):

@@ -41,6 +41,8 @@ def draw(loaded, file):
         axes.plot(*way[known[0]], 'o', color=line.get_color(), markersize=4)
         axes.annotate(f'{number}', way[known[0]], xytext=(4, 4), textcoords='offset points',
                       annotation_clip=True, fontsize=7, color=line.get_color())
+    for shore in loaded.shores:
+        axes.plot(*(shore.corners.T / NAUTICAL_MILE), color='0.45', linewidth=2)
     axes.plot(*own.T, color='black', linewidth=2)
     axes.plot(*own[0], 'o', color='black', markersize=7, fillstyle='none')
     low, high = (edge(own[[0, -1]], axis=0) for edge in (np.min, np.max))

@@ -13,11 +13,12 @@ from ..arpa import past_positions
 from ..arpa.arpa import Picture
 from ..arpa.own_motion import vectors
 from ..arpa.rows import row_of
-from ..arpa.zone_outlines import outlines
+from ..arpa.zone_outlines import outlines as zone_outlines
 from ..arpa.zones import Zones
 from ..parameters import ArpaParameters
 from ..tracking.lifecycle import LOST
 from .convert import header
+from .hull_columns import outlines
 from .view import View
 
 SYMBOL_M = 60.0             # radius of a target's circle
@@ -59,10 +60,16 @@ class MarkersWriter:
             _marker('ellipses', Marker.LINE_LIST, 3.0, GREY,
                     _outline(position[:, None] + ellipse)),
         ]
+        if seen.hulls is not None:
+            hulls, rows = outlines(seen.hulls, alive)
+            hull = _marker('hulls', Marker.LINE_LIST, 4.0, WHITE,
+                           _outline(seen.motion.position[rows][:, None] + hulls))
+            hull.lifetime.sec = 10          # gone some scans after extents were switched off
+            markers.append(hull)
         for guard, color in ((True, AMBER), (False, MAGENTA)):
             markers.append(_marker(
                 'guard_zones' if guard else 'exclusion_zones', Marker.LINE_LIST, 5.0, color,
-                outlines(zones, guard, picture.own.position, picture.own.heading)))
+                zone_outlines(zones, guard, picture.own.position, picture.own.heading)))
         names = [name for name, lives in zip(seen.name, alive.tolist()) if lives]
         for n, name, red_, (x, y) in zip(number.tolist(), names, red.tolist(), position.tolist()):
             if n:

@@ -9,6 +9,7 @@ from ..arpa.motion import MEMORY_NAMES
 from ..arpa.targets import LETTERS
 from ..geometry import KNOT, NAUTICAL_MILE
 from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, REASONS, TENTATIVE
+from . import hull_columns
 from .convert import time_message
 from .diagnostics import ERROR, OK, STALE, WARN
 from .view import View
@@ -36,15 +37,19 @@ class TargetsWriter:
 
     def __init__(self, hardware_id: str):
         self._hardware_id = hardware_id
+        self._keys: tuple[str, ...] = COLUMNS
         self._entries: list[DiagnosticStatus] = []
 
     def message(self, seen: View, estimator: str, stabilised: str, time: float, time_ns: int
                 ) -> DiagnosticArray:
         """The targets of a view at `time` s, stamped time_ns; valid until the next call."""
         rows = table(seen, estimator, stabilised, time)
+        keys = COLUMNS if seen.hulls is None else COLUMNS + hull_columns.COLUMNS
+        if keys != self._keys:
+            self._keys, self._entries = keys, []
         while len(self._entries) < len(rows):
             self._entries.append(DiagnosticStatus(
-                hardware_id=self._hardware_id, values=[KeyValue(key=key) for key in COLUMNS]))
+                hardware_id=self._hardware_id, values=[KeyValue(key=key) for key in keys]))
         for entry, name, status, dangerous, fallen, row in zip(
                 self._entries, seen.name, seen.status.tolist(), seen.dangerous.tolist(),
                 seen.account.reason.tolist(), rows):
@@ -62,7 +67,7 @@ class TargetsWriter:
 
 
 def table(seen: View, estimator: str, stabilised: str, time: float) -> list[tuple[str, ...]]:
-    """One row of texts for each target, in the order of COLUMNS."""
+    """One row of texts for each target, in the order of COLUMNS; with hulls, their columns too."""
     motion, account = seen.motion, seen.account
     # Who lies still has no course.
     approach = seen.approach._replace(**{
@@ -95,6 +100,8 @@ def table(seen: View, estimator: str, stabilised: str, time: float) -> list[tupl
         [figure(number, 1) for number in (seen.age / 60).tolist()],
         [_reason(*row) for row in zip(seen.status.tolist(), seen.reason.tolist(),
                                       seen.misses.tolist())]]
+    if seen.hulls is not None:
+        columns += hull_columns.columns(seen.hulls, degrees, figure)
     return list(zip(*columns))
 
 

@@ -21,6 +21,8 @@ from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import MarkerArray
 
 from ..arpa.arpa import Arpa
+from ..extent.extents import Extents
+from ..extent.hulls import Shapes
 from ..geometry import wrap_bearing
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking import intake
@@ -47,7 +49,8 @@ class TrackerNode(RunnableNode):
         super().__init__('tracker', **node_arguments)
         parameters, arpa_parameters = declare(self, TrackerParameters, ArpaParameters)
         self._tracker = Tracker(parameters)
-        self._memory = self._tracker.start()
+        self._extents = Extents(parameters)
+        self._memory, self._known = self._tracker.start(), self._extents.start()
         self._base_ns: int | None = None            # stamps are seconds after this
         self._own_log = intake.empty_log()
         self._fallback = intake.OWN_NEVER_HEARD
@@ -126,8 +129,9 @@ class TrackerNode(RunnableNode):
         if found is None:
             return
         scan, self._fallback = found
-        self._memory, report = self._tracker.step(self._memory, scan)
-        self._publish(heard, scan, report)
+        (self._memory, self._known), report, scan, shapes = self._extents.track(
+            self._tracker, self._memory, self._known, scan)
+        self._publish(heard, scan, report, shapes)
         now = self.get_clock().now().nanoseconds
         if now:                                         # 0: no /clock yet
             end_ns = int(self._stamps(heard, scan.end))
@@ -137,7 +141,9 @@ class TrackerNode(RunnableNode):
     def _change(self, tracker: Tracker) -> None:
         """Live parameters were changed: another tracker takes the tracks over."""
         self._memory = tracker.adopt(self._memory, self._tracker)
-        self._tracker = tracker
+        extents = Extents(tracker.parameters)
+        self._known = extents.adopt(self._known, self._extents)
+        self._tracker, self._extents = tracker, extents
         for heard, radar in zip(self.inputs, radars_of(tracker.parameters), strict=True):
             heard.radar = radar
         self._desk.change(self._desk.arpa.parameters, tracker.parameters)
@@ -160,7 +166,8 @@ class TrackerNode(RunnableNode):
 
     # -- out -----------------------------------------------------------------------------------
 
-    def _publish(self, heard: RadarInput, scan: Scan, report: Report) -> None:
+    def _publish(self, heard: RadarInput, scan: Scan, report: Report,
+                 shapes: Shapes | None) -> None:
         tracks, tracker = report.tracks, self._tracker
         self._status_count = np.bincount(tracks.status, minlength=4)
         listeners = [publisher.get_subscription_count() for publisher in (
@@ -180,7 +187,7 @@ class TrackerNode(RunnableNode):
         end_ns, name = int(self._stamps(heard, scan.end)), tracker.parameters.estimator
         self._standing = standing(report, name)
         picture = self._desk.step(scan, report, self._standing.fallen_at, end_ns)
-        seen, arpa = view(picture, report, name), self._desk.arpa
+        seen, arpa = view(picture, report, name, shapes), self._desk.arpa
         self._to_targets.publish(self._targets.message(
             seen, name, arpa.stabilised, scan.end, end_ns))
         if listeners[3]:
@@ -259,6 +266,7 @@ class TrackerNode(RunnableNode):
             'fallback reason': reason,
             'confirmed': confirmed, 'coasting': self._status_count[COASTING],
             'tentative': self._status_count[TENTATIVE],
+            **({} if parameters.extent == 'off' else {'clusters of land': self._known.shores}),
             'at max_tracks': len(self._memory.tracks.id) >= parameters.max_tracks,
             'processing_p50_ms': f'{1e3 * self._processing.percentile(50):.1f}',
             'processing_p99_ms': f'{1e3 * slow:.1f}',

@@ -9,9 +9,11 @@ from ..arpa import alarms
 from ..arpa.alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
 from ..arpa.arpa import Picture
 from ..arpa.cpa import Approach
+from ..arpa.hull_clearance import hull_clearance
 from ..arpa.motion import Motion
 from ..arpa.targets import label
 from ..estimators import ACCOUNTS, Account
+from ..extent.hulls import Shapes
 from ..tracking import lifecycle
 from ..tracking.lifecycle import CONFIRMED
 from ..tracking.tracker import Report
@@ -36,6 +38,7 @@ class View(NamedTuple):
     misses      [N]  scans since the last plot
     age         [N]  s since the first plot
     account     how the estimator fares with them, N rows; without words where it gives none
+    hulls       their sizes, N rows; None with extent off
     """
 
     name: list[str]
@@ -53,12 +56,20 @@ class View(NamedTuple):
     misses: NDArray[np.int64]
     age: Array
     account: Account
+    hulls: 'HullView | None' = None
 
 
-def view(picture: Picture, report: Report, estimator: str) -> View:
+class HullView(NamedTuple):
+    """shapes: of N targets; clearance [N] m: how near own ship comes to their hulls."""
+
+    shapes: Shapes
+    clearance: Array
+
+
+def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None = None) -> View:
     """The picture's targets with what the tracker's report tells of them.
 
-    estimator: the name of the one that the tracks' state belongs to.
+    estimator: the name of the one that the tracks' state belongs to; shapes: of all the tracks.
     """
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
@@ -71,7 +82,14 @@ def view(picture: Picture, report: Report, estimator: str) -> View:
         lifecycle.hits(tracks.history, lifecycle.TEN),
         lifecycle.misses_in_a_row(tracks.history), picture.time - tracks.first_time,
         ACCOUNTS[estimator](tracks.state) if estimator in ACCOUNTS
-        else no_account(len(tracks.id)))
+        else no_account(len(tracks.id)),
+        None if shapes is None else _hulls(picture, take(shapes, picture.row)))
+
+
+def _hulls(picture: Picture, shapes: Shapes) -> HullView:
+    motion, own = picture.motion, picture.own
+    return HullView(shapes, hull_clearance(shapes.outline, motion.position - own.position,
+                                           motion.velocity - own.velocity))
 
 
 class Standing(NamedTuple):

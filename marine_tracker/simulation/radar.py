@@ -1,7 +1,8 @@
 """The simulated radar: one scan, and the truth behind it, for each revolution of the antenna.
 
 What the beam meets is detected or not, merged within a resolution cell, given its errors, and put
-among false plots; a plot's time is that at which the beam met the target.
+among false plots; a plot's time is that at which the beam met the target. Ships with a hull, and
+shores, give cells instead (extended.py).
 """
 
 from collections.abc import Iterator
@@ -13,10 +14,10 @@ from scipy.spatial import cKDTree
 
 from ..geometry import to_range_bearing, unit_vector, wrap_angle, wrap_bearing
 from ..types import PolarPlots, Scan, Truth, append, take
-from . import beam, clutter, sensor_errors
+from . import beam, clutter, extended, sensor_errors
+from .echoes import THRESHOLD
 from .scenario import Radar, Scenario
 
-THRESHOLD = 20.0                 # power over noise at which a plot is declared: 13 dB
 STRONGEST = 0.9999               # probability of detection that sets the amplitude of a sure plot
 OWN_SHIP_SAMPLES = 4             # a revolution, both ends included
 
@@ -29,11 +30,13 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
     Same scenario and seed give the same plots to the bit. Each kind of chance has its own
     stream of random numbers: clutter or detection do not change the noise of targets.
     """
-    detection, noise, uniform, sea, errors, reckoning, doppler, false_doppler = (
-        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(8))
+    detection, noise, uniform, sea, errors, reckoning, doppler, false_doppler, cells = (
+        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(9))
     radar = scenario.radar
     imo = sensor_errors.draw(errors) if radar.sensor_errors == 'imo' else None
     drift = np.zeros(2)
+    scene = extended.scene(scenario, cells) if scenario.in_cells else None
+    point = np.isnan(scenario.fleet.hulls.beam)         # targets that give one plot
     for start, end, passages, truth in beam.revolutions(scenario):
         # Draws for every ship (own ship's are idle) and both possible passages, seen or not: a
         # stream's use must not depend on what another stream brought about.
@@ -44,6 +47,7 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
         if imo is not None:
             passages, deviation = _imo(scenario, imo, passages, errors, shape)
 
+        passages = take(passages, point[passages.target - 1])
         distance, _ = to_range_bearing(passages.offset)
         seen, power = _detect(
             scenario, passages.target, distance, chance[passages.turn, passages.target])
@@ -59,6 +63,8 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
                 _radial_speed(passages) + shift[passages.turn, passages.target])[seen][row])
         plots = take(plots, plots.range > 0)
         plots = append(plots, _false_plots(scenario, start, uniform, sea, false_doppler))
+        if scene is not None:
+            plots = append(plots, extended.plots(scene, scenario, start, truth, cells))
         plots = take(plots, np.argsort(plots.time, kind='stable'))
 
         own_ship = scenario.own_ship_at(np.linspace(start, end, OWN_SHIP_SAMPLES))

@@ -27,6 +27,17 @@ scenario's; its form stands in ais.py); own ship is then one of the vessels, or 
 
     ais: {file: traffic.csv, start_s: 600, vessels: [3, 17]}      # all vessels, if none are named
     own_ship: {vessel: 1}                                         # or {start: {lat_deg:, lon_deg:}}
+
+A ship may have a hull, which the radar then sees as cells in place of one plot, and there may be
+land, whose shore does so too (hull.py, land.py); both take the radar's range resolution and beam
+width as the size of a cell:
+
+    targets:
+      - {name: tanker, start: {range_nm: 1, bearing_deg: 30}, course_deg: 250, speed_kn: 11,
+         length_m: 200, hull: {beam_m: 32}}       # heading_deg, else the course; snr_db, else 25
+    land:
+      - {name: mole, corners_m: [[900, -400], [1200, 800]]}       # north, east; or corners_nm
+      - {name: islet, corners_m: [[0, 600], [50, 700], [-80, 650]], closed: true, snr_db: 35}
 """
 
 import difflib
@@ -42,13 +53,13 @@ from .. import config
 from ..geometry import NAUTICAL_MILE
 from ..parameters import VESSEL_CLASSES, TrackerParameters, read_yaml_mapping
 from ..types import OwnShip, Truth
-from . import motion, sensor_errors, ships
+from . import land, motion, sensor_errors, ships
 from .fields import Section
 from .standard_scenarios import STANDARD
 
 MAX_RANGE = 200_000.0                     # m
 
-TOP_KEYS = 'description duration_s origin radar clutter tracker ais own_ship targets'
+TOP_KEYS = 'description duration_s origin radar clutter tracker ais own_ship targets land'
 RADAR_KEYS = ('rotation_rpm max_range_m|max_range_nm blind_range_m|blind_range_nm '
               'range_sigma_m|range_sigma_nm bearing_sigma_deg range_bias_m|range_bias_nm '
               'bearing_bias_deg range_resolution_m|range_resolution_nm beam_width_deg '
@@ -119,6 +130,7 @@ class Scenario:
     duration  s
     radar, clutter
     fleet     own ship and the T targets
+    shores    of the land
     stated    tracker parameters that the scenario states
     """
 
@@ -128,12 +140,18 @@ class Scenario:
     radar: Radar
     clutter: Clutter
     fleet: ships.Fleet
+    shores: tuple[land.Shore, ...]
     stated: dict[str, Any]
 
     @property
     def scans(self) -> int:
         """Number of whole revolutions in the scenario."""
         return int(self.duration / self.radar.scan_period + 1e-9)
+
+    @property
+    def in_cells(self) -> bool:
+        """Whether there are hulls or land, of which the radar sees cells."""
+        return bool(np.isfinite(self.fleet.hulls.beam).any() or self.shores)
 
     def own_ship_at(self, times) -> OwnShip:
         """Own ship's true motion at the times [K]."""
@@ -152,7 +170,7 @@ class Scenario:
     def tracker_parameters(self) -> dict[str, Any]:
         """What a tracker is told of this radar and its waters: fields of TrackerParameters.
 
-        The sigmas are the radar's, but not below the smallest that a tracker takes. Ships echo
+        Sigmas and cell are the radar's, but not below the smallest that a tracker takes. Ships echo
         at their middle, but with the sensor errors of the IMO as real ones do.
         """
         range_sigma, bearing_sigma = self.radar.range_sigma, self.radar.bearing_sigma
@@ -165,6 +183,8 @@ class Scenario:
         return {'range_sigma_m': max(range_sigma, 0.1),
                 'bearing_sigma_deg': max(math.degrees(bearing_sigma), 0.01),
                 'glint_sigma_m': glint,
+                'range_resolution_m': max(self.radar.range_resolution, 1.0),
+                'beam_width_deg': max(math.degrees(self.radar.beam_width), 0.1),
                 'min_range_m': self.radar.blind_range,
                 'max_range_m': self.radar.max_range,
                 'scan_period_s': self.radar.scan_period,
@@ -219,10 +239,29 @@ def build(values: dict[str, Any], name: str, folder=Path()) -> Scenario:
     if duration < radar.scan_period:
         raise ValueError(f'duration_s is {duration:g}; it must not be less than a revolution, '
                          f'{radar.scan_period:.3g} s')
-    return Scenario(name, top.text('description', ''), duration, radar,
+    made = Scenario(name, top.text('description', ''), duration, radar,
                     _clutter(top.section('clutter', CLUTTER_KEYS), radar),
-                    ships.read(top, folder, duration),
+                    ships.read(top, folder, duration), land.read(top),
                     _stated(top.section('tracker', TRACKER_KEYS)))
+    if made.in_cells:
+        _check_cells(radar)
+    return made
+
+
+def _check_cells(radar):
+    """ValueError unless the radar has cells, and no errors but those of cells."""
+    if radar.sensor_errors != 'none':
+        raise ValueError(f'radar.sensor_errors is {radar.sensor_errors!r} in a scenario with hulls '
+                         'or land; these are seen as cells, which have no other error: it must be '
+                         "'none'")
+    if radar.radial_speed_sigma is not None:
+        raise ValueError('radar has radial_speed_sigma in a scenario with hulls or land: cells tell no '
+                         'radial speed; leave it out')
+    for key, value, least in (('range_resolution', radar.range_resolution, 1.0),
+                              ('beam_width', math.degrees(radar.beam_width), 0.1)):
+        if value < least:
+            raise ValueError(f'radar.{key} is {value:g} in a scenario with hulls or land; it must '
+                             f'be at least {least:g}')
 
 
 def _radar(section):

@@ -15,13 +15,29 @@ MAX_SPEED = 100 * KNOT                    # m/s: the fastest relative speed an A
 MAX_LENGTH = 200 * NAUTICAL_MILE          # m
 MAX_DURATION = 7 * 86400.0                # s
 SHIP_LENGTH = 100.0                       # m, where it is not stated
+HULL_SNR_DB = 25.0                        # likewise
+NO_HULL = (math.nan,) * 3
 
 AIS_KEYS = 'file vessels start_s max_gap_s pd pd_factor'
 SHIP_KEYS = 'start course_deg speed_kn|speed_mps speed_wave legs'
-TARGET_KEYS = 'name ' + SHIP_KEYS + ' length_m|length_nm pd pd_factor'
+TARGET_KEYS = 'name ' + SHIP_KEYS + ' length_m|length_nm hull pd pd_factor'
+HULL_KEYS = 'beam_m|beam_nm heading_deg snr_db'
 START_KEYS = {'range': 'range_m|range_nm bearing_deg',
               'north': 'north_m|north_nm east_m|east_nm',
               'lat_deg': 'lat_deg lon_deg'}
+
+
+class Hulls(NamedTuple):
+    """The ships among T targets that the radar sees as hulls; nan for the others.
+
+    beam     [T]  m
+    heading  [T]  rad; nan: along the course over ground, at rest north
+    snr_db   [T]  mean power over noise of one of a hull's scatterers, dB
+    """
+
+    beam: Array
+    heading: Array
+    snr_db: Array
 
 
 class Fleet(NamedTuple):
@@ -33,6 +49,7 @@ class Fleet(NamedTuple):
     pd         [T]  probability of detection at every range, nan where the radar's curve holds
     pd_factor  [T]  of the radar's curve
     length     [T]  m
+    hulls      T rows
     """
 
     origin: tuple[float, float] | None
@@ -41,6 +58,7 @@ class Fleet(NamedTuple):
     pd: Array
     pd_factor: Array
     length: Array
+    hulls: Hulls
 
 
 def read(top: Section, folder: Path, duration: float) -> Fleet:
@@ -57,13 +75,14 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
                else _driven_own_ship(own, origin, traffic, own_vessel, duration))
     own_start, _ = motion.locate_ships(motion.table([own_way], duration), np.array(0), 0.0)
 
-    ways, names, chances, lengths = [own_way], [], [], []
+    ways, names, chances, lengths, hulls = [own_way], [], [], [], []
     for number, item in enumerate(top.items('targets')):
         section = Section(item, f'targets[{number}]', TARGET_KEYS)
         ways.append(_way(section, origin, own_start))
         names.append(section.text('name', f'target {number + 1}'))
         chances.append(_chance(section))
         lengths.append(section.length('length', 1.0, 500.0, SHIP_LENGTH))
+        hulls.append(_hull(section, lengths[-1]))
     if traffic is not None:
         for vessel in _chosen_vessels(options, traffic, own_vessel):
             ways.append(ais.way(traffic[vessel], origin))
@@ -71,11 +90,12 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
             chances.append(_chance(options))
             length = traffic[vessel].length
             lengths.append(length if math.isfinite(length) else SHIP_LENGTH)
+            hulls.append(NO_HULL)
     if not names:
         raise ValueError('the scenario has no targets; give targets: or ais:')
     pd, pd_factor = np.array(chances).T
     return Fleet(origin, motion.table(ways, duration), tuple(names), pd, pd_factor,
-                 np.array(lengths))
+                 np.array(lengths), Hulls(*np.array(hulls).T))
 
 
 def _origin(top, own, traffic, own_vessel):
@@ -127,6 +147,23 @@ def _chance(section):
         raise ValueError(f'{section.where} has both pd and pd_factor; give one')
     pd = section.number('pd', 0.0, 1.0) if 'pd' in section else math.nan
     return pd, section.number('pd_factor', 0.0, 1.0, 1.0)
+
+
+def _hull(section, length):
+    """Beam, heading and power of a target's hull; nan where it has none."""
+    if 'hull' not in section:
+        return NO_HULL
+    for key in ('pd', 'pd_factor'):
+        if key in section:
+            raise ValueError(f'{section.where} has {key} beside hull, whose cells are seen or not '
+                             'by their own echo; leave it out')
+    if not section.has('length'):
+        raise ValueError(f'{section.where} has a hull, but no length_m')
+    values = section.section('hull', HULL_KEYS)
+    heading = (math.radians(values.number('heading_deg', -360.0, 360.0))
+               if 'heading_deg' in values else math.nan)
+    return (values.length('beam', 2.0, length), heading,
+            values.number('snr_db', 0.0, 60.0, HULL_SNR_DB))
 
 
 def _way(section, origin, own_start):

@@ -67,13 +67,14 @@ def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
 
 
 def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origin,
-         range_sigma: float, bearing_sigma: float, size: float):
+         range_sigma: float, bearing_sigma: float, size: float, widest: float = 0.0):
     """Pairs of tracks and plots inside the chi-square gate.
 
     time [N] s, position [N, 2] m, velocity [N, 2] m/s, covariance [N, 2, 2] m^2: where the
     tracks are when the beam should pass them, and the covariance of that position
     origin  [N, 2] m, own ship at those times
     size    of the gate, squared Mahalanobis distance
+    widest  m, deviation of the least certain plot, where plots tell their own
 
     Returns track [P] (ascending) and plot [P] indices, nis [P] (squared distance) and log_det
     [P] of the innovation covariance. A plot is compared with the track at the plot's own time.
@@ -82,14 +83,14 @@ def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origi
     distance, bearing = to_range_bearing(offset)
     a, b, d = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     sin, cos = offset.T / np.maximum(distance, 1e-9)
-    reach = np.sqrt(size)
+    reach, range_sigma = np.sqrt(size), max(range_sigma, widest)
     spread = sin * sin * a + 2 * sin * cos * b + cos * cos * d
     # What grows with a plot's range is taken at the farthest: its noise across, and the second
     # order of a coarse bearing along, shift and spread (geometry.polar_to_position).
     most = distance + reach * np.sqrt(spread + range_sigma ** 2)
     second = most * bearing_sigma ** 2
     along = reach * np.sqrt(spread + range_sigma ** 2 + 1.5 * second * second) + 0.5 * second
-    noise = ((distance + along) * bearing_sigma) ** 2
+    noise = np.maximum(((distance + along) * bearing_sigma) ** 2, widest ** 2)
     across = reach * np.sqrt(a + d - spread + noise + OBLIQUE * range_sigma ** 2)
     # Near own ship plots may lie in any direction, each with its noise along its own.
     radius = along + reach * np.sqrt(a + d + noise)

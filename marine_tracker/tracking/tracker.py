@@ -1,5 +1,6 @@
 """One scan in, tracks out: the whole way of the data on one page."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -83,9 +84,11 @@ class Tracker:
     """
 
     def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
-        self.parameters = parameters
+        # Clusters tell what their middle strays.
+        self.parameters = (parameters if parameters.extent == 'off'
+                           else replace(parameters, glint_sigma_m=0.0))
         self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
-        self.radars = [radar.parameters for radar in radars_of(parameters)]
+        self.radars = [radar.parameters for radar in radars_of(self.parameters)]
         self.farthest = max(p.max_range_m for p in self.radars)
         self.held = HELD_REVOLUTIONS * np.array([p.scan_period_s for p in self.radars])
         self.updates = held_updates(radars_of(parameters))
@@ -126,7 +129,8 @@ class Tracker:
             covariance = covariance + self.glint
         origin, _ = own_ship_at(scan.own_ship, time)
         track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
-                                         p.range_sigma_m, bearing_sigma, self.gate_size)
+                                         p.range_sigma_m, bearing_sigma, self.gate_size,
+                                         _widest(scan.plots.covariance))
         if plots.radial_speed is not None:
             fit = doppler.agree(track, plot, ahead, lone, plots, p.radial_speed_sigma_mps,
                                 p.max_target_speed_mps, self.speed_gate)
@@ -243,3 +247,10 @@ class Tracker:
                       last_time=plots.time, bearing=plots.bearing, state=state,
                       radar=np.full(count, radar, np.int8),
                       past=order.nothing_yet(state, plots, self.updates))
+
+
+def _widest(covariance) -> float:
+    """Deviation m of the least certain of plots with covariances [M, 2, 2] m^2, 0 for None."""
+    if covariance is None:
+        return 0.0
+    return float(np.sqrt(np.trace(covariance, axis1=1, axis2=2).max(initial=0.0)))

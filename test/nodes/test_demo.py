@@ -75,6 +75,16 @@ def test_a_recording_is_shown_with_the_parameters_of_its_radar(demo, node_helper
     process.stop(signal.SIGTERM)
 
 
+def test_hulls_are_tracked_as_targets_with_an_extent(demo):
+    process = demo('--scenario', 'hulls', '--extent', 'gp', '--rate', '20')
+    assert process.says('TT05'), process.said
+    words = ' '.join(nodes(process)['tracker'].cmdline())
+    for assignment in ('extent:="gp"', 'range_resolution_m:=10.0', 'beam_width_deg:=0.75'):
+        assert assignment in words
+    assert 'TT06' not in process.said
+    process.stop(signal.SIGTERM)
+
+
 def test_it_ends_by_itself_after_its_duration(demo):
     process = demo('--duration', '1')
     assert process.ends() == 0, process.said

@@ -1,4 +1,5 @@
 import time
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -290,3 +291,19 @@ def test_false_plots_have_radial_speeds_of_noise_and_of_waves(make_scenario):
     # Even over 40 m/s: variance 40^2 / 12, of which a sample's differs by sqrt(0.8 / n).
     assert noise.var() == pytest.approx(1600 / 12, rel=4.5 * np.sqrt(0.8 / len(noise)))
     assert waves.std() == pytest.approx(1.0, rel=4.5 / np.sqrt(2 * len(waves)))
+
+
+@pytest.mark.parametrize('name, plots, ranges, bearings', [
+    ('busy_strait', 9444, 80714532.38816765, 4505774.05478484),
+    ('clean', 240, 1546287.482138929, 3540.10933083906),
+    ('encounters', 485, 6453734.031131014, 12959.41089061839),
+    ('paper_track', 39, 195239.4980035836, 22.950977314993413),
+    ('imo_1', 40, 646332.1724453561, 250.9853558068693),
+    ('imazu_05', 76, 1343018.590494042, 165.74607680268014),
+])
+def test_plots_of_shipped_scenarios_are_those_of_the_first_release(name, plots, ranges, bearings):
+    scans = [scan.plots for scan, _ in islice(simulate(scenario.load(name), 1), 40)]
+    assert sum(len(scan.range) for scan in scans) == plots
+    assert sum(scan.range.sum() for scan in scans) == pytest.approx(ranges, rel=1e-13)
+    assert sum((scan.bearing * np.arange(1, len(scan.range) + 1)).sum() for scan in scans
+               ) == pytest.approx(bearings, rel=1e-13)

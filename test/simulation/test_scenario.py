@@ -80,7 +80,7 @@ def test_tracker_parameters_are_those_of_the_radar(make_scenario):
     assert loaded.tracker_parameters() == pytest.approx({
         'range_sigma_m': 9, 'bearing_sigma_deg': 0.7, 'min_range_m': 70, 'max_range_m': 6 * 1852,
         'glint_sigma_m': 0, 'scan_period_s': 2.5, 'max_target_speed_mps': 30 * KNOT,
-        'vessel_class': 'small_craft'})
+        'range_resolution_m': 30, 'beam_width_deg': 1, 'vessel_class': 'small_craft'})
 
 
 def test_detectable_is_between_blind_and_maximum_range(make_scenario):
@@ -185,6 +185,17 @@ def test_the_example_in_the_documentation_is_right(tmp_path):
     loaded = scenario.load(file)
     assert loaded.fleet.names == ('ferry',)
     assert loaded.clutter.sea == 40
+
+
+def test_the_example_of_hulls_and_land_is_right(tmp_path):
+    example = textwrap.dedent(re.search(
+        r'(?s)\n\n(    targets:\n      - {name: tanker.*)\n', scenario.__doc__).group(1))
+    file = tmp_path / 'example.yaml'
+    file.write_text('duration_s: 60\n' + example)
+    loaded = scenario.load(file)
+    assert loaded.fleet.hulls.beam.tolist() == [32]
+    assert [(shore.name, len(shore.corners)) for shore in loaded.shores] == [
+        ('mole', 2), ('islet', 4)]
 
 
 def test_unknown_names_are_answered_with_the_nearest():

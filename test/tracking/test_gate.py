@@ -161,3 +161,20 @@ def test_windows_find_exactly_the_plots_inside_them(seed):
     assert len(found) == len(set(found))
     assert set(found) == expected
     assert (np.diff(track) >= 0).all()
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_plots_that_tell_their_own_covariance_are_gated_by_it(seed):
+    """Clusters at close range are far less certain than the radar's figures say."""
+    rng = np.random.default_rng(seed)
+    arguments = scene(rng, 40, 60, reach=2500.0, sigma=20.0)
+    plots = arguments[5]
+    root = rng.normal(0, 30, (len(plots.time), 2, 2))
+    told = plots._replace(covariance=root @ root.swapaxes(1, 2) + 4 * np.eye(2))
+    arguments = (*arguments[:5], told, arguments[6])
+    widest = float(np.sqrt(np.trace(told.covariance, axis1=1, axis2=2).max()))
+    track, plot, _, _ = gate(*arguments, 5.0, 0.005, gate_size(0.99), widest)
+    expected = set(brute_force(*arguments, gate_size(0.99)))
+    assert set(zip(track.tolist(), plot.tolist())) == expected
+    narrow, _, _, _ = gate(*arguments, 5.0, 0.005, gate_size(0.99))
+    assert len(narrow) < len(expected)

@@ -12,6 +12,7 @@ from . import (
     gwnn,
     gwnn_monte_carlo,
     gwnn_paper,
+    hulls,
     marine_table,
     rough_nn,
     two_radars,
@@ -21,5 +22,5 @@ from . import (
 EXPERIMENTS: dict[str, ModuleType] = {
     'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': gwnn_monte_carlo,
     'marine_table': marine_table, 'rough_nn': rough_nn, 'wavelet': wavelet,
-    'alpha_beta': alpha_beta, 'two_radars': two_radars, 'extended': extended,
+    'alpha_beta': alpha_beta, 'two_radars': two_radars, 'extended': extended, 'hulls': hulls,
     'compare': compare}

@@ -1,0 +1,90 @@
+"""One ship seen as cells, tracked with its extent: what length, course and centre come to."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...extent.extents import Extents
+from ...extent.hulls import OUTLINE
+from ...geometry import wrap_angle
+from ...parameters import TrackerParameters
+from ...simulation import radar, scenario
+from ...tracking.lifecycle import CONFIRMED
+from ...tracking.tracker import Tracker
+
+SPEED = 6.0                     # m/s
+SCANS = 44                      # two minutes
+PERIOD = 60 / 22                # s
+BEARING = 45.0                  # deg, of the ship half way
+BEAMS = {60: 12, 120: 20, 200: 32, 300: 45}
+FINE, COARSE = (10.0, 0.75), (30.0, 1.2)        # m, deg: cells of a short and of a long pulse
+
+
+class Case(NamedTuple):
+    """A ship of length m that passes at distance m half way, aspect deg off the line of sight."""
+
+    length: int
+    distance: float
+    aspect: float
+    cell: tuple[float, float]
+
+
+class Found(NamedTuple):
+    """What one run ends with; errors are estimate minus truth, nan where nothing was tracked.
+
+    length m, course rad, beam m; centre [2] m along and across the ship's axis, mean of the last
+    half; outlined: share of it with an outline
+    """
+
+    length: float
+    course: float
+    beam: float
+    centre: tuple[float, float]
+    outlined: float
+
+
+def scene(case: Case) -> scenario.Scenario:
+    """The ship alone, own ship at rest."""
+    course = BEARING + case.aspect
+    way = 0.5 * SCANS * PERIOD * SPEED
+    at, along = np.radians(BEARING), np.radians(course)
+    return scenario.build({
+        'duration_s': (SCANS + 0.5) * PERIOD,
+        'radar': {'range_resolution_m': case.cell[0], 'beam_width_deg': case.cell[1],
+                  'range_sigma_m': 0.6 * case.cell[0], 'bearing_sigma_deg': 0.4 * case.cell[1],
+                  'max_range_m': 8000},
+        'targets': [{'start': {'north_m': float(case.distance * np.cos(at) - way * np.cos(along)),
+                               'east_m': float(case.distance * np.sin(at) - way * np.sin(along))},
+                     'course_deg': course, 'speed_mps': SPEED, 'length_m': case.length,
+                     'hull': {'beam_m': BEAMS[case.length]}}]}, 'one ship')
+
+
+def run(case: Case, extent: str, seed: int) -> Found:
+    """One run of the tracker with extents."""
+    loaded = scene(case)
+    parameters = TrackerParameters(**loaded.tracker_parameters() | {'extent': extent})
+    tracker, extents = Tracker(parameters), Extents(parameters)
+    memory, known = tracker.start(), extents.start()
+    course = np.radians(BEARING + case.aspect)
+    ahead = np.array([np.sin(course), np.cos(course)])
+    axes = np.stack([ahead, [ahead[1], -ahead[0]]])
+    off, lined, last = [], [], (np.nan,) * 3
+    for k, (scan, truth) in enumerate(radar.simulate(loaded, seed)):
+        (memory, known), report, _, shapes = extents.track(tracker, memory, known, scan)
+        assert shapes is not None
+        estimate = tracker.extrapolate(report.tracks, report.time)
+        there = truth.position[0] + (report.time - truth.time[0])[:, None] * truth.velocity[0]
+        away = np.hypot(*(estimate.position - there).T)
+        away[(report.tracks.status != CONFIRMED)] = np.inf
+        if not np.isfinite(away).any():
+            continue
+        row = int(away.argmin())
+        velocity = known.hulls.matrix.mean[row, 2:]
+        last = (shapes.length[row] - case.length,
+                wrap_angle(np.arctan2(*velocity) - course), shapes.beam[row] - BEAMS[case.length])
+        if k >= SCANS // 2:
+            off.append(axes @ (estimate.position[row] - there[row]))
+            lined.append(known.hulls.method[row] == OUTLINE)
+    if not off:
+        return Found(*last, (np.nan, np.nan), 0.0)
+    return Found(*last, tuple(np.mean(off, 0)), float(np.mean(lined)))

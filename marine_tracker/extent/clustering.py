@@ -1,0 +1,182 @@
+"""Cells that touch make one cluster: one target, or several close together, or land.
+
+Two cells touch when they lie within LINK cells of each other in range and in bearing, or within
+GAP, for fine cells tell the parts of a ship apart. Where hulls are expected, of targets already
+tracked, their gates come first: a cell inside one belongs to it, whatever it touches, so a hull
+that breaks up stays one cluster, ships side by side stay two, and a ship that passes close to land
+is not drawn into it.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ..estimators.linear import invert_2x2, squared_distance
+from ..types import Array, Plots
+from .smear import smear
+
+LINK = 1.5                  # range resolutions, and beam widths
+GAP = 40.0                  # m
+TURN = 2 * np.pi
+REACH = 225.0               # m from a hull's middle: so far what touches it is still its own
+
+
+class Gates(NamedTuple):
+    """Where H hulls are expected in this scan: p' area^-1 p <= 1 about the middle.
+
+    time      [H]        s
+    middle    [H, 2]     m, at that time
+    velocity  [H, 2]     m/s
+    area      [H, 2, 2]  m^2
+    """
+
+    time: Array
+    middle: Array
+    velocity: Array
+    area: Array
+
+
+class Clusters(NamedTuple):
+    """C clusters; `of_cell` [M] is the cluster of each cell.
+
+    time       [C]        s, mean of the cells'
+    position   [C, 2]     m, east and north: the centroid
+    scatter    [C, 2, 2]  m^2, sum over the cells of d d' with d from the centroid
+    cells      [C]        how many
+    noise      [C, 2, 2]  m^2, R of a single cell
+    size       [C]        m, between the farthest cells along the longer of two axes
+    amplitude  [C]        dB, of the strongest cell
+    gate       [C]        which hull's gate it belongs to, -1 for none
+    crowded    [C]        it touches another cluster, so its cells may not be its own
+    land       [C]        most of its cells lie on land
+    """
+
+    time: Array
+    position: Array
+    scatter: Array
+    cells: NDArray[np.int64]
+    noise: Array
+    size: Array
+    amplitude: Array
+    gate: NDArray[np.int64]
+    crowded: NDArray[np.bool_]
+    land: NDArray[np.bool_]
+    of_cell: NDArray[np.int64]
+
+
+class Place(NamedTuple):
+    """Where M cells lie: `gate` [M] of a hull that each is in, -1 for none; `off` [M] m from the
+    middle of that hull, or of the nearest; `land` [M] on land."""
+
+    gate: NDArray[np.int64]
+    off: Array
+    land: NDArray[np.bool_]
+
+
+def cluster(cells: Plots, range_resolution: float, beam_width: float, place: Place) -> Clusters:
+    """The clusters of one scan's cells [M]; range_resolution m, beam_width rad."""
+    first, second = _links(cells, range_resolution, beam_width)
+    group, crowded = _groups(first, second, place)
+    _, group = np.unique(group, return_inverse=True)
+    return _summary(cells, group, crowded, place, range_resolution, beam_width)
+
+
+def _links(cells, range_resolution, beam_width):
+    """All pairs of cells that touch, [P] each; over north as well."""
+    if len(cells.range) < 2:
+        return np.zeros((2, 0), np.int64)
+    turn = TURN / (LINK * beam_width)
+    places = np.column_stack([cells.range / (LINK * range_resolution),
+                              np.minimum(cells.bearing * (turn / TURN), np.nextafter(turn, 0))])
+    tree = cKDTree(places, boxsize=[0, turn], balanced_tree=False)
+    near = cKDTree(cells.position, balanced_tree=False)
+    return np.concatenate([tree.query_pairs(1.0 + 1e-9, p=np.inf, output_type='ndarray'),
+                           near.query_pairs(GAP, output_type='ndarray')]).T
+
+
+def in_gates(cells: Plots, gates: Gates) -> Place:
+    """Where the cells [M] lie among the gates; of land nothing is known."""
+    dry = np.zeros(len(cells.time), bool)
+    if not len(gates.time):
+        return Place(np.full(len(dry), -1), np.full(len(dry), np.inf), dry)
+    later = cells.time - gates.time[:, None]
+    offset = (cells.position - gates.middle[:, None]
+              - later[..., None] * gates.velocity[:, None])             # [H, M, 2]
+    inverse, _ = invert_2x2(gates.area)
+    depth = squared_distance(offset, inverse[:, None])
+    nearest = depth.argmin(0)
+    every = np.arange(len(nearest))
+    return Place(np.where(depth[nearest, every] <= 1, nearest, -1),
+                 np.hypot(*offset[nearest, every].T), dry)
+
+
+def _groups(first, second, place):
+    """A label [M] of each cell's cluster; and whether [M] it touches another cluster.
+
+    Cells of a gate are one cluster. What touches a single gate, is not land and does not reach too
+    far off is part of that hull too.
+    """
+    gate, count = place.gate, len(place.gate)
+    same = gate[first] == gate[second]
+    hulls = (gate >= 0).nonzero()[0]
+    pairs = (np.concatenate([first[same], hulls]),
+             np.concatenate([second[same], count + gate[hulls]]))
+    graph = coo_array((np.ones(len(pairs[0]), np.int8), pairs),
+                      shape=(count + gate.max(initial=-1) + 1,) * 2)
+    group = connected_components(graph, directed=False)[1]
+    crowded = np.zeros(len(group), bool)
+    if same.all():
+        return group[:count], crowded[:count]
+    one, other = first[~same], second[~same]
+    swap = gate[one] < 0
+    one, other = np.where(swap, other, one), np.where(swap, one, other)     # `one` in a gate
+    hull, part = group[one], group[other]
+    reach = np.zeros(len(group))
+    np.maximum.at(reach, group[:count], place.off)
+    reach[_mostly(place.land, group[:count], len(group))] = np.inf
+    owner, rivals = np.full(len(group), -1), np.zeros(len(group), bool)
+    owner[part] = hull
+    rivals[part[owner[part] != hull]] = True
+    joins = (gate[other] < 0) & ~rivals[part] & (reach[part] <= REACH)
+    new = np.arange(len(group))
+    new[part[joins]] = hull[joins]
+    crowded[hull[~joins]] = crowded[part[~joins]] = True
+    group = new[group[:count]]
+    return group, crowded[group]
+
+
+def _mostly(land, group, groups):
+    """Of which groups more than half the cells are land."""
+    return np.bincount(group, land, groups) > 0.5 * np.bincount(group, minlength=groups)
+
+
+def _summary(cells, group, crowded, place, range_resolution, beam_width):
+    clusters = int(group.max(initial=-1)) + 1
+    count = np.bincount(group, minlength=clusters)
+
+    def mean(values):
+        return np.bincount(group, values, clusters) / count
+
+    def most(values, start):
+        out = np.full(clusters, start)
+        np.maximum.at(out, group, values)
+        return out
+
+    position = np.column_stack([mean(column) for column in cells.position.T])
+    off = cells.position - position[group]
+    scatter = np.empty((clusters, 2, 2))
+    for i, j in ((0, 0), (0, 1), (1, 1)):
+        scatter[:, i, j] = scatter[:, j, i] = np.bincount(group, off[:, i] * off[:, j], clusters)
+    half = 0.5 * np.arctan2(2 * scatter[:, 0, 1], scatter[:, 1, 1] - scatter[:, 0, 0])
+    along = off[:, 0] * np.sin(half)[group] + off[:, 1] * np.cos(half)[group]
+    sin, cos = (mean(f(cells.bearing)) for f in (np.sin, np.cos))
+    return Clusters(
+        mean(cells.time), position, scatter, count,
+        smear(mean(cells.range), np.arctan2(sin, cos), range_resolution, beam_width),
+        most(along, -np.inf) + most(-along, -np.inf), most(cells.amplitude, -np.inf),
+        most(place.gate, -1), most(crowded, False), _mostly(place.land, group, clusters),
+        group)

@@ -1,0 +1,278 @@
+"""Length, beam and heading of the tracked targets: random matrix first, an outline close by.
+
+One row a target, whatever it is; the point tracker is authoritative for where targets are and
+which cluster is whose. A row starts with a random matrix. It goes over to a Gaussian-process
+outline once SCANS clusters of CELLS cells on average have come and the smear is small against the
+beam; it goes back when the outline contradicts the course or its cells. A scan without a
+cluster, or with one that touches another, leaves size and outline as they are.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..estimators.contract import Velocity
+from ..estimators.linear import invert_2x2, squared_distance
+from ..geometry import unit_vector
+from ..types import Array, Extrapolation, append, put, take, where
+from . import contour, gaussian_process, random_matrix
+from .clustering import Clusters
+from .gaussian_process import HEADING, GpState
+from .lit_edge import FRINGE, Edge
+from .random_matrix import BOX, NO_MEMORY, RandomMatrixState
+from .ship_outline import SHIP, SLENDER, from_random_matrix, off_course
+
+RANDOM_MATRIX, OUTLINE = 0, 1       # methods
+SCANS, CELLS, SMEAR = 10, 10.0, 0.4     # for an outline: scans; mean cells; smear over half beam
+OFF_COURSE = np.radians(15)         # of an outline's heading: it is wrong
+NIS = 3.0                           # mean nu^2 / S of an outline's cells: they contradict it
+EDGE_CELLS = 6                      # of the lit edge that an outline needs to start
+RECENT = 5.0                        # scans that the means of cells and NIS remember
+FIRST_WEIGHT = 6.0                  # of a random matrix's first cluster
+LOST_TOUCH = 16.0                   # squared distance of the random matrix from the track
+SLOW = 1.0                          # m/s: slower, a course says little about the heading
+
+
+class Hulls(NamedTuple):
+    """What is known of N targets.
+
+    id       [N]  of the track
+    matrix   N rows
+    outline  N rows, of no meaning where the method is RANDOM_MATRIX; None where never asked for
+    method   [N]  RANDOM_MATRIX or OUTLINE
+    scans    [N]  clusters since the start, or since an outline failed
+    cells    [N]  mean number of cells of late
+    nis      [N]  mean nu^2 / S of the outline's cells of late, about 1
+    """
+
+    id: NDArray[np.int64]
+    matrix: RandomMatrixState
+    outline: GpState | None
+    method: NDArray[np.int8]
+    scans: NDArray[np.int64]
+    cells: Array
+    nis: Array
+
+
+class Shapes(NamedTuple):
+    """N targets as they are shown.
+
+    extended            [N]  the target is longer than what pulse and beam make of a point
+    length, length_sd   [N]  m
+    beam                [N]  m, an upper bound where the method is RANDOM_MATRIX
+    heading             [N]  rad clockwise from north; of an axis the half that course points to
+    heading_sd          [N]  rad
+    source              [N]  of the heading: index into SOURCES
+    method              [N]  RANDOM_MATRIX or OUTLINE
+    outline             [N, CORNERS, 2]  m, east and north of where the tracker has the target
+    """
+
+    extended: NDArray[np.bool_]
+    length: Array
+    length_sd: Array
+    beam: Array
+    heading: Array
+    heading_sd: Array
+    source: NDArray[np.int8]
+    method: NDArray[np.int8]
+    outline: Array
+
+
+NOTHING = Clusters(*np.zeros((1, 1)), np.zeros((1, 2)), np.zeros((1, 2, 2)),
+                   np.ones(1, np.int64), np.eye(2)[None], *np.zeros((2, 1)),
+                   np.full(1, -1), *np.zeros((2, 1), bool), np.zeros(0, np.int64))
+METHODS = ('random_matrix', 'gp')
+COURSE, AXIS, BY_OUTLINE = 0, 1, 2
+SOURCES = ('course', 'axis', 'outline')
+CORNERS = 36
+_AROUND = 2 * np.pi / CORNERS * np.arange(CORNERS)
+
+
+def begin(outlines: bool) -> Hulls:
+    """No targets yet; outlines: whether there may be some."""
+    none = np.zeros(0)
+    matrix = random_matrix.start(none, np.zeros((0, 2)), np.zeros((0, 2, 2)),
+                                 Velocity(np.zeros((0, 2)), np.zeros((0, 2, 2))),
+                                 np.zeros((0, 2, 2)))
+    return Hulls(none.astype(np.int64), matrix, _no_outline(0) if outlines else None,
+                 none.astype(np.int8), none.astype(np.int64), none, none)
+
+
+def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, taken,
+         edge: Edge | None, own_ship) -> Hulls:
+    """One scan.
+
+    ids [N] of the tracks, time [N] s when the beam passed them, estimate of the point tracker
+    then; taken [N]: the cluster of each, -1 for none; edge of the clusters, None for no
+    outlines; own_ship [2] m.
+    """
+    new = ~np.isin(ids, before.id)
+    hulls = append(take(before, np.isin(before.id, ids)),
+                   _start(ids[new], take(estimate, new), clusters, taken[new],
+                          before.outline is not None))
+    hulls = take(hulls, np.argsort(hulls.id)[np.argsort(np.argsort(ids))])
+    matrix = random_matrix.predict(hulls.matrix, time)
+    has = (taken >= 0) & ~new
+    whole = has.copy()
+    whole[has] = ~clusters.crowded[taken[has]]
+    rows = whole.nonzero()[0]
+    own = take_clusters(clusters, taken[rows])
+    matrix = _keep_touch(matrix, rows, own, take(estimate, rows))
+    matrix = random_matrix.update(matrix, rows, own.position, own.scatter, own.cells, own.noise)
+    count = np.zeros(len(ids))
+    count[has] = clusters.cells[taken[has]]
+    late = np.where(has, 1 / np.minimum(hulls.scans + 1.0, RECENT), 0.0)
+    hulls = hulls._replace(matrix=matrix, scans=hulls.scans + whole,
+                           cells=hulls.cells + late * (count - hulls.cells))
+    if hulls.outline is None or edge is None:
+        return hulls
+    return _outlines(hulls, time, rows, taken, own, edge, own_ship)
+
+
+def take_clusters(clusters: Clusters, rows) -> Clusters:
+    """The chosen clusters; of_cell is left as it is."""
+    return take(clusters._replace(of_cell=clusters.cells), rows)._replace(
+        of_cell=clusters.of_cell)
+
+
+def first_extent(scatter, count, noise):
+    """A first guess of X [K, 2, 2] m^2 from one cluster each: what the noise leaves."""
+    spread = scatter / count[:, None, None] - noise
+    value, vector = np.linalg.eigh(spread)
+    value = np.maximum(value, 0.25 * np.linalg.eigvalsh(noise)) / random_matrix.SHIP.spread
+    return (vector * value[:, None]) @ vector.swapaxes(1, 2)
+
+
+def _start(ids, estimate, clusters, taken, outlines):
+    count = len(ids)
+    # A track that was there before extents were asked for may have no cluster.
+    none = taken < 0
+    own = take_clusters(clusters if len(clusters.cells) else NOTHING, taken)
+    scatter = np.where(none[:, None, None], 0.0, own.scatter)
+    position = np.where(none[:, None], estimate.position, own.position)
+    spread = np.where(none[:, None, None], estimate.covariance[:, :2, :2],
+                      own.scatter / own.cells[:, None, None] + own.noise)
+    matrix = random_matrix.start(
+        estimate.time, position, spread / own.cells[:, None, None],
+        Velocity(estimate.velocity, estimate.covariance[:, 2:, 2:]),
+        first_extent(scatter, own.cells, own.noise),
+        NO_MEMORY + np.where(none, 0.0, np.minimum(own.cells, FIRST_WEIGHT)))
+    return Hulls(ids, matrix, _no_outline(count) if outlines else None, np.zeros(count, np.int8),
+                 np.where(none, 0, 1), np.where(none, 1.0, own.cells), np.ones(count))
+
+
+def _no_outline(count):
+    none = np.zeros(count)
+    return gaussian_process.start(SHIP, none, np.zeros((count, 6)), np.zeros((count, 6, 6)),
+                                  np.ones((count, len(SHIP.contour.angle))), np.ones((count, 2)))
+
+
+def _keep_touch(matrix, rows, own, estimate):
+    """The matrices, those of the named rows that lost touch with their track set on it again.
+
+    A random matrix goes straight on; the track knows manoeuvres.
+    """
+    ahead = take(matrix, rows)
+    off = own.position - ahead.mean[:, :2]
+    cells = random_matrix.cell_covariance(ahead.extent, own.noise) / own.cells[:, None, None]
+    inverse, _ = invert_2x2(ahead.covariance[:, :2, :2] + cells)
+    lost = (squared_distance(off, inverse) > LOST_TOUCH).nonzero()[0]
+    if not len(lost):
+        return matrix
+    mean = np.concatenate([own.position, estimate.velocity], 1)[lost]
+    return put(matrix, rows[lost], take(ahead, lost)._replace(
+        mean=mean, covariance=estimate.covariance[lost]))
+
+
+def _outlines(hulls, time, rows, taken, own, edge, own_ship):
+    """The outlines of the rows that may have one: predicted, started, updated, given up."""
+    matrix, outline = hulls.matrix, hulls.outline
+    noise, cells = np.zeros_like(matrix.extent), np.zeros(len(time), np.int64)
+    noise[rows] = own.noise
+    cells[rows] = np.bincount(edge.cluster, minlength=taken.max(initial=-1) + 1)[taken[rows]]
+    found = size(hulls.matrix, noise)
+    velocity = matrix.mean[:, 2:]
+    course = np.arctan2(*velocity.T)
+    moving = np.hypot(*velocity.T) > SLOW
+    active = hulls.method == OUTLINE
+    outline = where(active, gaussian_process.predict(outline, time, SHIP), outline)
+    half = 0.5 * found.length / SLENDER
+    abeam = unit_vector(course + np.pi / 2)
+    blur = np.full(len(time), np.inf)
+    blur[rows] = np.sqrt(np.einsum('ni,nij,nj->n', abeam[rows], own.noise, abeam[rows]))
+    fit = ((hulls.scans >= SCANS) & (hulls.cells >= CELLS) & (cells >= EDGE_CELLS)
+           & (blur <= SMEAR * half) & moving)
+    fresh = (fit & ~active).nonzero()[0]
+    if len(fresh):
+        outline = put(outline, fresh, from_random_matrix(
+            take(matrix, fresh), take(found, fresh), own_ship))
+    method = hulls.method.copy()
+    method[fresh] = OUTLINE
+    nis = hulls.nis.copy()
+    nis[fresh] = 1.0
+    lined = rows[method[rows] == OUTLINE]
+    if len(lined):
+        padded, count = _padded(edge, taken[lined])
+        outline, found_nis = gaussian_process.update(
+            outline, lined, padded, count, edge.noise[taken[lined]], SHIP)
+        nis[lined] += (found_nis - nis[lined]) / RECENT
+    failed = (method == OUTLINE) & ((moving & (off_course(outline) > OFF_COURSE)) | (nis > NIS))
+    method[failed] = RANDOM_MATRIX
+    return hulls._replace(outline=outline, method=method, nis=nis,
+                          scans=np.where(failed, 0, hulls.scans))
+
+
+def _padded(edge, chosen):
+    """Cells [K, C, 2] m of the chosen clusters' edges, and how many [K] each has."""
+    first, last = (np.searchsorted(edge.cluster, chosen, side) for side in ('left', 'right'))
+    count = last - first
+    place = first[:, None] + np.arange(count.max())
+    return edge.position[np.minimum(place, len(edge.cluster) - 1)], count
+
+
+def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
+    """Length, beam and axis of the random matrices; noise [N, 2, 2] m^2, R of a single cell.
+
+    A radar shows cells wherever an echo reaches, and they count alike: those of a hull lie evenly
+    over its length L and F = FRINGE deviations of R beyond either end, not as a sum of both. So a
+    random matrix, which takes R off in squares, is left with about L^2 + 4 L F; here F goes.
+    """
+    found = random_matrix.measures(matrix, noise, size=BOX)
+    line = unit_vector(found.axis)
+    fringe = FRINGE * np.sqrt(np.einsum('ni,nij,nj->n', line, noise, line))
+    return found._replace(length=np.sqrt(found.length ** 2 + 4 * fringe ** 2) - 2 * fringe)
+
+
+def shapes(hulls: Hulls, noise, position) -> Shapes:
+    """What is shown of the targets.
+
+    noise [N, 2, 2] m^2, R of a single cell where each is; position [N, 2] m of the point tracker.
+    """
+    matrix, found = hulls.matrix, size(hulls.matrix, noise)
+    velocity = matrix.mean[:, 2:]
+    speed, course = np.hypot(*velocity.T), np.arctan2(*velocity.T)
+    side = unit_vector(course + np.pi / 2)
+    sideways = np.einsum('ni,nij,nj->n', side, matrix.covariance[:, 2:, 2:], side)
+    course_sd = np.sqrt(sideways) / np.maximum(speed, 1e-3)
+    by_course = (speed > SLOW) & (course_sd < found.axis_sd)
+    axis = np.where(np.cos(found.axis - course) < 0, found.axis + np.pi, found.axis)
+    heading = np.where(by_course, course, axis)
+    line, across = unit_vector(found.axis), unit_vector(found.axis + np.pi / 2)
+    points = matrix.mean[:, None, :2] + 0.5 * (
+        found.length[:, None, None] * np.cos(_AROUND)[:, None] * line[:, None]
+        + found.beam[:, None, None] * np.sin(_AROUND)[:, None] * across[:, None])
+    length, length_sd, beam = found.length, found.length_sd, found.beam
+    heading_sd = np.where(by_course, course_sd, found.axis_sd)
+    source = np.where(by_course, COURSE, AXIS).astype(np.int8)
+    lined = (hulls.method == OUTLINE).nonzero()[0]
+    if len(lined):
+        outline = take(hulls.outline, lined)
+        of = contour.measures(outline, SHIP.contour)
+        points[lined] = contour.of_gaussian_process(outline, SHIP.contour, _AROUND).points
+        length[lined], length_sd[lined], beam[lined] = of.length, of.length_sd, of.beam
+        heading[lined], heading_sd[lined] = outline.mean[:, HEADING], of.axis_sd
+        source[lined] = BY_OUTLINE
+    return Shapes((hulls.cells >= 3) & (length > 3 * length_sd), length, length_sd, beam,
+                  np.mod(heading, 2 * np.pi), heading_sd, source, hulls.method,
+                  points - position[:, None])

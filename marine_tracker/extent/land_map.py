@@ -1,0 +1,97 @@
+"""Where land lies: what echoes at the same place again and again and is longer than any ship.
+
+The ground is cut into squares. A square is remembered with the share of scans in which it echoed;
+squares that keep echoing and touch make one piece. A piece longer than LONGEST is land, and so is
+whatever stands on it or beside it: a coast in shreds is known for what it is by its length, while a
+ship at anchor, which keeps echoing as well, is too short. Quays and moles belong to their coast;
+an islet no longer than a ship stays a target.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ..types import Array
+
+SQUARE = 50.0           # m
+LONGEST = 450.0         # m, more than any ship
+MEMORY = 20             # scans
+KEEPS = 0.4             # share of scans in which a square that keeps echoing echoes
+SMEARED = np.linspace(-0.75, 0.75, 7)   # beam widths
+FORGOTTEN = 0.02        # likewise, below which a square is not remembered
+
+
+class LandMap(NamedTuple):
+    """G squares that echoed.
+
+    square  [G, 2]  east and north, in SQUAREs
+    share   [G]     of the scans, begun at 0
+    land    [G]     it is part of a piece longer than a ship
+    scans   how many were learnt from
+    """
+
+    square: NDArray[np.int64]
+    share: Array
+    land: NDArray[np.bool_]
+    scans: int
+
+
+def empty() -> LandMap:
+    """Nothing is known: open sea."""
+    return LandMap(np.zeros((0, 2), np.int64), np.zeros(0), np.zeros(0, bool), 0)
+
+
+def learn(before: LandMap, position, width) -> LandMap:
+    """The map after one more scan.
+
+    position [M, 2] m; width [M, 2] m: across the line of sight, what the beam is wide there. An
+    echo fills all squares over which it may be smeared, so a far shore has no gaps.
+    """
+    hit = np.unique(_square(position[:, None] + SMEARED[:, None] * width[:, None]).reshape(-1, 2),
+                    axis=0)
+    square, where = np.unique(np.concatenate([before.square, hit]), axis=0, return_inverse=True)
+    where = where.reshape(-1)
+    share = np.zeros(len(square))
+    share[where[:len(before.share)]] = before.share * (1 - 1 / MEMORY)
+    share[where[len(before.share):]] += 1 / MEMORY
+    kept = share >= FORGOTTEN
+    square, share, scans = square[kept], share[kept], before.scans + 1
+    known = 1 - (1 - 1 / MEMORY) ** scans
+    return LandMap(square, share, _long(square, share >= KEEPS * known), scans)
+
+
+def on_land(land: LandMap, position) -> NDArray[np.bool_]:
+    """Whether positions [M, 2] m lie on a square of land, or on one beside it."""
+    squares = land.square[land.land]
+    if not len(squares) or not len(position):
+        return np.zeros(len(position), bool)
+    near, _ = cKDTree(squares).query(_square(position), p=np.inf, distance_upper_bound=1.5)
+    return np.isfinite(near)
+
+
+def _square(position):
+    return np.floor(np.asarray(position) / SQUARE).astype(np.int64)
+
+
+def _long(square, keeps):
+    """Which squares [G] are part of a piece, of those that keep echoing, longer than a ship."""
+    rows = keeps.nonzero()[0]
+    long = np.zeros(len(square), bool)
+    if not len(rows):
+        return long
+    chosen = square[rows]
+    pairs = cKDTree(chosen).query_pairs(1.5, p=np.inf, output_type='ndarray').T
+    pieces, piece = connected_components(coo_array(
+        (np.ones(pairs.shape[1], np.int8), tuple(pairs)), shape=(len(rows),) * 2), directed=False)
+    # The longest extension along eight directions: at most 2 % less than the piece's length.
+    turn = np.pi / 8 * np.arange(8)
+    along = chosen @ np.array([np.cos(turn), np.sin(turn)])
+    ends = np.full((2, pieces, 8), -np.inf)
+    np.maximum.at(ends[0], piece, along)
+    np.maximum.at(ends[1], piece, -along)
+    long[rows] = (ends.sum(0).max(1) * SQUARE > LONGEST)[piece]
+    return long

@@ -1,0 +1,56 @@
+"""The lit edge of clusters: of each beam's cells the nearest, set back by what the radar smears.
+
+Cells fill a hull unevenly, and beyond its edges; the first echo in a beam tells where the near
+side is. These are the cells that an outline can be measured by.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import unit_vector, wrap_angle
+from ..types import Array, Plots
+from .smear import ACROSS, ALONG
+
+FRINGE = 1.1            # deviations of a cell by which echoes reach beyond a hull
+NOISE = 0.36            # of a cell's R: that of a cell of the edge, which is known to within a cell
+
+
+class Edge(NamedTuple):
+    """Where the edges of C hulls are, E points ordered by cluster.
+
+    cluster   [E]
+    position  [E, 2]     m, east and north
+    noise     [C, 2, 2]  m^2, of one point of each cluster
+    """
+
+    cluster: NDArray[np.int64]
+    position: Array
+    noise: Array
+
+
+def lit_edge(cells: Plots, of_cell, noise, range_resolution: float, beam_width: float) -> Edge:
+    """The edges of all clusters; of_cell [M] is the cluster of each cell.
+
+    noise [C, 2, 2] m^2, R of a cell of each cluster; range_resolution m, beam_width rad.
+    """
+    count = int(of_cell.max(initial=-1)) + 1
+    middle = np.arctan2(*(np.bincount(of_cell, f(cells.bearing), count)
+                          for f in (np.sin, np.cos)))
+    off = wrap_angle(cells.bearing - middle[of_cell])
+    column = np.rint(off / beam_width).astype(np.int64)
+    order = np.lexsort((cells.range, column, of_cell))
+    first = np.ones(len(order), bool)
+    first[1:] = ((np.diff(of_cell[order]) != 0) | (np.diff(column[order]) != 0))
+    nearest = order[first]
+    cluster, off = of_cell[nearest], off[nearest]
+    low, high = np.full(count, np.inf), np.full(count, -np.inf)
+    np.minimum.at(low, cluster, off)
+    np.maximum.at(high, cluster, off)
+    centre, span = 0.5 * (low + high), np.maximum(high - low, beam_width)
+    shrink = np.maximum(1 - 2 * FRINGE * ACROSS * beam_width / span, 0.0)
+    bearing = (middle + centre)[cluster] + (off - centre[cluster]) * shrink[cluster]
+    distance = cells.range[nearest] + FRINGE * ALONG * range_resolution
+    return Edge(cluster, cells.origin[nearest] + distance[:, None] * unit_vector(bearing),
+                NOISE * noise)
