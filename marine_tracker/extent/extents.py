@@ -35,7 +35,7 @@ BOX = 12.0                  # length^2 over variance of a rod
 # A gate is so many times the extent, the smear and the expectation's covariance: half again the
 # half length, and 2.8 deviations.
 OF_EXTENT, OF_NOISE = 1.5, 8.0
-AT_SEA = 22                 # scans clear of land, after which a track on land is a ship all the same
+AT_SEA = 22                 # scans clear of land that prove a ship, though she lies on it later
 ALIKE, DRIFT = 9.0, 2.0     # squared distance of velocities, and m/s, of two parts of one hull
 
 
