@@ -222,7 +222,7 @@ def _outlines(hulls, time, rows, taken, own, edge, own_ship):
     failed = (method == OUTLINE) & ((moving & (off_course(outline) > OFF_COURSE)) | (nis > NIS))
     method[failed] = RANDOM_MATRIX
     return hulls._replace(outline=outline, method=method, nis=nis,
-                          scans=np.where(failed, 0, hulls.scans))
+                          scans=np.where(failed, 1, hulls.scans))
 
 
 def _padded(edge, chosen):
