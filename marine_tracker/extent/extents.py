@@ -35,7 +35,7 @@ BOX = 12.0                  # length^2 over variance of a rod
 # A gate is so many times the extent, the smear and the expectation's covariance: half again the
 # half length, and 2.8 deviations.
 OF_EXTENT, OF_NOISE = 1.5, 8.0
-AT_SEA = 22                 # scans clear of land, after which a track on land is a ship all the same
+AT_SEA = 22                 # scans clear of land that prove a ship, though she lies on it later
 ALIKE, DRIFT = 9.0, 2.0     # squared distance of velocities, and m/s, of two parts of one hull
 
 
@@ -160,11 +160,13 @@ class Extents:
         """Where hulls are expected, and their rows of the memory.
 
         What was never long at sea and lies on land is land that was taken for a target before it
-        was known: it has no gate.
+        was known: it has no gate. Nor has a track that never had a cluster to itself: one begun on
+        a single cell before extents were asked for.
         """
         row = row_of(memory.hulls.id, ids)
         row, ahead = row[row >= 0], take(ahead, row >= 0)
-        kept = (memory.at_sea[row] >= AT_SEA) | ~land_map.on_land(memory.land, ahead.position)
+        kept = (memory.hulls.scans[row] > 0) & (
+            (memory.at_sea[row] >= AT_SEA) | ~land_map.on_land(memory.land, ahead.position))
         row, ahead = row[kept], take(ahead, kept)
         matrix = memory.hulls.matrix
         area = (OF_EXTENT * matrix.extent[row]

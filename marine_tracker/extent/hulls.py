@@ -79,9 +79,11 @@ class Shapes(NamedTuple):
     outline: Array
 
 
-NOTHING = Clusters(*np.zeros((1, 1)), np.zeros((1, 2)), np.zeros((1, 2, 2)),
-                   np.ones(1, np.int64), np.eye(2)[None], *np.zeros((2, 1)),
-                   np.full(1, -1), *np.zeros((2, 1), bool), np.zeros(0, np.int64))
+NOTHING = Clusters(
+    time=np.zeros(1), position=np.zeros((1, 2)), scatter=np.zeros((1, 2, 2)),
+    cells=np.ones(1, np.int64), noise=np.eye(2)[None], size=np.zeros(1), amplitude=np.zeros(1),
+    gate=np.full(1, -1), crowded=np.zeros(1, bool), land=np.zeros(1, bool),
+    of_cell=np.zeros(0, np.int64))
 METHODS = ('random_matrix', 'gp')
 COURSE, AXIS, BY_OUTLINE = 0, 1, 2
 SOURCES = ('course', 'axis', 'outline')
@@ -220,7 +222,7 @@ def _outlines(hulls, time, rows, taken, own, edge, own_ship):
     failed = (method == OUTLINE) & ((moving & (off_course(outline) > OFF_COURSE)) | (nis > NIS))
     method[failed] = RANDOM_MATRIX
     return hulls._replace(outline=outline, method=method, nis=nis,
-                          scans=np.where(failed, 0, hulls.scans))
+                          scans=np.where(failed, 1, hulls.scans))
 
 
 def _padded(edge, chosen):
