@@ -192,7 +192,8 @@ class TrackerParameters:
             raise ValueError(f'parameter min_range_m is {self.min_range_m:g} m; it must be below '
                              f'max_range_m, {self.max_range_m:g} m')
         if self.extent != 'off' and self.radars:
-            raise ValueError(f'parameter extent is {self.extent}; with several radars it must be off')
+            raise ValueError(f'parameter extent is {self.extent}; with several radars it must be '
+                             'off')
 
     @property
     def glint_sigma(self) -> float:

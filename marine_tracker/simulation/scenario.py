@@ -255,8 +255,8 @@ def _check_cells(radar):
                          'or land; these are seen as cells, which have no other error: it must be '
                          "'none'")
     if radar.radial_speed_sigma is not None:
-        raise ValueError('radar has radial_speed_sigma in a scenario with hulls or land: cells tell no '
-                         'radial speed; leave it out')
+        raise ValueError('radar has radial_speed_sigma in a scenario with hulls or land: cells '
+                         'tell no radial speed; leave it out')
     for key, value, least in (('range_resolution', radar.range_resolution, 1.0),
                               ('beam_width', math.degrees(radar.beam_width), 0.1)):
         if value < least:
