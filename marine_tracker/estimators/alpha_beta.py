@@ -61,14 +61,17 @@ class AlphaBetaState(NamedTuple):
     misfit: Array
 
 
-def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float) -> Estimator:
+def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float,
+               period: float = 0.0) -> Estimator:
     """The filter in one of the modes of GAINS.
 
     max_speed    m/s, of the targets
     speed_sigma  m/s, deviation of a measured radial speed
     noise        m^2/s^3, white acceleration that the covariance allows for
+    period       s; of plots nearer in time, as those of several radars are, each counts for the
+                 rates by what it tells of them: with the square of its step
     """
-    gains, straight = GAINS[mode], mode == 'hf_soft'
+    gains, straight, shortest = GAINS[mode], mode == 'hf_soft', max(period, SHORTEST)
 
     def init(plots, velocity=None):
         count = len(plots.time)
@@ -106,7 +109,7 @@ def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float) ->
             np.where(m.plots == 2, 1.0, gain) for gain in gains(m))
         # A rate from plots that hardly differ in time would be noise without bound.
         step = plots.time - before.since
-        a_second = np.maximum(step, 0.0) / np.maximum(step, SHORTEST) ** 2
+        a_second = np.maximum(step, 0.0) / np.maximum(step, shortest) ** 2
         after = polar + np.stack([
             alpha_r * m.range, beta_v * np.where(told, m.speed, m.range * a_second),
             alpha_a * m.bearing, beta_w * m.bearing * a_second], -1)

@@ -126,7 +126,11 @@ def follow(ends, clouds) -> Course:
 @pytest.mark.timeout(1800)
 def test_both_with_one_failing_are_better_than_either_and_lose_no_track(
         graph, launch, node_helpers, tmp_path):
-    """Of 12 runs: the mean ratio's 95 % interval by Student's t, of its logarithm."""
+    """Of 12 runs: the mean ratio's 95 % interval by Student's t, of its logarithm.
+
+    S is silent from the turn of three ships on, for five minutes. All seven ships are followed at
+    every moment; a track's number may change where that of the X band radar alone would.
+    """
     sea = Sea(graph, launch, node_helpers, tmp_path)
     runs = [sea.run([SEED, run]) for run in range(RUNS)]
     rms = {way: np.sqrt([np.nanmean(run[way].error[:, :SEEN_BY_BOTH] ** 2) for run in runs])
@@ -137,7 +141,8 @@ def test_both_with_one_failing_are_better_than_either_and_lose_no_track(
         low, high = np.exp(ttest_1samp(log, 0.0).confidence_interval())
         print(f'both over {alone}: {np.exp(log.mean()):.3f} [{low:.3f}, {high:.3f}]')
         assert high < 1
-    numbers = np.array([run['both'].number for run in runs])
-    print(f'{np.isnan(numbers).sum()} times without a track, '
-          f'{(numbers[:, 1:] != numbers[:, :-1]).sum()} changes of number')
-    assert (numbers == numbers[:, :1]).all()            # nan, no track, is not even itself
+    number = {way: np.array([run[way].number for run in runs]) for way in ('x', 'both')}
+    changes = {way: int((each[:, 1:] != each[:, :-1]).sum()) for way, each in number.items()}
+    print(f'{np.isnan(number["both"]).sum()} times without a track, changes of number {changes}')
+    assert not np.isnan(number['both']).any()
+    assert changes['both'] <= changes['x']      # in sharp turns, of which X alone misses more
