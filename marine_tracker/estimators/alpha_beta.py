@@ -17,7 +17,8 @@ of the antenna at its own time: so own ship may move. Radial speeds are over gro
 Departures: `hf_soft` keeps the ground velocity between plots, not radial speed and bearing rate. At
 110 km both are the same for several plots; of a target that crosses at 1 NM the radial speed
 changes by noise's size from plot to plot. And nothing moves across faster than max_speed: two
-plots at long range would say so.
+plots at long range would say so. Where plots of several radars follow one another within a
+revolution, their share of the rates falls with the square of the step, as what they tell does.
 """
 
 from typing import NamedTuple
