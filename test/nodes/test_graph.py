@@ -64,7 +64,7 @@ def test_the_plots_of_every_radar_that_a_tracker_listens_to_are_looked_for(own_d
     tracker = TrackerNode(context=publisher.context, parameter_overrides=[
         rclpy.Parameter('radars', value='[{topic: radar/plots}, {topic: port/echoes}]')])
     try:
-        checks = {check.name: check for check in doctor.examine(1.0)}
+        checks = {check.name: check for check in doctor.examine(3.0)}
     finally:
         tracker.destroy_node()
     assert checks['/radar/plots'].found == '1 publish, 1 listen'
