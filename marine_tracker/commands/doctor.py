@@ -1,8 +1,8 @@
 """Say what is installed, what is missing, and what to do about it.
 
 Where ROS is there, also listen for a few seconds whether plots, own ship and a tracker are on the
-graph. The exit code is 0 when the core (replay, score, bench, scenario) works, 1 when something
-that it requires is missing.
+graph; where a tracker runs, the plots of each radar that it listens to. The exit code is 0 when the
+core (replay, score, bench, scenario) works, 1 when something that it requires is missing.
 """
 
 import importlib
@@ -32,9 +32,9 @@ MESSAGES = ('builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs', 'nav_msgs'
             'sensor_msgs', 'std_msgs', 'std_srvs', 'visualization_msgs')
 INSTALL_ROS = ("in the source folder: pip install '.[ros]'; or where ROS 2 is installed: source "
                '/opt/ros/jazzy/setup.bash (only demo and the nodes need it)')
-# Who to start where nobody publishes a topic, by the end of its name.
+# Who to start where nobody publishes a topic, by the end of its name; plots may be on any other.
+PLOTS = 'plots', 'start radar_simulator, recording_player or a radar driver'
 STARTERS = {
-    'radar/plots': ('plots', 'start radar_simulator, recording_player or a radar driver'),
     'own_ship/odometry': ('own ship', 'start what publishes own ship (radar_simulator and '
                           'recording_player do), or the tracker takes it to be at rest'),
     'tracks': ('tracker', 'start tracker'),
@@ -183,7 +183,8 @@ def _graph(listen: float, namespace: str) -> Iterator[Check]:
     yield Check('nodes running', bool(seen['nodes']), ', '.join(seen['nodes']) or 'none',
                 '' if seen['nodes'] else 'try: marine_tracker demo')
     for topic, (publishers, subscribers) in seen['topics'].items():
-        what, start = next(about for name, about in STARTERS.items() if topic.endswith(name))
+        what, start = next((about for name, about in STARTERS.items()
+                            if topic.endswith(f'/{name}')), PLOTS)
         if publishers:
             yield Check(topic, True, f'{publishers} publish, {subscribers} listen')
         else:

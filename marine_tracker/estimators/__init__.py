@@ -30,7 +30,7 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
     'wavelet_cs': lambda p: wavelet_cs.wavelet_cs(wavelet_cs.MANOEUVRE, p.max_target_speed_mps),
     'alpha_beta': lambda p: alpha_beta.alpha_beta(
         p.alpha_beta_mode, p.max_target_speed_mps, p.radial_speed_sigma_mps,
-        alpha_beta.NOISE[p.vessel_class]),
+        alpha_beta.NOISE[p.vessel_class], p.scan_period_s if p.radars else 0.0),
 }
 
 

@@ -17,7 +17,8 @@ of the antenna at its own time: so own ship may move. Radial speeds are over gro
 Departures: `hf_soft` keeps the ground velocity between plots, not radial speed and bearing rate. At
 110 km both are the same for several plots; of a target that crosses at 1 NM the radial speed
 changes by noise's size from plot to plot. And nothing moves across faster than max_speed: two
-plots at long range would say so.
+plots at long range would say so. Where plots of several radars follow one another within a
+revolution, their share of the rates falls with the square of the step, as what they tell does.
 """
 
 from typing import NamedTuple
@@ -61,14 +62,17 @@ class AlphaBetaState(NamedTuple):
     misfit: Array
 
 
-def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float) -> Estimator:
+def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float,
+               period: float = 0.0) -> Estimator:
     """The filter in one of the modes of GAINS.
 
     max_speed    m/s, of the targets
     speed_sigma  m/s, deviation of a measured radial speed
     noise        m^2/s^3, white acceleration that the covariance allows for
+    period       s; of plots nearer in time, as those of several radars are, each counts for the
+                 rates by what it tells of them: with the square of its step
     """
-    gains, straight = GAINS[mode], mode == 'hf_soft'
+    gains, straight, shortest = GAINS[mode], mode == 'hf_soft', max(period, SHORTEST)
 
     def init(plots, velocity=None):
         count = len(plots.time)
@@ -106,7 +110,7 @@ def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float) ->
             np.where(m.plots == 2, 1.0, gain) for gain in gains(m))
         # A rate from plots that hardly differ in time would be noise without bound.
         step = plots.time - before.since
-        a_second = np.maximum(step, 0.0) / np.maximum(step, SHORTEST) ** 2
+        a_second = np.maximum(step, 0.0) / np.maximum(step, shortest) ** 2
         after = polar + np.stack([
             alpha_r * m.range, beta_v * np.where(told, m.speed, m.range * a_second),
             alpha_a * m.bearing, beta_w * m.bearing * a_second], -1)

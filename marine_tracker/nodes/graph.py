@@ -15,12 +15,14 @@ from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.utilities import get_rmw_implementation_identifier
 
 from . import topics
 
 NODE = 'marine_tracker_doctor'
 NEEDED = (topics.PLOTS, topics.ODOMETRY, topics.TRACKS)
+CLOUD = 'sensor_msgs/msg/PointCloud2'
 NOT_YET_NAMED = '_NODE_NAME_UNKNOWN_'       # of an end whose node is still being discovered
 
 
@@ -48,6 +50,7 @@ def look(seconds: float, namespace: str = '/', names: Iterable[str] = NEEDED) ->
     """Listen until every topic has a publisher, at most `seconds`; discovery takes 0.1 to 3 s.
 
     namespace  where relative names stand; `/` for the root
+    names      `radar/plots` stands for whatever topics of plots a tracker there listens to
     Raises what rclpy raises where no middleware can be started.
     """
     context = Context()
@@ -58,9 +61,9 @@ def look(seconds: float, namespace: str = '/', names: Iterable[str] = NEEDED) ->
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
         try:
-            full = [node.resolve_topic_name(name) for name in names]
             deadline = time.monotonic() + seconds
-            while (left := deadline - time.monotonic()) > 0 and not _all_published(node, full):
+            while (left := deadline - time.monotonic()) > 0 and not _all_published(
+                    node, _full_names(node, names)):
                 executor.spin_once(timeout_sec=min(0.1, left))
             return Graph(
                 get_rmw_implementation_identifier(),
@@ -68,12 +71,33 @@ def look(seconds: float, namespace: str = '/', names: Iterable[str] = NEEDED) ->
                              for name, where in node.get_node_names_and_namespaces()
                              if name != NODE and not name.startswith('_'))),
                 {name: Ends(node.count_publishers(name), node.count_subscribers(name))
-                 for name in full})
+                 for name in _full_names(node, names)})
         finally:
             executor.shutdown()
             node.destroy_node()
     finally:
         context.try_shutdown()
+
+
+def _full_names(node: Node, names: Iterable[str]) -> list[str]:
+    full: list[str] = []
+    for name in names:
+        heard = _heard_by_trackers(node) if name == topics.PLOTS else []
+        full += heard or [node.resolve_topic_name(name)]
+    return full
+
+
+def _heard_by_trackers(node: Node) -> list[str]:
+    """Topics of clouds that whoever publishes tracks listens to: one of each radar."""
+    trackers = {_name(end) for end in node.get_publishers_info_by_topic(
+        node.resolve_topic_name(topics.TRACKS))}
+    return sorted(topic for topic, kinds in node.get_topic_names_and_types() if CLOUD in kinds
+                  and any(_name(end) in trackers and end.node_name != NOT_YET_NAMED
+                          for end in node.get_subscriptions_info_by_topic(topic)))
+
+
+def _name(end: TopicEndpointInfo) -> tuple[str, str]:
+    return end.node_namespace, end.node_name
 
 
 def _all_published(node: Node, names: list[str]) -> bool:

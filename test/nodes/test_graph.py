@@ -59,6 +59,20 @@ def test_a_namespace_has_its_own_topics(publisher):
     assert seen.topics == {'/forward/radar/plots': (0, 0)}
 
 
+def test_the_plots_of_every_radar_that_a_tracker_listens_to_are_looked_for(own_domain, publisher):
+    from marine_tracker.nodes.tracker_node import TrackerNode
+    tracker = TrackerNode(context=publisher.context, parameter_overrides=[
+        rclpy.Parameter('radars', value='[{topic: radar/plots}, {topic: port/echoes}]')])
+    try:
+        checks = {check.name: check for check in doctor.examine(3.0)}
+    finally:
+        tracker.destroy_node()
+    assert checks['/radar/plots'].found == '1 publish, 1 listen'
+    echoes = checks['/port/echoes']
+    assert echoes.found == 'no plots on /port/echoes' and echoes.advice.startswith('start radar')
+    assert checks['/tracks'].ok and '/tracker' in checks['nodes running'].found
+
+
 def test_a_middleware_that_does_not_start_is_told(command):
     done = command('doctor', RMW_IMPLEMENTATION='rmw_of_nobody')
     assert done.returncode == 0 and done.stderr == ''
