@@ -135,7 +135,7 @@ class Tracks(NamedTuple):
     last_time   [N]  s, last plot
     bearing     [N]  rad from own ship when last swept: tells when the beam will pass again
     state       estimator state, N rows
-    radar       [N]  which radar had the last plot
+    radar       [N]  which radar had the last plot; None with one radar
     past        the last updates (tracking.order.Update), the last first; () with one radar
     """
 

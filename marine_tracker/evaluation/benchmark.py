@@ -110,7 +110,7 @@ def run_tracker(scene: Traffic, estimator: str) -> Iterator[Found]:
     targets = scene.position.shape[1]
     parameters = TrackerParameters(
         estimator=estimator, range_sigma_m=RANGE_SIGMA, bearing_sigma_deg=0.5,
-        scan_period_s=PERIOD, max_tracks=min(2 * targets + 1000, 100000))
+        glint_sigma_m=0.0, scan_period_s=PERIOD, max_tracks=min(2 * targets + 1000, 100000))
     clock = Clock()
     tracker = Tracker(parameters, clock.time(ESTIMATORS[estimator](parameters)))
     warm = tracker.start()
