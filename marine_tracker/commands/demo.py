@@ -31,6 +31,7 @@ COLUMNS = (('target', 'name'), ('status', 'status'), ('range NM', 'range_nm'),
            ('bearing', 'bearing_deg'), ('course', 'course_deg'), ('speed kn', 'speed_kn'),
            ('CPA NM', 'cpa_nm'), ('TCPA min', 'tcpa_min'), ('hits in 10', 'hits_in_10'),
            ('estimator', 'estimator'))
+SIZES = (('length m', 'length_m'), ('heading', 'heading_deg'))      # with extents, before the last
 TO_THE_LEFT = ('name', 'status', 'estimator')
 STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
 DANGEROUS = 'bold red'
@@ -212,15 +213,23 @@ def _plain():
         if picture.scans == last['scans'] or now - last['at'] < PLAIN_EVERY_S:
             return
         last.update(scans=picture.scans, at=now)
+        columns = _columns(picture)
         lines = [f'{_clock(picture)}  {title}  {_facts(picture)}',
-                 '  '.join(f'{head:>10}' for head, _ in COLUMNS)]
-        lines += ['  '.join([*(f'{target[key]:>10}' for _, key in COLUMNS), target['danger']])
+                 '  '.join(f'{head:>10}' for head, _ in columns)]
+        lines += ['  '.join([*(f'{target[key]:>10}' for _, key in columns), target['danger']])
                   for target in picture.targets]
         print('\n'.join([*lines, *picture.alarms]), flush=True)
     return show
 
 
+def _columns(picture):
+    """Heads and keys of what is told of these targets."""
+    told = picture.targets and SIZES[0][1] in picture.targets[0]
+    return (*COLUMNS[:-1], *SIZES, COLUMNS[-1]) if told else COLUMNS
+
+
 def _rich_table(picture, title: str, height: int):
+    from rich.box import SIMPLE_HEAD
     from rich.table import Table
     from rich.text import Text
     below = picture.alarms[:MOST_ALARMS]
@@ -229,15 +238,16 @@ def _rich_table(picture, title: str, height: int):
     caption = Text('\n').join([*(Text(line, DANGEROUS) for line in below), Text(_facts(picture)),
                                *map(Text, picture.warnings), Text('Ctrl-C ends')])
     table = Table(title=f'{title}   {_clock(picture)}', title_justify='left', caption=caption,
-                  caption_justify='left')
-    for head, key in COLUMNS:
+                  caption_justify='left', box=SIMPLE_HEAD, padding=0)
+    columns = _columns(picture)
+    for head, key in columns:
         table.add_column(head, justify='left' if key in TO_THE_LEFT else 'right')
     room = max(height - 8 - len(below) - len(picture.warnings), 1)
     # Where not all find room, the dangerous ones do.
     shown = picture.targets if len(picture.targets) <= room else sorted(
         picture.targets, key=lambda target: not target['danger'])[:room]
     for target in shown:
-        table.add_row(*(target[key] for _, key in COLUMNS),
+        table.add_row(*(target[key] for _, key in columns),
                       style=DANGEROUS if target['danger'] else STYLES.get(target['status']))
     if len(picture.targets) > room:
         table.add_row(f'and {len(picture.targets) - room} more')

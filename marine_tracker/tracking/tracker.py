@@ -245,7 +245,8 @@ class Tracker:
                       status=np.full(count, TENTATIVE, np.int8), history=none + 1,
                       score=np.zeros(count), age=none + 1, first_time=plots.time,
                       last_time=plots.time, bearing=plots.bearing, state=state,
-                      radar=np.full(count, radar, np.int8) if self.updates else None,
+                      radar=(np.full(count, radar, np.int8) if len(self.radars) > 1
+                             else None),
                       past=order.nothing_yet(state, plots, self.updates))
 
 
