@@ -34,9 +34,7 @@ TICK_S = 0.05                   # longest wait between two looks at the time
 AT_ONCE_S = 0.05                # longest work before the executor gets its turn
 LAG_S = 0.5                     # further behind than this, time runs slower
 LISTENER_S = 3.0                # longest wait for the first listener ...
-SETTLE_S = 0.2                  # ... and for it to know us, too
-ACKNOWLEDGED_S = 0.5            # longest wait until what was published has arrived: own ship before
-                                # the first plots, everything at the end
+SETTLE_S = 0.5                  # ... and for it to know us, too, on every topic
 OWN_SHIP_PERIOD_S = 0.1         # of simulated time, and at most
 OWN_SHIP_PER_S = 25.0           # samples in a second of the wall
 
@@ -93,7 +91,6 @@ class Playback:
         self._created = self._wall()
         self._heard: float | None = None
         self._told_waiting = False
-        self._known = False                     # own ship has arrived before plots
         self._start_ns: int | None = None       # stamp of the time _first
         self._anchor = (0.0, self._first)       # a moment of the wall and the time it stands for
         self._timer = node.create_timer(TICK_S, self._tick, clock=self._steady)
@@ -102,7 +99,7 @@ class Playback:
         """Stop, and see that what was published arrives."""
         self._timer.cancel()
         for publisher in (self._plots, self._odometry, self._truth):
-            publisher.wait_for_all_acked(Duration(seconds=ACKNOWLEDGED_S))
+            publisher.wait_for_all_acked(Duration(seconds=0.5))
 
     def _tick(self) -> None:
         if self._start_ns is None and not self._begin():
@@ -196,9 +193,6 @@ class Playback:
             self._publish_own_ship(samples.time[k], samples.position[k], samples.velocity[k])
             self._sample += 1
             return
-        if not self._known:             # a listener may yet have to hear of us on this topic
-            self._odometry.wait_for_all_acked(Duration(seconds=ACKNOWLEDGED_S))
-            self._known = True
         scan, truth = revolution.scan, revolution.truth
         start_ns = self._stamp(scan.start)
         self._plots.publish(convert.plots_to_cloud(scan, start_ns))
