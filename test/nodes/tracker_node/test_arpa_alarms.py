@@ -198,8 +198,10 @@ def test_silent_sensors_are_told_one_by_one(bridge, sea):
     heading, position, plots = missing
     blind = Odometry()
     blind.pose.pose.orientation.w = 0.0
+    pause = 0.05            # the sensors are looked at every second, and the scene has 250 scans
 
     def without_heading():
+        time.sleep(pause)
         here._played += 1
         here.own_ship.publish(blind)
         here.send([here.last])
@@ -208,6 +210,7 @@ def test_silent_sensors_are_told_one_by_one(bridge, sea):
     here.wait(without_heading)
 
     def with_everything():
+        time.sleep(pause)
         here.sail(1)
         return here.standing().get(heading) == NORMAL
     here.wait(with_everything)
