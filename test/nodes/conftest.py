@@ -15,8 +15,16 @@ import pytest
 
 from marine_tracker.processes import end_with_parent
 
-CHECKOUT = Path(__file__).resolve().parents[2]
+HERE = Path(__file__).resolve().parent
+CHECKOUT = HERE.parents[1]
 PATIENCE = 60.0                                     # s, for what takes one second when idle
+
+
+def pytest_collection_modifyitems(items):
+    """What runs in real time is marked, to be run by itself (Makefile)."""
+    for item in items:
+        if HERE in item.path.parents:
+            item.add_marker(pytest.mark.nodes)
 
 
 @pytest.fixture(scope='session', autouse=True)
