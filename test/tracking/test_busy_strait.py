@@ -43,7 +43,7 @@ def follow(seed, estimator):
     return held[1:] / detectable[1:], np.mean(false), np.array(resident)
 
 
-@pytest.mark.parametrize('estimator', ['imm', 'cs_kalman'])
+@pytest.mark.parametrize('estimator', ['gwnn', 'imm', 'cs_kalman'])
 def test_every_ship_is_held_and_clutter_gives_hardly_a_track(estimator):
     held, false, resident = follow(1, estimator)
     assert len(held) == 40
