@@ -241,7 +241,8 @@ def _rich_table(picture, title: str, height: int):
                   caption_justify='left', box=SIMPLE_HEAD, padding=0)
     columns = _columns(picture)
     for head, key in columns:
-        table.add_column(head, justify='left' if key in TO_THE_LEFT else 'right')
+        table.add_column(head, justify='left' if key in TO_THE_LEFT else 'right',
+                         min_width=8 if key == 'status' else None)         # TRACKING in full
     room = max(height - 8 - len(below) - len(picture.warnings), 1)
     # Where not all find room, the dangerous ones do.
     shown = picture.targets if len(picture.targets) <= room else sorted(
