@@ -88,11 +88,12 @@ class Tracker:
         self.parameters = (parameters if parameters.extent == 'off'
                            else replace(parameters, glint_sigma_m=0.0))
         self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
-        self.radars = [radar.parameters for radar in radars_of(self.parameters)]
+        radars = radars_of(self.parameters)
+        self.radars = [radar.parameters for radar in radars]
         self.farthest = max(p.max_range_m for p in self.radars)
         self.held = HELD_REVOLUTIONS * np.array([p.scan_period_s for p in self.radars])
-        self.updates = held_updates(radars_of(parameters))
-        self.glint = parameters.glint_sigma ** 2 * np.eye(2)
+        self.updates = held_updates(radars)
+        self.glint = self.parameters.glint_sigma ** 2 * np.eye(2)
         self.gate_size = gate_size(parameters.gate_probability)
         self.speed_gate = (float(ndtri(0.5 + 0.5 * parameters.gate_probability))
                            if parameters.doppler_gate else np.inf)
