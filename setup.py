@@ -58,10 +58,10 @@ setup(
     entry_points={
         'console_scripts': [
             'marine_tracker = marine_tracker.cli:main',
-            'nmea_output = marine_tracker.nodes.nmea_output:main',
-            'radar_simulator = marine_tracker.nodes.radar_simulator:main',
-            'recording_player = marine_tracker.nodes.recording_player:main',
-            'tracker = marine_tracker.nodes.tracker:main',
+            'nmea_output = marine_tracker.nodes.run:nmea_output',
+            'radar_simulator = marine_tracker.nodes.run:radar_simulator',
+            'recording_player = marine_tracker.nodes.run:recording_player',
+            'tracker = marine_tracker.nodes.run:tracker',
         ],
     },
 )

@@ -10,33 +10,40 @@ import marine_tracker
 PACKAGE = Path(marine_tracker.__file__).resolve().parent
 
 # What each part of the package may import of the others: the table of doc/architecture.md.
-BASE = {'types', 'geometry', 'parameters', 'config'}
-CORE = BASE | {'networks', 'estimators', 'tracking', 'extent'}
+BASE = {'types', 'geometry', 'parameters', 'config', 'processes'}
+CORE = BASE | {'gaussian', 'networks', 'estimators', 'tracking', 'extent'}
+SOURCES = {'simulation', 'recording'}
+SERVICE = CORE | {'arpa', 'service'}
 MAY_IMPORT = {
     'config': set(),
     'types': set(),
     'geometry': {'types'},
     'parameters': set(),
-    'heap': set(),
     'processes': set(),
     'parameter_files': BASE,
     'simulation': BASE,
     'recording': BASE,
+    'gaussian': BASE,
     'networks': BASE,
-    'estimators': BASE | {'networks'},
-    'tracking': BASE | {'networks', 'estimators'},
-    'extent': BASE | {'estimators'},
+    'estimators': BASE | {'gaussian', 'networks'},
+    'tracking': BASE | {'gaussian', 'networks', 'estimators'},
+    'extent': BASE | {'gaussian', 'networks', 'estimators'},
     'arpa': CORE,
-    'evaluation': CORE | {'simulation', 'recording', 'arpa', 'heap', 'processes'},
-    'display': CORE | {'arpa'},
-    'nodes': CORE | {'simulation', 'recording', 'arpa', 'display', 'parameter_files', 'heap',
-                        'processes'},
-    'commands': CORE | {'simulation', 'recording', 'arpa', 'display', 'evaluation', 'nodes',
-                        'parameter_files', 'heap', 'processes'},
+    'service': CORE | {'arpa'},
+    'evaluation': SERVICE | SOURCES,
+    'conformance': SERVICE | SOURCES | {'evaluation'},
+    'training': SERVICE | SOURCES | {'evaluation'},
+    'lab': SERVICE | SOURCES | {'evaluation', 'conformance', 'training'},
+    'display': SERVICE,
+    'nodes': SERVICE | SOURCES | {'display', 'parameter_files'},
+    'commands': SERVICE | SOURCES | {'display', 'evaluation', 'conformance', 'training', 'lab',
+                                     'nodes', 'parameter_files'},
     'cli': {'commands', 'processes'},
     '__main__': {'cli'},
-    '__init__': set(),
+    '__init__': SERVICE,
 }
+# Of the lab, whoever is outside sees the register of experiments only.
+LAB = 'marine_tracker.lab.registry'
 MODULES = sorted(PACKAGE.rglob('*.py'))
 
 
@@ -73,6 +80,8 @@ def test_imports_follow_the_architecture(file):
         top, *rest = name.split('.')
         if top == 'marine_tracker' and rest:
             assert rest[0] == part or rest[0] in MAY_IMPORT[part], f'{part} imports {name}'
+            assert rest[0] != 'lab' or part == 'lab' or name.startswith(LAB), (
+                f'{part} imports {name}; only the lab sees its own insides')
         if is_ros(name):
             assert part == 'nodes', f'{part} imports {name}; only nodes/ may import ROS packages'
 
@@ -84,6 +93,44 @@ def test_no_part_depends_on_itself_through_others():
             below(other, (*seen, part))
     for part in MAY_IMPORT:
         below(part)
+
+
+def lines_of(files):
+    return sum(len(file.read_text().splitlines()) for file in files)
+
+
+def test_no_room_holds_more_than_a_fifth_of_the_package():
+    whole = lines_of(MODULES)
+    rooms = {part_of(file) for file in MODULES if file.parent != PACKAGE}
+    share = {room: lines_of((PACKAGE / room).rglob('*.py')) / whole for room in rooms}
+    assert max(share.values()) <= 0.2, share
+
+
+def test_no_file_is_longer_than_a_few_screens():
+    long = {str(file.relative_to(PACKAGE)): lines_of([file]) for file in MODULES}
+    assert max(long.values()) <= 350, max(long, key=long.get)
+
+
+def test_modules_import_each_other_in_one_direction():
+    """No circle, within the parts either."""
+    names = {'.'.join(('marine_tracker', *file.relative_to(PACKAGE).with_suffix('').parts)): file
+             for file in MODULES}
+    below = {}
+    for name, file in names.items():
+        full = set(imports(file, file.read_text()))
+        below[name] = {other for other in names
+                       if other != name and (other in full or
+                                             any(one.startswith(other + '.') for one in full))}
+
+    def walk(name, path):
+        assert name not in path, ' -> '.join((*path, name))
+        if name not in done:
+            for other in below[name]:
+                walk(other, (*path, name))
+            done.add(name)
+    done = set()
+    for name in names:
+        walk(name, ())
 
 
 @pytest.mark.parametrize(('line', 'expected'), [

@@ -1,0 +1,1 @@
+"""The ARPA: motion, CPA and TCPA, acquisition, zones, alarms, trial manoeuvre."""

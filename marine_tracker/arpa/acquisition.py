@@ -16,9 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..tracking.lifecycle import LOST
-from ..types import Array, append, take
+from ..types import Array, append, row_of, take
 from .capacity import make_room
-from .rows import row_of
 from .situation import Situation
 from .targets import (
     ACQUIRED,

@@ -21,11 +21,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..tracking.lifecycle import CONFIRMED, LOST
-from ..types import Array, take
+from ..types import Array, row_of, take
 from . import alerts as machine
 from .acquisition import Acquisition, how_acquired
 from .alerts import KEEP, OFF, ON, VALUES, Alerts, Causes, Rule
-from .rows import row_of
 from .situation import Situation
 from .targets import LOST_FROM_SIGHT, Events
 from .zones import Zones

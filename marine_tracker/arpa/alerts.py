@@ -20,8 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..types import Array, append, take
-from .rows import row_of
+from ..types import Array, append, row_of, take
 
 NORMAL, ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED = range(4)
 STATES = ('normal', 'active unacknowledged', 'active acknowledged', 'rectified unacknowledged')

@@ -5,14 +5,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..estimators.linear import invert_2x2, squared_distance
+from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import KNOT, NAUTICAL_MILE, locate, polar_to_position, unit_vector
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.radars import radars_of
 from ..tracking.tracker import Report
-from ..types import Array, OwnShip, Scan, Tracks, append, take
+from ..types import Array, OwnShip, Scan, Tracks, append, row_of, take
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
@@ -20,7 +20,6 @@ from .cpa import Approach, OwnMotion, approach
 from .motion import Motion
 from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
-from .rows import row_of
 from .swap_risk import swap_risk
 from .targets import Events, Targets
 

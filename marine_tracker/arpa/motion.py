@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..estimators import linear_modes
-from ..estimators.linear import invert_2x2, squared_distance
+from ..gaussian import linear_modes
+from ..gaussian.linear import invert_2x2, squared_distance
 from ..parameters import GLINT_SIGMA
 from ..tracking.tracker import Report
 from ..types import Array, Plots, put, take
-from . import legs, plot_noise
+from . import leg_hypotheses, plot_noise
 
 STEADY, MANOEUVRING = 0, 1
 MEMORY_NAMES = ('steady', 'manoeuvring')
@@ -33,14 +33,15 @@ class Settings(NamedTuple):
 
     glint_sigma: float = GLINT_SIGMA['ship']
     speed_sigma: float = 12.5
-    habits: legs.Habits = legs.Habits(hold=6000.0, manoeuvre=20.0, noise=0.2)
+    habits: leg_hypotheses.Habits = leg_hypotheses.Habits(hold=6000.0, manoeuvre=20.0, noise=0.2)
     rest_speed: float = 0.5
     rest_time: float = 60.0
 
 
 PRESETS = {
     'ship': Settings(),
-    'small_craft': Settings(GLINT_SIGMA['small_craft'], habits=legs.Habits(600.0, 10.0, 4.0)),
+    'small_craft': Settings(GLINT_SIGMA['small_craft'],
+                            habits=leg_hypotheses.Habits(600.0, 10.0, 4.0)),
 }
 
 
@@ -51,7 +52,7 @@ class Memory(NamedTuple):
     first       [N]      s, of the first plot; nan before it
     time        [N]      s, of the last plot
     scatter              rows of `plot_noise.Scatter`, for each radar
-    legs                 rows of `legs.Legs`
+    legs                 rows of `leg_hypotheses.Legs`
     shown       [N, 14]  mean and covariance at `time` of what is likely, as in `linear_modes`
     noise       [N]      m^2/s^3, density of acceleration that is to be expected from then on
     memory      [N]      STEADY or MANOEUVRING
@@ -64,7 +65,7 @@ class Memory(NamedTuple):
     first: Array
     time: Array
     scatter: tuple[plot_noise.Scatter, ...]
-    legs: legs.Legs
+    legs: leg_hypotheses.Legs
     shown: Array
     noise: Array
     memory: NDArray[np.int64]
@@ -136,7 +137,7 @@ def _blank(id_, radars: int) -> Memory:
     count = len(id_)
     nothing = np.full(count, np.nan)
     return Memory(id_, nothing, nothing, (plot_noise.begin(count),) * radars,
-                  legs.begin(np.full((count, 2), np.nan), np.full((count, 2, 2), np.nan),
+                  leg_hypotheses.begin(np.full((count, 2), np.nan), np.full((count, 2, 2), np.nan),
                              nothing, 1.0),
                   np.full((count, 14), np.nan), nothing, np.full(count, STEADY), nothing, nothing,
                   np.zeros(count, bool))
@@ -159,7 +160,7 @@ def _first_plots(memory: Memory, rows, plots: Plots, settings: Settings, radar: 
     scatters = [plot_noise.begin(count)] * len(memory.scatter)
     scatters[radar], covariance, _ = plot_noise.observe(scatters[radar], plots,
                                                         settings.glint_sigma)
-    hypotheses = legs.begin(plots.position, covariance, plots.time, settings.speed_sigma)
+    hypotheses = leg_hypotheses.begin(plots.position, covariance, plots.time, settings.speed_sigma)
     return put(memory, rows, Memory(
         memory.id[rows], plots.time, plots.time, tuple(scatters), hypotheses,
         hypotheses.rows[:, 0],
@@ -177,7 +178,7 @@ def _next_plots(memory: Memory, rows, plots: Plots, settings: Settings, radar: i
     scatters[radar] = scatter
     if len(scatters) > 1:           # a fit to the plots of several radars scales with none of them
         stretch = np.broadcast_to(np.eye(2), stretch.shape)
-    hypotheses, shown = legs.update(
+    hypotheses, shown = leg_hypotheses.update(
         before.legs, plots.time, plots.time - before.time, plots.position, covariance, stretch,
         plot_noise.FREEDOM * scatter.plots, settings.habits)
     noise = hypotheses.weight[:, 0] * settings.habits.noise
@@ -187,7 +188,7 @@ def _next_plots(memory: Memory, rows, plots: Plots, settings: Settings, radar: i
         *_rest(before, shown, plots.time, settings)))
 
 
-def _manoeuvre(before: Memory, hypotheses: legs.Legs, time, lasting: float):
+def _manoeuvre(before: Memory, hypotheses: leg_hypotheses.Legs, time, lasting: float):
     """STEADY or MANOEUVRING [N], and since when [N] s, after the times [N] s.
 
     In a turn every moment may be the beginning of a new leg, so one that is younger than `lasting`

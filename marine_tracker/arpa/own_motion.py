@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..geometry import own_ship_at, unit_vector
+from ..geometry import own_ship_at
 from ..types import Array, OwnShip, append, take
 from .cpa import OwnMotion
 from .motion import Motion
@@ -39,14 +39,6 @@ def own_motion(samples: OwnShip, time: float, heading: float, window: float = WI
         velocity = fit[0]
         covariance[2:, 2:] += inverse[0, 0] * rest.T @ rest / (len(ahead) - 2)
     return OwnMotion(position, velocity, heading, covariance)
-
-
-def drift_of(over_ground: Array, heading: float, log_speed: float) -> Array:
-    """Set and drift [2] m/s, east and north: what moves own ship besides her way through the water.
-
-    over_ground [2] m/s; heading rad; log_speed m/s through the water, ahead.
-    """
-    return over_ground - log_speed * unit_vector(heading)
 
 
 def sea_stabilised(motion: Motion, own: OwnMotion, drift: Array) -> tuple[Motion, OwnMotion]:

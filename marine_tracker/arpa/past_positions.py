@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..types import Array
-from .rows import row_of
+from ..types import Array, row_of
 
 
 class PastPositions(NamedTuple):

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..tracking.lifecycle import LOST, MERGED, OUT_OF_RANGE
-from ..types import Array, take
-from .rows import row_of
+from ..types import Array, row_of, take
 from .situation import Situation
 
 AUTOMATIC, MANUAL = range(2)

@@ -9,7 +9,7 @@ is told too; `--estimator all` measures every one there is.
 
 from ..estimators import ESTIMATORS
 from ..evaluation import benchmark, report
-from ..heap import keep_freed_memory
+from ..processes import keep_freed_memory
 
 HELP = 'measure the cost of a scan, beside Stone Soup'
 PLAIN, ALL = 'cs_kalman', 'all'

@@ -130,7 +130,7 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
 @contextlib.contextmanager
 def _child(name: str, parameters: dict[str, Any]) -> Iterator[Child]:
     """A node of this package as a process; ended with the context, come what may."""
-    arguments = [sys.executable, '-P', '-m', f'marine_tracker.nodes.{name}', '--ros-args']
+    arguments = [sys.executable, '-P', '-m', 'marine_tracker.nodes.run', name, '--ros-args']
     for key, value in parameters.items():
         arguments += ['-p', f'{key}:={json.dumps(value)}']
     package_home = os.fspath(Path(__file__).resolve().parents[2])

@@ -3,8 +3,8 @@
 import sys
 
 from ..evaluation import report
-from ..evaluation.experiments.registry import EXPERIMENTS
-from ..evaluation.experiments.result import draw
+from ..evaluation.result import draw
+from ..lab.registry import EXPERIMENTS
 from .progress_bar import progress_bar
 
 HELP = 'reproduce published figures'

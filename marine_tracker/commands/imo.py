@@ -18,17 +18,10 @@ import sys
 
 import numpy as np
 
+from ..conformance import accuracy, encounters, figures, loss, manoeuvres, page
+from ..conformance.accuracy import A823, MINUTES, Outcome, a823_trial
 from ..estimators import ESTIMATORS
-from ..evaluation import (
-    imazu_encounters,
-    imo_conformance,
-    imo_manoeuvres,
-    imo_page,
-    imo_report,
-    lost_targets,
-    report,
-)
-from ..evaluation.imo_conformance import A823, MINUTES, Outcome, a823_trial
+from ..evaluation import report
 from ..parameters import TrackerParameters
 from .progress_bar import progress_bar
 
@@ -66,39 +59,39 @@ def run(args) -> int:
     results = measure(estimators, parts, args.runs, args.seed, args.processes)
     title = (f'IMO test conditions, {", ".join(estimators)}: {args.runs} runs, seed {args.seed}')
     if args.html:
-        page = imo_page.write(args.html, results, title, args.seed)
-        print(f'written: {page}', file=sys.stderr)
-    return report.publish(title, imo_report.figures(results), args.json, {
+        written = page.write(args.html, results, title, args.seed)
+        print(f'written: {written}', file=sys.stderr)
+    return report.publish(title, figures.figures(results), args.json, {
         'estimators': estimators, 'parts': parts, 'runs': args.runs, 'seed': args.seed})
 
 
-def measure(estimators, parts, runs, seed, processes) -> imo_report.Results:
+def measure(estimators, parts, runs, seed, processes) -> figures.Results:
     """The parts that were asked for."""
-    found = imo_report.Results(estimators, {}, {})
+    found = figures.Results(estimators, {}, {})
     if 'accuracy' in parts:
         keys = [(minutes, number) for minutes in MINUTES for number in A823[minutes]]
         with progress_bar('accuracy') as progress:
-            outcomes = imo_conformance.run(
+            outcomes = accuracy.run(
                 [a823_trial(number, 60.0 * minutes) for minutes, number in keys], estimators, runs,
                 seed, progress, processes)
         found = found._replace(steady=dict(zip(keys, outcomes)))
     if 'manoeuvres' in parts:
         numbers = list(A823[3])
-        trials = [trial for number in numbers for trial in imo_manoeuvres.own_turns(number)]
+        trials = [trial for number in numbers for trial in manoeuvres.own_turns(number)]
         with progress_bar('own ship turns') as progress:
-            outcomes = imo_conformance.run(trials, estimators, -(-runs // 4), seed + 1, progress,
+            outcomes = accuracy.run(trials, estimators, -(-runs // 4), seed + 1, progress,
                                            processes)
         with progress_bar('targets turn') as progress:
-            turns = imo_manoeuvres.target_turns(estimators, runs, seed, progress, processes)
+            turns = manoeuvres.target_turns(estimators, runs, seed, progress, processes)
         found = found._replace(turns=turns, own_turns={
             number: Outcome(one.truth, np.concatenate([one.found, other.found]))
             for number, one, other in zip(numbers, outcomes[::2], outcomes[1::2])})
     if 'encounters' in parts:
         with progress_bar('encounters') as progress:
-            found = found._replace(encounters=imazu_encounters.run(
+            found = found._replace(encounters=encounters.run(
                 estimators, -(-runs // 100), seed, progress, processes))
     if 'loss' in parts:
         with progress_bar('loss') as progress:
-            found = found._replace(kept=lost_targets.run(estimators, runs, seed, progress,
+            found = found._replace(kept=loss.run(estimators, runs, seed, progress,
                                                          processes))
     return found

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..estimators import WANT_DOPPLER
 from ..extent.extents import Extents
-from ..heap import keep_freed_memory
+from ..processes import keep_freed_memory
 from ..recording import csv_folder, track_file
 from ..simulation import radar, scenario
 from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES

@@ -3,18 +3,12 @@
 import json
 from pathlib import Path
 
-from ..evaluation import (
-    gwnn_fusion_training,
-    gwnn_samples,
-    gwnn_training,
-    own_waters,
-    report,
-    rough_training,
-)
-from ..heap import keep_freed_memory
+from ..evaluation import report
 from ..networks import gwnn_weights, rough_weights, wavelet_network
 from ..parameters import VESSEL_CLASSES
+from ..processes import keep_freed_memory
 from ..simulation import scenario
+from ..training import custom_traffic, gwnn_fusion, gwnn_samples, gwnn_training, rough_training
 from .progress_bar import progress_bar
 
 HELP = 'train the weights of an estimator anew'
@@ -135,10 +129,10 @@ def _train_gwnn(args) -> int:
 def _plan(args) -> gwnn_training.Plan:
     plan = gwnn_training.plan(
         args.vessel_class, args.seed, chunks=-(-args.tracks // gwnn_samples.CHUNK),
-        steps=args.steps, layout=gwnn_fusion_training.LAYOUT._replace(units=args.units))
+        steps=args.steps, layout=gwnn_fusion.LAYOUT._replace(units=args.units))
     waters = plan.waters
     if args.kinds is not None:
-        waters = waters._replace(kinds=own_waters.read_kinds(args.kinds))
+        waters = waters._replace(kinds=custom_traffic.read_kinds(args.kinds))
     if args.scenario is not None:
-        waters = own_waters.from_scenario(waters, scenario.load(args.scenario))
+        waters = custom_traffic.from_scenario(waters, scenario.load(args.scenario))
     return plan._replace(waters=waters)

@@ -5,11 +5,12 @@ minimises the position error one scan ahead; the figures are also given on fresh
 search did not see. Some minutes of one processor.
 """
 
-from ..estimators import bank
-from ..evaluation import filter_tuning, report
-from ..evaluation.experiments.gwnn_trials import TUNED
-from ..heap import keep_freed_memory
+from ..estimators.gwnn import bank
+from ..evaluation import report
 from ..parameters import VESSEL_CLASSES
+from ..processes import keep_freed_memory
+from ..training import filter_tuning
+from ..training.tuned import TUNED
 from .progress_bar import progress_bar
 
 HELP = 'search the best settings of a filter'

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from ..parameters import TrackerParameters
-from . import alpha_beta, cs_kalman, cs_rough_nn, gwnn, gwnn_paper, imm, wavelet_cs
+from . import alpha_beta, cs_kalman, cs_rough_nn, imm, wavelet_cs
 from .contract import Account, Estimator, Velocity
+from .gwnn import gwnn, gwnn_paper
 
 ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
     'cs_kalman': lambda p: cs_kalman.cs_kalman(cs_kalman.PRESETS[p.vessel_class],

@@ -25,11 +25,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..gaussian.linear import sandwich
 from ..geometry import to_range_bearing, wrap_angle
 from ..types import Array, Extrapolation, Plots, put, take
 from .alpha_beta_gains import GAINS, WINDOW, Misfit
-from .contract import Estimator
-from .linear import first_velocity, sandwich
+from .contract import Estimator, first_velocity
 from .polar_motion import NEAREST, axes, to_ground, to_polar
 
 # White acceleration, m^2/s^3 each axis. The estimate does not depend on it, only its covariance.

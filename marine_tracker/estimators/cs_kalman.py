@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..gaussian.linear import kalman_update, sandwich
 from ..types import Array, Extrapolation, put, take
-from .contract import Estimator
-from .linear import first_velocity, kalman_update, sandwich
+from .contract import Estimator, first_velocity
 
 RAYLEIGH = (4 - np.pi) / np.pi      # variance of the Rayleigh density over its squared mean
 # Without a floor the process noise vanishes when the estimate sits at a_max, and the filter

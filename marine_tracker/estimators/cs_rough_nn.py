@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..gaussian.linear import kalman_update
 from ..networks import rough_weights
 from ..networks.rough_network import forward
 from ..types import Array, Extrapolation, append, put, take
@@ -33,7 +34,6 @@ from .cs_kalman import (
     move,
     process_noise,
 )
-from .linear import kalman_update
 from .rough_features import inputs, quiet_variance
 
 LEAST_SHARE = 0.01

@@ -9,10 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..gaussian import linear_modes
 from ..types import Array, Extrapolation, put, take
-from . import linear_modes
-from .contract import Estimator
-from .linear import first_velocity
+from .contract import Estimator, first_velocity
 
 
 class Modes(NamedTuple):

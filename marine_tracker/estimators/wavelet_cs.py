@@ -20,11 +20,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..gaussian.linear import invert_2x2, kalman_update, sandwich, squared_distance
 from ..types import Array, Extrapolation, put, take
 from . import cs_kalman
 from .contract import Estimator
 from .cs_kalman import POSITION, SHOWN, CsState, Manoeuvre, acceleration_variance
-from .linear import invert_2x2, kalman_update, sandwich, squared_distance
 from .wavelet_block import SIZE
 
 # The first block of each chain is all resolutions, a plain Kalman filter: the velocity of a new

@@ -1,0 +1,1 @@
+"""What users run on data of their own: scores, speed, reports."""

@@ -1,0 +1,1 @@
+"""Ships with a length: clusters of cells, sizes and headings, land."""

@@ -15,7 +15,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..estimators.linear import invert_2x2, squared_distance
+from ..gaussian.linear import invert_2x2, squared_distance
 from ..types import Array, Plots
 from .smear import smear
 

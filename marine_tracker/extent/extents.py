@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..estimators.linear import invert_2x2, squared_distance
+from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import locate, own_ship_at, polar_to_position, to_range_bearing, unit_vector
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, PolarPlots, Scan, row_of, take

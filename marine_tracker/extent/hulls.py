@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..estimators.contract import Velocity
-from ..estimators.linear import invert_2x2, squared_distance
+from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import unit_vector
 from ..types import Array, Extrapolation, append, put, take, where
-from . import contour, gaussian_process, random_matrix
+from . import gaussian_process, outline_measures, random_matrix
 from .clustering import Clusters
 from .gaussian_process import HEADING, GpState
 from .lit_edge import FRINGE, Edge
@@ -270,8 +270,8 @@ def shapes(hulls: Hulls, noise, position) -> Shapes:
     lined = (hulls.method == OUTLINE).nonzero()[0]
     if len(lined):
         outline = take(hulls.outline, lined)
-        of = contour.measures(outline, SHIP.contour)
-        points[lined] = contour.of_gaussian_process(outline, SHIP.contour, _AROUND).points
+        of = outline_measures.measures(outline, SHIP.contour)
+        points[lined] = outline_measures.of_gaussian_process(outline, SHIP.contour, _AROUND).points
         length[lined], length_sd[lined], beam[lined] = of.length, of.length_sd, of.beam
         heading[lined], heading_sd[lined] = outline.mean[:, HEADING], of.axis_sd
         source[lined] = BY_OUTLINE

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..estimators.linear import invert_2x2, kalman_update
+from ..gaussian.linear import invert_2x2, kalman_update
 from ..geometry import unit_vector
 from ..types import Array, put, take
 

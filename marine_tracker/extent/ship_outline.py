@@ -50,14 +50,6 @@ def heading_of(matrix: RandomMatrixState, found: Measures):
     return found.axis + np.pi * astern
 
 
-def blur_over_half_beam(found: Measures, noise):
-    """Deviation of a cell across the ship over half her beam [N]: above 0.4 an outline does not
-    pay. noise [N, 2, 2] m^2, R of a cell."""
-    abeam = unit_vector(found.axis + np.pi / 2)
-    half = 0.5 * np.minimum(found.beam, found.length / SLENDER)
-    return np.sqrt(((abeam[:, None] @ noise)[:, 0] * abeam).sum(1)) / half
-
-
 def off_course(state: GpState):
     """Angle [N] rad in [0, pi] between heading and course; large where the outline is wrong."""
     course = to_range_bearing(state.mean[:, 2:4])[1]

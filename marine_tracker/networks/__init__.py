@@ -1,0 +1,1 @@
+"""Neural networks and the files of their weights."""

@@ -16,7 +16,7 @@ from ..arpa.zones import Zones
 from ..geometry import KNOT, NAUTICAL_MILE
 from . import diagnostics
 from .diagnostics import ERROR, OK, WARN
-from .readable import degrees, figure
+from .targets_message import degrees, figure
 
 LEVEL = {'alarm': ERROR, 'warning': WARN, 'caution': WARN}
 TRIAL = 'T'                     # stands for a trial, as on every radar screen

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from ..arpa.view import HullView
 from ..extent.hulls import METHODS, SOURCES
 from ..geometry import NAUTICAL_MILE
-from .view import HullView
 
 COLUMNS = ('length_m', 'length_sd_m', 'beam_max_m', 'heading_deg', 'heading_sd_deg', 'heading_from',
            'hull_clearance_nm', 'extent_method')

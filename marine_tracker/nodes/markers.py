@@ -12,14 +12,14 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ..arpa import past_positions
 from ..arpa.arpa import Picture
 from ..arpa.own_motion import vectors
-from ..arpa.rows import row_of
+from ..arpa.view import View
 from ..arpa.zone_outlines import outlines as zone_outlines
 from ..arpa.zones import Zones
 from ..parameters import ArpaParameters
 from ..tracking.lifecycle import LOST
+from ..types import row_of
 from .convert import header
 from .hull_columns import outlines
-from .view import View
 
 SYMBOL_M = 60.0             # radius of a target's circle
 ELLIPSE_SIGMA = 2.0

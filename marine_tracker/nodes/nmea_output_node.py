@@ -20,12 +20,12 @@ from ..arpa.nmea_targets import nothing_told, word
 from ..geometry import NAUTICAL_MILE, unit_vector
 from ..parameters import NmeaOutputParameters
 from . import diagnostics, topics
+from .base_node import RunnableNode
 from .convert import nanoseconds
 from .declare import declare
 from .diagnostics import OK, WARN
 from .nmea_output_input import OwnShipInput, read_origin, read_targets
 from .nmea_output_links import Clients, Datagrams
-from .runnable import RunnableNode
 
 SENTENCES = ('RMC', 'HDT', 'OSD', 'RSD', 'TTM', 'TLL')
 SILENT_S = 10.0             # s of the wall without own ship or targets: they count as missing

@@ -26,8 +26,8 @@ from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
 from ..geometry import geodetic_from_local
 from ..types import OwnShip, Scan, Truth
 from . import convert, topics
+from .base_node import RunnableNode
 from .convert import OdometryPool
-from .runnable import RunnableNode
 
 FIRST_S = 1.0                   # s, where simulated time begins
 TICK_S = 0.05                   # longest wait between two looks at the time

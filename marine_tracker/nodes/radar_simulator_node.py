@@ -14,9 +14,9 @@ from ..geometry import own_ship_at
 from ..parameters import RadarSimulatorParameters
 from ..simulation import radar, scenario
 from ..types import OwnShip
+from .base_node import RunnableNode
 from .declare import declare
 from .playback import Playback, Revolution, own_ship_period
-from .runnable import RunnableNode
 
 
 class RadarSimulatorNode(RunnableNode):

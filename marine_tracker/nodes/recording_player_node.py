@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from ..parameters import RecordingPlayerParameters
 from ..recording import csv_folder
 from ..types import take
+from .base_node import RunnableNode
 from .declare import declare
 from .playback import Playback, Revolution
-from .runnable import RunnableNode
 
 
 class RecordingPlayerNode(RunnableNode):

@@ -12,8 +12,10 @@ import sys
 import threading
 import time
 
-from ..heap import keep_freed_memory
+from ..processes import keep_freed_memory
 
+NODES = {'tracker': 'TrackerNode', 'radar_simulator': 'RadarSimulatorNode',
+         'recording_player': 'RecordingPlayerNode', 'nmea_output': 'NmeaOutputNode'}
 ASKED = (signal.SIGINT, signal.SIGTERM)
 GRACE_S = 10.0          # to close in order, after a signal
 
@@ -39,8 +41,10 @@ def end_in_time(name: str, stop: threading.Event) -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
-def run(name: str, class_name: str) -> int:
-    """Run the class of module `NAME_node` until it is done or SIGINT or SIGTERM comes.
+def run(name: str) -> int:
+    """Run a node of NODES until it is done or SIGINT or SIGTERM comes.
+
+    The node is the class that NODES names, in the module `NAME_node`.
 
     The exit code: 0 after a stop that was asked for, 1 with one line on stderr when the node
     cannot start.
@@ -58,7 +62,7 @@ def run(name: str, class_name: str) -> int:
     from rclpy.signals import SignalHandlerOptions
 
     keep_freed_memory()
-    make_node = getattr(importlib.import_module(f'.{name}_node', __package__), class_name)
+    make_node = getattr(importlib.import_module(f'.{name}_node', __package__), NODES[name])
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = make_node()
@@ -79,3 +83,29 @@ def run(name: str, class_name: str) -> int:
         node.destroy_node()
         rclpy.try_shutdown()
     return 0
+
+
+# The executables. `python -m marine_tracker.nodes.run NAME --ros-args ...` runs the same.
+
+def tracker() -> int:
+    """The exit code of the tracker."""
+    return run('tracker')
+
+
+def radar_simulator() -> int:
+    """The exit code of the radar simulator."""
+    return run('radar_simulator')
+
+
+def recording_player() -> int:
+    """The exit code of the recording player."""
+    return run('recording_player')
+
+
+def nmea_output() -> int:
+    """The exit code of the NMEA output."""
+    return run('nmea_output')
+
+
+if __name__ == '__main__':
+    sys.exit(run(sys.argv.pop(1)))

@@ -15,7 +15,7 @@ from ..geometry import KNOT
 from . import topics
 from .convert import nanoseconds, odometry_to_own_ship
 from .diagnostics import ERROR, OK
-from .readable import degrees
+from .targets_message import degrees
 
 
 class Picture(NamedTuple):

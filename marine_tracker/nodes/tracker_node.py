@@ -21,6 +21,7 @@ from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import MarkerArray
 
 from ..arpa.arpa import Arpa
+from ..arpa.view import Standing, standing, view
 from ..extent.extents import Extents
 from ..extent.hulls import Shapes
 from ..geometry import wrap_bearing
@@ -31,15 +32,14 @@ from ..tracking.radars import radars_of
 from ..tracking.tracker import Report, Tracker
 from ..types import Extrapolation, Scan, take
 from . import convert, diagnostics, topics
-from .arpa_desk import ArpaDesk
+from .base_node import RunnableNode
 from .convert import OdometryPool
 from .declare import declare, follow
 from .diagnostics import FAILED, OK, WARN, Durations, Tally, guarded
 from .markers import MarkersWriter
+from .operator import ArpaDesk
 from .radar_input import RadarInput
-from .readable import TargetsWriter
-from .runnable import RunnableNode
-from .view import Standing, standing, view
+from .targets_message import TargetsWriter
 
 
 class TrackerNode(RunnableNode):

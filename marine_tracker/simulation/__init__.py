@@ -1,0 +1,1 @@
+"""The radar simulator: scenarios, ships, radar, clutter, errors of sensors."""

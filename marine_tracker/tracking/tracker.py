@@ -11,7 +11,7 @@ from ..estimators import ESTIMATORS, Estimator, Velocity
 from ..geometry import locate, own_ship_at, to_range_bearing
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
-from . import clutter_map, doppler, lifecycle, order
+from . import clutter_map, doppler, late_plots, lifecycle
 from .associate import associate
 from .gate import gate, gate_size
 from .initiate import first_score, pair_up, reach
@@ -119,7 +119,7 @@ class Tracker:
 
         # extrapolate: every track to the time the beam passes it
         beam = sweep.time_at(tracks.bearing)
-        ahead = self.estimator.extrapolate(order.as_of(tracks, beam), beam)
+        ahead = self.estimator.extrapolate(late_plots.as_of(tracks, beam), beam)
 
         # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
         time, position, velocity, covariance = (np.concatenate(pair) for pair in (
@@ -163,7 +163,7 @@ class Tracker:
         chosen = take(plots, plot_of[rows])
 
         # update
-        tracks = order.update(self.estimator, tracks, chosen, rows, scan.radar)
+        tracks = late_plots.update(self.estimator, tracks, chosen, rows, scan.radar)
         last_time = tracks.last_time.copy()
         last_time[rows] = np.maximum(last_time[rows], chosen.time)
         time = np.concatenate([np.maximum(ahead.time, last_time[:count]), last_time[count:]])
@@ -236,7 +236,7 @@ class Tracker:
                       now.covariance[:, :2, :2])
         state = self.estimator.init(plots, Velocity(now.velocity, now.covariance[:, 2:, 2:]))
         return memory._replace(tracks=memory.tracks._replace(
-            state=state, past=order.nothing_yet(state, plots, self.updates)))
+            state=state, past=late_plots.nothing_yet(state, plots, self.updates)))
 
     def _begin(self, plots: Plots, next_id: int, radar: int) -> Tracks:
         """Tentative tracks of one plot each."""
@@ -248,7 +248,7 @@ class Tracker:
                       last_time=plots.time, bearing=plots.bearing, state=state,
                       radar=(np.full(count, radar, np.int8) if len(self.radars) > 1
                              else None),
-                      past=order.nothing_yet(state, plots, self.updates))
+                      past=late_plots.nothing_yet(state, plots, self.updates))
 
 
 def _widest(covariance) -> float:

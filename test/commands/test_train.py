@@ -2,7 +2,7 @@
 
 import pytest
 
-from marine_tracker.estimators import gwnn
+from marine_tracker.estimators.gwnn import gwnn
 from marine_tracker.networks import rough_weights
 from marine_tracker.networks import wavelet_network as net
 

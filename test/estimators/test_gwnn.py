@@ -5,11 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from marine_tracker.estimators import bank, cs_kalman, gwnn, gwnn_inputs, imm, linear_modes
-from marine_tracker.evaluation import ship_tracks, track_trials, training_tracks
+from marine_tracker.estimators import cs_kalman, imm
+from marine_tracker.estimators.gwnn import bank, gwnn, inputs
+from marine_tracker.gaussian import linear_modes
 from marine_tracker.geometry import polar_to_position, to_range_bearing
 from marine_tracker.networks import gwnn_weights
 from marine_tracker.parameters import VESSEL_CLASSES
+from marine_tracker.training import ship_tracks, track_trials, training_tracks
 from marine_tracker.types import Plots, append, put, take
 
 PERIOD = 60 / 22
@@ -131,9 +133,9 @@ class TestInputs:
     def test_there_is_one_for_every_kind(self):
         on = make_trial('mix', scans=12)
         state = drive(gwnn.gwnn(silent(gwnn.weights()), SPEED, PERIOD), on)
-        seen = gwnn_inputs.inputs(SHIP, state.bank, state.memory, PERIOD)
-        assert seen.shape == (SHARE, gwnn_inputs.COUNT) and np.isfinite(seen).all()
-        assert gwnn_inputs.COUNT == 118
+        seen = inputs.inputs(SHIP, state.bank, state.memory, PERIOD)
+        assert seen.shape == (SHARE, inputs.COUNT) and np.isfinite(seen).all()
+        assert inputs.COUNT == 118
 
     def test_sigma_check_reads_the_true_deviation_of_the_plots(self):
         """True deviation over the stated one, within a sixth on the mean of 40 tracks."""
@@ -337,7 +339,7 @@ class TestWeights:
     def test_the_shipped_file_says_how_it_came_about(self, vessel_class):
         manifest = gwnn.weights('', vessel_class).manifest
         assert {'seed', 'tracks', 'steps', 'kinds', 'ratios', 'checksum'} <= set(manifest)
-        assert manifest['inputs'] == gwnn_inputs.COUNT
+        assert manifest['inputs'] == inputs.COUNT
         assert manifest['vessel_class'] == vessel_class
         beside = gwnn_weights.shipped(vessel_class).with_suffix('.json')
         assert json.loads(beside.read_text()) == manifest

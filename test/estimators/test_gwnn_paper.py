@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators import cs_kalman
-from marine_tracker.estimators.gwnn_paper import WARM_UP, gwnn_paper
+from marine_tracker.estimators.gwnn.gwnn_paper import WARM_UP, gwnn_paper
 
 PERIOD = 60 / 22
 SHIP = cs_kalman.PRESETS['ship']

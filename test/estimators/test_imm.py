@@ -8,7 +8,7 @@ from scipy.linalg import expm, logm
 from scipy.stats import multivariate_normal
 
 from marine_tracker.estimators.imm import PRESETS, Modes, imm
-from marine_tracker.estimators.linear_modes import bank, move_means, transition_power
+from marine_tracker.gaussian.linear_modes import bank, move_means, transition_power
 
 MAX_SPEED = 24.0
 OBSERVE = np.eye(2, 4)

@@ -6,8 +6,8 @@ from scipy.linalg import block_diag, expm
 
 from marine_tracker.estimators import wavelet_block
 from marine_tracker.estimators.cs_kalman import Manoeuvre, predict
-from marine_tracker.estimators.linear import kalman_update, weighted_fusion
 from marine_tracker.estimators.wavelet_block import SIZE, analysis, coarse, correct, smooth
+from marine_tracker.gaussian.linear import kalman_update, weighted_fusion
 
 WAVELETS = ('haar', 'db2', 'db4', 'sym4', 'coif1')
 ALPHA, LIMIT = 1 / 40, 3.0

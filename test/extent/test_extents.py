@@ -5,11 +5,11 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from marine_tracker.evaluation.experiments import hulls_at_sea
-from marine_tracker.evaluation.experiments.hulls_at_sea import FINE, Case
 from marine_tracker.extent.clustering import Gates
 from marine_tracker.extent.extents import Extents, one_a_ship
 from marine_tracker.extent.hulls import OUTLINE, RANDOM_MATRIX
+from marine_tracker.lab.hulls import at_sea
+from marine_tracker.lab.hulls.at_sea import FINE, Case
 from marine_tracker.parameters import TrackerParameters
 from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking.lifecycle import CONFIRMED, LOST
@@ -41,7 +41,7 @@ class Run:
 @pytest.fixture(scope='module')
 def one_ship():
     """200 m by 32 m, abeam at 1 km: the first 40 scans and what the tracker is told."""
-    loaded = hulls_at_sea.scene(Case(200, 1000.0, 90.0, FINE))
+    loaded = at_sea.scene(Case(200, 1000.0, 90.0, FINE))
     return loaded, list(radar.simulate(loaded, 11))[:40]
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators.contract import Velocity
-from marine_tracker.extent import contour, random_matrix, ship_outline
+from marine_tracker.extent import outline_measures, random_matrix, ship_outline
 from marine_tracker.extent.gaussian_process import HEADING
 from marine_tracker.extent.random_matrix import BOX
 from marine_tracker.geometry import unit_vector
@@ -39,22 +39,8 @@ def test_the_outline_begins_behind_the_lit_side(heading):
     assert np.hypot(*moved) == pytest.approx(half, rel=1e-6)
     assert moved @ unit_vector(heading) == pytest.approx(0, abs=1e-6)
     assert np.hypot(*state.mean[0, :2]) > np.hypot(*matrix.mean[0, :2])
-    measured = contour.measures(state, ship_outline.PRIOR)
+    measured = outline_measures.measures(state, ship_outline.PRIOR)
     assert measured.length[0] == pytest.approx(200, rel=0.01)
     assert measured.beam[0] == pytest.approx(2 * half, rel=0.01)
     assert np.linalg.eigvalsh(state.covariance).min() > 0
     assert state.covariance[0, HEADING, HEADING] >= ship_outline.HEADING_SD ** 2
-
-
-def test_blur_is_told_across_the_ship():
-    """Noise of 4 m across and 50 m along a ship of 200 x 32 m, whose half beam is 15.9 m."""
-    matrix, found = ship(0.5, 0.5)
-    ahead, abeam = unit_vector(np.array(0.5)), unit_vector(np.array(0.5 + np.pi / 2))
-    noise = 2500 * np.outer(ahead, ahead) + 16 * np.outer(abeam, abeam)
-    blur = ship_outline.blur_over_half_beam(found, noise[None])
-    assert blur[0] == pytest.approx(4 / (100 / ship_outline.SLENDER), rel=1e-6)
-
-
-def test_a_narrow_measurement_counts_before_what_ships_are_like():
-    _, found = ship(0.0, 0.0, beam=20.0)
-    assert ship_outline.blur_over_half_beam(found, 4 * np.eye(2)[None])[0] == pytest.approx(0.2)

@@ -285,7 +285,7 @@ def test_simulator_tracker_and_nmea_output_show_their_targets_in_opencpn(
         words = [word for name, value in parameters.items()
                  for word in ('-p', f'{name}:={value}')]
         stack.enter_context(running(
-            [sys.executable, '-m', f'marine_tracker.nodes.{node}', '--ros-args', *words],
+            [sys.executable, '-m', 'marine_tracker.nodes.run', node, '--ros-args', *words],
             tmp_path, signal.SIGINT, env=environment, cwd=CHECKOUT))
     told = {}                                   # {target number: its TTM sentences}
 

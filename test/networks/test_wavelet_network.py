@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from marine_tracker.networks import adam, wavelets
 from marine_tracker.networks import wavelet_network as net
+from marine_tracker.networks import wavelets
+from marine_tracker.training import adam
 
 LAYOUT = net.Layout(levels=2, translations=5, q=1.2, outputs=3)
 INPUTS = 4

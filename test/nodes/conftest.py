@@ -139,11 +139,11 @@ class Process:
     """A node as a process of its own."""
 
     def __init__(self, folder, module, arguments):
-        self.log = folder / f'{module}_{time.monotonic_ns()}.log'
+        self.log = folder / f'{module.split()[-1]}_{time.monotonic_ns()}.log'
         with open(self.log, 'wb') as log:
             self.process = subprocess.Popen(
-                [sys.executable, '-m', f'marine_tracker.{module}', *arguments], cwd=CHECKOUT,
-                stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                [sys.executable, '-m', *f'marine_tracker.{module}'.split(), *arguments],
+                cwd=CHECKOUT, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                 env={**os.environ, 'PYTHONUNBUFFERED': '1'}, preexec_fn=end_with_parent)
 
     @property
@@ -170,7 +170,7 @@ class Process:
 
 @pytest.fixture
 def launch(domain, tmp_path):
-    """launch('nodes.tracker', '--ros-args', ...) -> Process; whatever still runs is ended."""
+    """launch('nodes.run tracker', '--ros-args', ...) -> Process; whatever still runs is ended."""
     processes = []
 
     def start(module, *arguments):

@@ -30,7 +30,7 @@ def nodes(process):
     for child in children(process):
         words = child.cmdline()
         for name in ('tracker', 'radar_simulator', 'recording_player'):
-            if f'marine_tracker.nodes.{name}' in words:
+            if 'marine_tracker.nodes.run' in words and name in words:
                 found[name] = child
     return found
 

@@ -14,7 +14,8 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import MarkerArray
 
-from marine_tracker.estimators import ESTIMATORS, gwnn
+from marine_tracker.estimators import ESTIMATORS
+from marine_tracker.estimators.gwnn import gwnn
 from marine_tracker.geometry import own_ship_at
 from marine_tracker.networks import gwnn_weights
 from marine_tracker.nodes import convert, topics
@@ -40,7 +41,7 @@ class Watch:
         self.scans = iter(scans)
         # Dangers have a level of their own, which would hide that of a fallback.
         given = {**scenario.load('clean').tracker_parameters(), 'cpa_limit_nm': 0.01, **parameters}
-        self.process = launch('nodes.tracker', '--ros-args', *(
+        self.process = launch('nodes.run tracker', '--ros-args', *(
             word for name, value in given.items()
             for word in ('-p', f'{name}:={float(value) if type(value) is int else value}')))
         self.node = graph.bystander()
@@ -245,7 +246,7 @@ def test_an_unfit_file_is_refused_while_running_and_changes_nothing(watch, tmp_p
 def test_an_unfit_file_stops_the_start_in_one_line(launch, tmp_path, make, said):
     file = tmp_path / f'{make.__name__}.npz'
     make(file)
-    process = launch('nodes.tracker', '--ros-args', '-p', 'estimator:=gwnn',
+    process = launch('nodes.run tracker', '--ros-args', '-p', 'estimator:=gwnn',
                      '-p', f'gwnn_weights:={file}')
     assert process.ends() == 1
     assert process.said.startswith(f'tracker: GWNN weights {file}') and said in process.said

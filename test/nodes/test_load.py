@@ -42,7 +42,7 @@ class Load:
     def __init__(self, graph, launch, node_helpers, **parameters):
         self.wait, listener = node_helpers
         told = [f'{name}:={value}' for name, value in parameters.items()]
-        self.process = launch('nodes.tracker', '--ros-args', *(
+        self.process = launch('nodes.run tracker', '--ros-args', *(
             word for one in told for word in ('-p', one)))
         node = graph.bystander()
         self.plots = node.create_publisher(PointCloud2, topics.PLOTS, topics.reliable())

@@ -21,7 +21,7 @@ from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.nmea_output_links import PENDING, Clients, Datagrams, endpoints
 from marine_tracker.nodes.nmea_output_node import NmeaOutputNode
 
-OUTPUT = 'nodes.nmea_output'
+OUTPUT = 'nodes.run nmea_output'
 SECOND = 1_000_000_000
 NOON = 1_700_049_600 * SECOND           # 2023-11-15 12:00 UTC
 LOOPBACK = '127.0.0.1'
@@ -378,9 +378,9 @@ def test_simulator_tracker_and_output_as_processes_tell_every_target_once_a_scan
     ear = ears(patience=60.0)
     output = launch(OUTPUT, *p(udp=f'{LOOPBACK}:{ear.port}', use_sim_time='true',
                                own_ship_period_s=60.0))
-    tracker = launch('nodes.tracker', *p(use_sim_time='true', range_sigma_m=15.0,
+    tracker = launch('nodes.run tracker', *p(use_sim_time='true', range_sigma_m=15.0,
                                          bearing_sigma_deg=0.4, max_range_m=22224.0))
-    simulator = launch('nodes.radar_simulator', *p(scenario='encounters', rate=20.0))
+    simulator = launch('nodes.run radar_simulator', *p(scenario='encounters', rate=20.0))
     told = {}                           # scans in which each target was told
     while len(told) < 3 or sorted(map(len, told.values()))[-3] < 20:
         line, = ear.hear(1)

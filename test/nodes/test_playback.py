@@ -105,7 +105,7 @@ def test_the_period_is_kept_within_one_percent_by_the_wall(launch, graph, node_h
         lambda message: arrivals.append((time.monotonic(), message.header.stamp)),
         topics.best_available())
     own_ship = listener(node, Odometry, topics.ODOMETRY)
-    process = launch('nodes.radar_simulator', '--ros-args', '-p', 'scenario:=clean')
+    process = launch('nodes.run radar_simulator', '--ros-args', '-p', 'scenario:=clean')
     wait(lambda: len(arrivals) >= 3)
     process.stop()
     wall = np.array([at for at, _ in arrivals])

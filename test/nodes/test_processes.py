@@ -21,7 +21,8 @@ from marine_tracker.recording import csv_folder
 from marine_tracker.simulation import scenario
 from marine_tracker.tracking.tracker import Tracker
 
-SIMULATOR, TRACKER, PLAYER = 'nodes.radar_simulator', 'nodes.tracker', 'nodes.recording_player'
+SIMULATOR, TRACKER, PLAYER = (f'nodes.run {name}' for name in (
+    'radar_simulator', 'tracker', 'recording_player'))
 STATUS = ('', 'TRACKING', 'COASTING', 'LOST')      # tentative ones have no number
 READY = {SIMULATOR: 'scenario', TRACKER: 'waiting for', PLAYER: 'recording'}
 

@@ -182,11 +182,11 @@ def test_two_simulators_and_a_tracker_as_processes(launch, graph, node_helpers, 
         for name, value in TOGETHER.items() if name != 'radars')
         + '    radars: |\n' + ''.join(f'      {line}\n' for line in TOGETHER[
             'radars'].splitlines()))
-    tracker = launch('nodes.tracker', '--ros-args', '--params-file', str(file))
+    tracker = launch('nodes.run tracker', '--ros-args', '--params-file', str(file))
     wait(lambda: ears.connected)
-    second = launch('nodes.radar_simulator', *p(scenario='two_radars_s', seed=2, begin_at_s=1.0,
+    second = launch('nodes.run radar_simulator', *p(scenario='two_radars_s', seed=2, begin_at_s=1.0,
                                                 use_sim_time='true'), '-r', '__ns:=/radar_s')
-    first = launch('nodes.radar_simulator', *p(scenario='two_radars_x', rate=25.0),
+    first = launch('nodes.run radar_simulator', *p(scenario='two_radars_x', rate=25.0),
                    '-r', '__ns:=/radar_x',
                    '-r', '/radar_x/own_ship/odometry:=/own_ship/odometry')
 
@@ -198,7 +198,7 @@ def test_two_simulators_and_a_tracker_as_processes(launch, graph, node_helpers, 
     heard = len(ears)
     wait(lambda: len(ears) > heard + 25)
     assert all_held()
-    again = launch('nodes.radar_simulator', *p(scenario='two_radars_s', seed=2, begin_at_s=1.0,
+    again = launch('nodes.run radar_simulator', *p(scenario='two_radars_s', seed=2, begin_at_s=1.0,
                                                use_sim_time='true'), '-r', '__ns:=/radar_s')
     diagnostics = listener(graph.bystander('other'), DiagnosticArray, topics.DIAGNOSTICS)
 

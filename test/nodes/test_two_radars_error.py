@@ -11,14 +11,8 @@ from nav_msgs.msg import Odometry
 from scipy.stats import ttest_1samp
 from sensor_msgs.msg import PointCloud2
 
-from marine_tracker.evaluation.experiments.two_radars import (
-    EVERY,
-    SEEN_BY_BOTH,
-    SETTLED,
-    SILENT,
-    WITHIN,
-)
 from marine_tracker.evaluation.gospa import assign
+from marine_tracker.lab.two_radars.two_radars import EVERY, SEEN_BY_BOTH, SETTLED, SILENT, WITHIN
 from marine_tracker.nodes import convert, topics
 from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking.lifecycle import LOST
@@ -63,7 +57,7 @@ class Sea:
         of_x, of_s = ([scan for scan, _ in radar.simulate(one, part)] for one, part in zip(
             (X, S), np.random.SeedSequence(seed).generate_state(2).tolist(), strict=True))
         trackers = [self.launch(
-            'nodes.tracker', '--ros-args', '--params-file', str(self.files[way]), '-r',
+            'nodes.run tracker', '--ros-args', '--params-file', str(self.files[way]), '-r',
             f'__ns:=/{way}', '-r', f'{topics.ODOMETRY}:=/{topics.ODOMETRY}') for way in HEARS]
         self.all_hear(1)
         ends = {way: [] for way in HEARS}

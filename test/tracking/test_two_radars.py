@@ -7,7 +7,7 @@ from marine_tracker.estimators import ESTIMATORS
 from marine_tracker.geometry import locate
 from marine_tracker.parameters import TrackerParameters
 from marine_tracker.simulation import radar, scenario
-from marine_tracker.tracking import order
+from marine_tracker.tracking import late_plots
 from marine_tracker.tracking.lifecycle import COASTING
 from marine_tracker.tracking.radars import fused, merged
 from marine_tracker.tracking.tracker import Tracker
@@ -98,9 +98,9 @@ def test_the_track_knows_all_plots_in_the_order_of_their_times(fleet):
             new = len(report.plot) - row <= len(report.begun.time)
             if new:
                 place = row - (len(report.plot) - len(report.begun.time))
-                taken[id_] = [order.take(report.begun, slice(place, place + 1))]
+                taken[id_] = [late_plots.take(report.begun, slice(place, place + 1))]
             late += plots.time[report.plot[row]] < before.get(id_, -np.inf)
-            taken[id_].append(order.take(plots, slice(report.plot[row], report.plot[row] + 1)))
+            taken[id_].append(late_plots.take(plots, slice(report.plot[row], report.plot[row] + 1)))
     assert held(memory) == [1, 2, 3, 4] and late > 10
     for row, id_ in enumerate(memory.tracks.id):
         first, *rest = taken[id_]
@@ -154,7 +154,7 @@ def test_a_target_that_neither_sees_is_lost_when_its_time_is_over(fleet):
 def test_beyond_the_range_of_one_radar_the_other_goes_on(fleet):
     own = [OWN[0], {**OWN[1], 'max_range_m': 2800.0}]
     a, b = fleet(120)
-    b = [scan._replace(plots=order.take(scan.plots, scan.plots.range < 2800)) for scan in b]
+    b = [scan._replace(plots=late_plots.take(scan.plots, scan.plots.range < 2800)) for scan in b]
     found = follow(merged(a, b), Tracker(parameters(*own)))
     assert held(found[-1][1]) == [1, 2, 3, 4]
 

@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from marine_tracker.arpa.acquisition import MAX_CLICKS
 from marine_tracker.estimators import ESTIMATORS
 from marine_tracker.nodes import topics
-from marine_tracker.nodes.arpa_desk import REFUSED
+from marine_tracker.nodes.operator import REFUSED
 
 SHIPS = [(3, 4, 180, 10), (2, 90, 0, 10), (2, 180, 180, 5)]
 

@@ -7,7 +7,7 @@ pytest.importorskip('rclpy')
 from visualization_msgs.msg import Marker, MarkerArray
 
 from marine_tracker.nodes import hull_columns, topics
-from marine_tracker.nodes.readable import COLUMNS
+from marine_tracker.nodes.targets_message import COLUMNS
 from marine_tracker.parameters import TrackerParameters, from_mapping
 from marine_tracker.simulation import radar, scenario
 

@@ -16,7 +16,7 @@ from marine_tracker.arpa.alerts import NORMAL
 from marine_tracker.arpa.motion import MEMORY_NAMES
 from marine_tracker.geometry import NAUTICAL_MILE, unit_vector
 from marine_tracker.nodes import convert, topics
-from marine_tracker.nodes.readable import MEASURED
+from marine_tracker.nodes.targets_message import MEASURED
 from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking.lifecycle import CONFIRMED, LOST, TENTATIVE
 from marine_tracker.tracking.tracker import Tracker

@@ -1,0 +1,163 @@
+"""When did the target's present leg begin? Straight-line fits from every likely moment, weighed.
+
+The filter that best says where the next plot will be is not the one that best says course, speed
+and CPA. That one must remember for minutes while a ship holds on, and forget at once what lies
+before a turn. If the last turn's end were known, a straight-line fit to the plots since would be
+all there is to know. It is not, so several such fits run side by side, begun at different times,
+beside one filter for a target in manoeuvre; their weights are the probabilities that the plots
+give them.
+
+The model: a target holds course and speed for `hold` s on average, then manoeuvres (white
+acceleration) for `manoeuvre` s on average. Within a hypothesis about the last change all is linear
+and Gaussian (Adams and MacKay 2007, "Bayesian online changepoint detection"). To keep their number,
+the two legs are merged that lose least by it (Runnalls, IEEE T-AES 43(3), 2007), and what turns
+into a manoeuvre is merged into that filter (as in Blom and Bar-Shalom's IMM). An IMM alone merges
+straight legs too, and so never settles: its manoeuvre mode's few per cent of the weight stir the
+steady one at every scan.
+
+Arrays are columns as in `estimators.linear_modes`: [14, 1 + LEGS, N], the manoeuvre first.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..gaussian import linear_modes
+from ..types import Array
+
+LEGS = 4
+STRAIGHT = 1e-6             # m^2/s^3, density of acceleration on a straight leg: next to none
+AT_FIRST = 0.8              # probability that a new target is on a straight leg
+LEAST_SHOWN = 0.05          # hypotheses less likely are not part of what is shown
+ONE, OTHER = np.triu_indices(LEGS + 1, 1)
+
+
+class Habits(NamedTuple):
+    """How targets move.
+
+    hold       s, how long a course and speed is held on average
+    manoeuvre  s, how long a manoeuvre lasts on average
+    noise      m^2/s^3, density of the white acceleration of each axis in a manoeuvre
+    """
+
+    hold: float
+    manoeuvre: float
+    noise: float
+
+
+class Legs(NamedTuple):
+    """The hypotheses about N tracks, one row a track.
+
+    rows    [N, 1 + LEGS, 14]  mean and covariance, packed as in `linear_modes`: the manoeuvre's,
+                               then those of the legs
+    weight  [N, 1 + LEGS]      their probabilities
+    begun   [N, LEGS]          s, when the leg began
+    """
+
+    rows: Array
+    weight: Array
+    begun: Array
+
+
+def begin(position, covariance, time, speed_sigma: float) -> Legs:
+    """Hypotheses from one plot each: position [N, 2] m, covariance [N, 2, 2] m^2, time [N] s.
+
+    speed_sigma  m/s, deviation of each component of the velocity before anything is known
+    """
+    count = len(position)
+    rows = np.zeros((count, 1 + LEGS, 14))
+    rows[..., :2] = position[:, None]
+    rows[..., [4, 5, 8]] = linear_modes.packed_noise(covariance).T[:, None]
+    rows[..., [11, 13]] = speed_sigma ** 2
+    weight = np.zeros((count, 1 + LEGS))
+    weight[:, 0], weight[:, 1] = 1 - AT_FIRST, AT_FIRST
+    return Legs(rows, weight, np.tile(time[:, None], LEGS))
+
+
+def update(legs: Legs, time, step, position, covariance, stretch, certainty, habits: Habits
+           ) -> tuple[Legs, Array]:
+    """One plot for each of N tracks at `time` [N] s, `step` [N] s after the last.
+
+    position    [N, 2]     m
+    covariance  [N, 2, 2]  m^2
+    stretch     [N, 2, 2]  by which the deviations of all earlier plots turn out to have been
+                           misjudged: see `plot_noise`
+    certainty   [N]        degrees of freedom of `covariance`: so many plots does it rest on
+    Returns the hypotheses, and the mean and covariance [N, 14] of those likely enough.
+    """
+    columns = linear_modes.columns_of(legs.rows)
+    _stretch(columns, stretch)
+    columns, weight, begun = _change(columns, legs.weight.T, legs.begun.T, time - step,
+                                     np.abs(step), habits)
+    density = np.full(1 + LEGS, STRAIGHT)
+    density[0] = habits.noise
+    columns = linear_modes.move(linear_modes.bank(density, np.zeros(1 + LEGS), ()), columns, step)
+    noise = linear_modes.packed_noise(covariance)
+    _, distance, (_, _, _, determinant) = linear_modes.innovate(columns, position.T, noise)
+    columns, _ = linear_modes.correct(columns, position.T, noise)
+    # Of a covariance that is an estimate itself, Student's law is the evidence; it also lets one
+    # wrong plot pass.
+    score = -0.5 * (np.log(determinant) + (certainty + 2) * np.log1p(distance / certainty))
+    weight = linear_modes.reweigh(weight, score)
+    likely = np.where(weight > LEAST_SHOWN, weight, 0.0)
+    return (Legs(linear_modes.rows_of(columns), np.ascontiguousarray(weight.T),
+                 np.ascontiguousarray(begun.T)),
+            linear_modes.combine(columns, likely / likely.sum(0)).T)
+
+
+def _change(columns, weight, begun, now, step, habits: Habits):
+    """What may have changed during the steps [N] s from the times `now` [N] s on.
+
+    Every leg may have turned into a manoeuvre, and the manoeuvre into a new leg.
+    """
+    turn, settle = -np.expm1(-step / habits.hold), -np.expm1(-step / habits.manoeuvre)
+    into = np.concatenate([(1 - settle) * weight[:1], turn * weight[1:]])
+    total = into.sum(0)
+    manoeuvre = linear_modes.combine(columns, into / total)
+    legs = np.concatenate([columns[:, 1:], columns[:, :1]], 1)
+    chance = np.concatenate([(1 - turn) * weight[1:], settle * weight[:1]])
+    legs, chance, begun = _merge(legs, chance, np.concatenate([begun, now[None]]))
+    return (np.concatenate([manoeuvre[:, None], legs], 1), np.concatenate([total[None], chance]),
+            begun)
+
+
+def _merge(legs, weight, begun):
+    """LEGS legs of LEGS + 1, the last one new: the two are merged whose merger costs least.
+
+    Only velocities count: where the target is all legs agree.
+    """
+    mean, spread = legs[2:4], legs[11:14]
+    size = weight * np.log(spread[0] * spread[2] - spread[1] * spread[1])
+    both = weight[ONE] + weight[OTHER] + 1e-300
+    share = weight[ONE] / both
+    rest = 1 - share
+    (de, dn), product = mean[:, ONE] - mean[:, OTHER], share * rest
+    ee, en, nn = share * spread[:, ONE] + rest * spread[:, OTHER]
+    ee, en, nn = ee + product * de * de, en + product * de * dn, nn + product * dn * dn
+    cost = both * np.log(ee * nn - en * en) - size[ONE] - size[OTHER]
+
+    track = np.arange(weight.shape[1])
+    pair = cost.argmin(0)
+    one, other = ONE[pair], OTHER[pair]
+    share = share[pair, track]
+    shares = np.stack([share, 1 - share])
+    legs[:, one, track] = linear_modes.combine(
+        np.stack([legs[:, one, track], legs[:, other, track]], 1), shares)
+    begun[one, track] = share * begun[one, track] + (1 - share) * begun[other, track]
+    weight[one, track] = both[pair, track]
+    for values in (legs, weight, begun):            # the last one takes the place that is free
+        values[..., other, track] = values[..., LEGS, track]
+    return legs[:, :LEGS], weight[:LEGS], begun[:LEGS]
+
+
+def _stretch(columns, stretch):
+    """Covariances of columns [14, J, N] as they are for positions misjudged by [N, 2, 2], in place.
+
+    Straight-line fits scale with the errors of their plots, position and velocity alike.
+    """
+    (a, b), (c, d) = stretch.transpose(1, 2, 0)
+    for ee, en, ne, nn in ((4, 5, 5, 8), (6, 7, 9, 10), (11, 12, 12, 13)):
+        pee, pen, pne, pnn = columns[ee], columns[en], columns[ne], columns[nn]
+        fe, fn, ge, gn = a * pee + b * pne, a * pen + b * pnn, c * pee + d * pne, c * pen + d * pnn
+        columns[ee], columns[en] = fe * a + fn * b, fe * c + fn * d
+        columns[ne], columns[nn] = ge * a + gn * b, ge * c + gn * d

@@ -1,0 +1,86 @@
+"""Imazu's 22 encounters through the whole service: acquired, warned of, and measured in time.
+
+Every target is on collision course, so the truth is CPA 0 and TCPA the time left. Judged are the
+CPA and TCPA shown three minutes after a target was acquired, and when its danger alarm was raised:
+by then more than six minutes must be left.
+"""
+
+import os
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arpa.alarms import DANGER
+from ..arpa.alerts import ACTIVE_UNACKNOWLEDGED
+from ..evaluation import parallel
+from ..evaluation.result import Progress, silent
+from ..geometry import NAUTICAL_MILE
+from ..simulation import radar, scenario
+from ..simulation.standard_scenarios import IMAZU
+from ..types import Array
+from .ring_of_ships import owners_of
+from .target_data import Service, heading
+
+JUDGED_AFTER = 180.0            # s after acquisition
+WARNED_BEFORE = 360.0           # s of TCPA
+
+
+class Encounter(NamedTuple):
+    """What T targets came to in R runs with E estimators.
+
+    acquired  [E, R, T]  s, when it became a target; infinite for never
+    warned    [E, R, T]  s of true TCPA left when its alarm was raised; -inf for never in time
+    cpa       [E, R, T]  NM, error 3 minutes after; infinite where it was no target then
+    tcpa      [E, R, T]  min, likewise
+    """
+
+    number: int
+    acquired: Array
+    warned: Array
+    cpa: Array
+    tcpa: Array
+
+
+def run(estimators: Sequence[str], runs: int, seed: int, progress: Progress = silent,
+        processes: int | None = None) -> list[Encounter]:
+    """Every encounter `runs` times."""
+    numbers = range(1, len(IMAZU) + 1)
+    work = [parallel.Job(follow, (number, estimators, int(of_run)))
+            for number in numbers
+            for of_run in np.random.SeedSequence([seed, 2, number]).generate_state(runs)]
+    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    return [Encounter(number, *np.stack(found[first:first + runs], 2))
+            for number, first in zip(numbers, range(0, len(found), runs))]
+
+
+def follow(number: int, estimators: Sequence[str], seed: int) -> Array:
+    """[4, E, T]: the arrays of Encounter, of one run."""
+    loaded = scenario.load(f'imazu_{number:02d}')
+    services = [Service(loaded, name) for name in estimators]
+    memories: list[Any] = [(service.tracker.start(), service.arpa.start()) for service in services]
+    shape = (len(services), len(loaded.fleet.names))
+    acquired, cpa, tcpa = np.full((3, *shape), np.inf)
+    warned = np.full(shape, -np.inf)
+    for scan, _ in radar.simulate(loaded, seed):
+        left = loaded.duration - scan.end
+        if left < WARNED_BEFORE:
+            break
+        place = loaded.truth_at(scan.end).position - loaded.own_ship_at(scan.end).position
+        for e, service in enumerate(services):
+            tracked, reckoned = memories[e]
+            tracked, report = service.tracker.step(tracked, scan)
+            reckoned, picture = service.arpa.step(reckoned, scan, report, heading(scan.own_ship))
+            memories[e] = tracked, reckoned
+            row, found = owners_of(picture.motion.position - picture.own.position, place)
+            new = found & np.isinf(acquired[e])
+            acquired[e, new] = picture.targets.since[row[new]]
+            alarms = picture.alerts.id[(picture.alerts.kind == DANGER)
+                                       & (picture.alerts.state == ACTIVE_UNACKNOWLEDGED)]
+            now = found & np.isinf(warned[e])
+            now[now] = np.isin(picture.targets.id[row[now]], alarms)
+            warned[e, now] = left
+            now = found & (scan.end >= acquired[e] + JUDGED_AFTER) & np.isinf(cpa[e])
+            cpa[e, now] = picture.approach.cpa[row[now]] / NAUTICAL_MILE
+            tcpa[e, now] = np.abs(picture.approach.tcpa[row[now]] - left) / 60
+    return np.stack([acquired, warned, cpa, tcpa])

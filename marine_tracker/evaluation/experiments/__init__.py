@@ -1,1 +1,0 @@
-"""Experiments, one module each, and what they share; registry.py names them."""

@@ -1,0 +1,53 @@
+"""What an experiment comes to: figures, claims and pictures."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .report import Claim, Figure
+
+BORNE_OUT, NOT_BORNE_OUT, IN_PART = 'borne out', 'not borne out', 'borne out in part'
+
+Progress = Callable[[int, int], None]           # parts done, and of how many
+
+
+class Picture(NamedTuple):
+    """name of its file, size in inches, and what paints it on a figure of matplotlib."""
+
+    name: str
+    size: tuple[float, float]
+    paint: Callable[[Any], None]
+
+
+class Result(NamedTuple):
+    """figures; claims, published ones and our own, with verdicts; pictures not yet drawn."""
+
+    figures: list[Figure]
+    claims: Sequence[Claim] = ()
+    pictures: Sequence[Picture] = ()
+
+
+def verdict(holds, otherwise: str = NOT_BORNE_OUT) -> str:
+    """In words."""
+    return BORNE_OUT if holds else otherwise
+
+
+def silent(done: int, whole: int) -> None:
+    """Progress that nobody sees."""
+
+
+def draw(folder, pictures: Sequence[Picture]) -> list[Path]:
+    """Draw all as PNG into the folder, which is made; the files. ValueError without matplotlib."""
+    try:
+        from matplotlib.figure import Figure as Canvas
+    except ModuleNotFoundError as error:
+        raise ValueError('drawing needs matplotlib: pip install "marine_tracker[plot]"') from error
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    drawn = []
+    for picture in pictures:
+        canvas = Canvas(figsize=picture.size, layout='constrained')
+        picture.paint(canvas)
+        drawn.append(folder / f'{picture.name}.png')
+        canvas.savefig(drawn[-1], dpi=110)
+    return drawn

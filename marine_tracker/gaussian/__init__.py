@@ -1,0 +1,1 @@
+"""Linear algebra of Kalman filters, many at once."""

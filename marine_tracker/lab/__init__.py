@@ -1,0 +1,1 @@
+"""Experiments: what the papers claim and what of it holds, and comparisons."""

@@ -1,0 +1,1 @@
+"""Paper 002: adaptive alpha-beta filters for HF radar."""

@@ -1,0 +1,1 @@
+"""Paper 004: extended targets by Gaussian processes."""

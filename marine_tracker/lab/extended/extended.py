@@ -1,0 +1,63 @@
+"""Extended targets: outlines by Gaussian processes with noisy input, beside a random matrix.
+
+The scenario of paper 004: outlines of three shapes, about 3 to 6 m, seen for 100 s as points with a
+deviation of 1 m; 0.8 a frame, which is next to nothing, and 0.8 a metre of outline. Then a ship of
+200 m whose near side is seen, handed over from a random matrix. 100 runs take some two minutes on
+two processors.
+"""
+
+import os
+
+import numpy as np
+
+from ...evaluation import parallel
+from ...evaluation.parallel import Job
+from ...evaluation.result import Progress, Result, silent
+from ...extent.input_noise import VARIANTS
+from . import figures, handover
+from .claims import claims
+from .figures import CASES, OTHER_VARIANTS, OTHERWISE, SPARSE
+from .handover import ASPECTS
+from .pictures import pictures
+from .trials import RANDOM_MATRIX, gaussian_process_trial, random_matrix_trial
+
+HELP = 'outlines of extended targets by Gaussian processes and by a random matrix'
+RUNS = 100
+OPTIONS = {
+    'processes': {'type': int, 'metavar': 'N', 'default': os.cpu_count(),
+                  'help': 'how many at once (default %(default)s); no figure depends on it'},
+}
+
+
+def run(runs: int, seed: int, progress: Progress = silent, processes: int | None = None) -> Result:
+    """All variants in all cases, the claims of the paper, and the pictures."""
+    if processes is not None and processes < 1:
+        raise ValueError(f'--processes is {processes}; it must be at least 1')
+    paper, ship = plan(runs, seed)
+    found = dict(zip([*paper, *ship], parallel.run([*paper.values(), *ship.values()],
+                                               processes or os.cpu_count() or 1, progress)))
+    trials = {of: found[of] for of in paper}
+    return Result([*figures.figures(trials), figures.jacobian(),
+                   *handover.figures({aspect: found[aspect] for aspect in ship}),
+                   *figures.costs()], claims(trials), pictures(trials))
+
+
+def plan(runs: int, seed: int):
+    """Jobs of the paper's cases by case and filter, and of the ship by aspect.
+
+    Every filter of a case sees the same points.
+    """
+    seeds = iter(np.random.SeedSequence(seed).generate_state(len(CASES) + len(ASPECTS)).tolist())
+    paper: dict[tuple[str, str], Job] = {}
+    for case, what in CASES.items():
+        its = next(seeds)
+        for variant in VARIANTS:
+            paper[case, variant] = Job(gaussian_process_trial, (what, variant, runs, its))
+        paper[case, RANDOM_MATRIX] = Job(random_matrix_trial, (what, runs, its))
+        if case == SPARSE:
+            for name, changes in OTHERWISE.items():
+                for variant in OTHER_VARIANTS:
+                    paper[f'{case}, {name}', variant] = Job(
+                        gaussian_process_trial, (what, variant, runs, its, *changes))
+    return paper, {aspect: Job(handover.trial, (aspect, runs, next(seeds)))
+                   for aspect in ASPECTS}

@@ -1,0 +1,1 @@
+"""Monte Carlo trials of the estimator `gwnn`."""

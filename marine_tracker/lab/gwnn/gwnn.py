@@ -1,0 +1,26 @@
+"""All about the wavelet network: its own paper's figures, and how the estimator compares.
+
+The first part is `gwnn_paper`: Figs 1 to 5 and eq 20-23 of paper 000, of at most 40 seeds. The
+second is `gwnn_monte_carlo`: the estimator `gwnn` beside CS-Kalman, CV, IMMs and plain tanh units
+on ships and small craft; 300 runs of both take about three minutes on two processors.
+"""
+
+from pathlib import Path
+
+from ...evaluation.result import Progress, Result, silent
+from ..gwnn_paper import gwnn_paper
+from . import monte_carlo
+
+HELP = "both below: the paper's figures, then the comparison"
+RUNS = monte_carlo.RUNS
+OPTIONS = monte_carlo.OPTIONS
+
+
+def run(runs: int, seed: int, progress: Progress = silent, data: Path | None = None,
+        processes: int | None = None) -> Result:
+    """Figures, claims and pictures of both parts."""
+    parts = (gwnn_paper.run(min(runs, gwnn_paper.RUNS), seed, progress),
+             monte_carlo.run(runs, seed, progress, data, processes))
+    return Result([figure for part in parts for figure in part.figures],
+                  [claim for part in parts for claim in part.claims],
+                  [picture for part in parts for picture in part.pictures])

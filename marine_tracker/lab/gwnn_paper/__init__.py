@@ -1,0 +1,1 @@
+"""Paper 000: the wavelet network in its own form."""

@@ -1,0 +1,1 @@
+"""Ships and land as a high-resolution radar sees them."""

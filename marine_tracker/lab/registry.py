@@ -1,0 +1,23 @@
+"""Experiments by name: each module has HELP, RUNS and run(runs, seed, progress) -> Result.
+
+It may have OPTIONS, {name: how argparse is to read --name}: its `run` takes them as keywords.
+"""
+
+from types import ModuleType
+
+from . import marine_table
+from .alpha_beta import alpha_beta
+from .compare import compare
+from .extended import extended
+from .gwnn import gwnn, monte_carlo
+from .gwnn_paper import gwnn_paper
+from .hulls import hulls
+from .rough_nn import rough_nn
+from .two_radars import two_radars
+from .wavelet import wavelet
+
+EXPERIMENTS: dict[str, ModuleType] = {
+    'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': monte_carlo,
+    'marine_table': marine_table, 'rough_nn': rough_nn, 'wavelet': wavelet,
+    'alpha_beta': alpha_beta, 'two_radars': two_radars, 'extended': extended, 'hulls': hulls,
+    'compare': compare}

@@ -1,0 +1,1 @@
+"""Paper 001: two filters joined by a rough neural network."""

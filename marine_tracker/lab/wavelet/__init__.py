@@ -1,0 +1,1 @@
+"""Paper 003: wavelets and the CS-Kalman filter."""

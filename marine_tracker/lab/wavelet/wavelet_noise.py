@@ -1,0 +1,23 @@
+"""The noise of a series found in its finest wavelet details, while it runs."""
+
+import numpy as np
+import pywt
+from numpy.lib.stride_tricks import sliding_window_view
+
+from ...types import Array
+
+NORMAL = 0.6745                 # median of |z| of a normal z of deviation 1
+
+
+def noise_deviation(series, wavelet: str = 'db2') -> Array:
+    """Deviation [...] of the white noise in evenly spaced series [..., K], e.g. ranges in m.
+
+    The finest details of a smooth motion are noise; their median size is not moved by a few wild
+    plots, as a mean of squares is (Donoho and Johnstone 1994). ValueError where K is shorter than
+    the wavelet's filter.
+    """
+    high = np.array(pywt.Wavelet(wavelet).dec_hi)
+    if np.shape(series)[-1] < len(high):
+        raise ValueError(f'a series of {np.shape(series)[-1]}; {wavelet} needs {len(high)}')
+    details = sliding_window_view(series, len(high), -1) @ high[::-1]
+    return np.median(np.abs(details), -1) / NORMAL

@@ -1,0 +1,231 @@
+"""The operator's side of the tracker node: targets, alarms, acquisition, trial manoeuvre.
+
+Commands come as topics and services. What they cannot do is told by the service, or logged and
+counted on /diagnostics, a click in vain as well. They take effect at the next scan. `alarms` is
+published on change: every alert that is not normal, and those that have just become so.
+
+Time is that of the plots' stamps. It stands at the end of the last scan, and goes on by the wall
+once the next one is overdue: what is said in the meantime is stamped so.
+"""
+
+import time
+from collections import deque
+from statistics import median_low
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PointStamped
+from std_msgs.msg import UInt32
+from std_srvs.srv import SetBool, Trigger
+
+from ..arpa import acquisition, alarms, alerts
+from ..arpa.acquisition import Acquisition
+from ..arpa.alerts import NORMAL, Alerts
+from ..arpa.arpa import Arpa, Picture
+from ..arpa.targets import EVENTS, NO_ROOM, NOTHING_THERE, Events
+from ..parameters import ArpaParameters, TrackerParameters
+from ..tracking.tracker import Report
+from ..types import Array, Scan, append, take
+from . import diagnostics, topics
+from .arpa_messages import alarms_message, trial_message
+from .base_node import RunnableNode
+from .diagnostics import Tally, answered, guarded
+
+REFUSED = 'commands refused'
+OVERDUE = 3                     # revolutions without plots: they are missing, not just to come
+
+
+class ArpaDesk:
+    """Of one tracker node. ValueError where the parameters are wrong."""
+
+    def __init__(self, node: RunnableNode, parameters: ArpaParameters, tracker: TrackerParameters,
+                 hardware_id: str, failures: Tally):
+        self._node, self._hardware_id, self.failures = node, hardware_id, failures
+        self.arpa = Arpa(parameters, tracker)
+        self._memory = self.arpa.start()
+        self._trial_since: float | None = None      # s, when the trial manoeuvre was switched on
+        self.refused = Tally((REFUSED,), lambda reason, detail: None)
+        # Of the wall, s: when each was last heard, and between the last plots of each radar.
+        self._heard_heading = self._heard_position = time.monotonic()
+        self._heard_plots = [self._heard_heading] * len(self.arpa.radars)
+        self._spacing = [deque([radar.parameters.scan_period_s], maxlen=9)
+                         for radar in self.arpa.radars]
+        self._scanned = [False] * len(self.arpa.radars)
+        self._heading = np.nan
+        self._end, self._end_ns = 0.0, 0            # s, and stamp, of the last scan's end
+        self.picture: Picture | None = None
+
+        self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched(10))
+        self._to_trial = node.publisher(DiagnosticArray, topics.TRIAL, topics.latched())
+        for kind, topic, callback in (
+                (PointStamped, topics.ACQUIRE, self._on_acquire),
+                (PointStamped, topics.CLICKED_POINT, self._on_acquire),
+                (UInt32, topics.CANCEL, self._on_cancel),
+                (UInt32, topics.ACKNOWLEDGE_TARGET, self._on_acknowledge_target)):
+            node.subscription(kind, topic, callback, topics.reliable())
+        node.create_service(Trigger, topics.CANCEL_ALL, self._on_cancel_all)
+        node.create_service(Trigger, topics.ACKNOWLEDGE, self._on_acknowledge)
+        node.create_service(SetBool, topics.TRIAL_MANOEUVRE, self._on_trial)
+
+    # -- in ------------------------------------------------------------------------------------
+
+    def hear_own_ship(self, placed: bool, heading: float) -> None:
+        """An odometry message came: whether with a position; its heading, rad, nan for none."""
+        wall = time.monotonic()
+        if placed:
+            self._heard_position = wall
+        if np.isfinite(heading):
+            self._heard_heading, self._heading = wall, heading
+
+    def change(self, parameters: ArpaParameters, tracker: TrackerParameters) -> None:
+        """Live parameters were changed; no target is lost by it."""
+        self.arpa = Arpa(parameters, tracker)
+
+    def step(self, scan: Scan, report: Report, fallen, end_ns: int) -> Picture:
+        """One scan, which ends at the stamp end_ns; fallen as for Arpa.step.
+
+        The alarms that changed are published, and the trial manoeuvre while it is on.
+        """
+        wall = time.monotonic()
+        if self._scanned[scan.radar]:
+            self._spacing[scan.radar].append(wall - self._heard_plots[scan.radar])
+        self._heard_plots[scan.radar], self._scanned[scan.radar] = wall, True
+        if scan.end >= self._end or self.picture is None:   # of a slow radar they come later
+            self._end, self._end_ns = scan.end, end_ns
+        self._memory, self.picture = self.arpa.step(
+            self._memory, scan, report, self._heading_now(wall), fallen)
+        self._publish_alarms(self.picture.changed)
+        self._tell_of_clicks(self.picture.events)
+        if self._trial_since is not None:
+            self._to_trial.publish(trial_message(
+                self.arpa, self.picture, scan.end - self._trial_since, end_ns, self._hardware_id))
+        return self.picture
+
+    def watch(self) -> None:
+        """To be called every second: are heading, position and plots still heard?"""
+        wall = time.monotonic()
+        silence = alarms.Silence(wall - self._heard_heading, wall - self._heard_position,
+                                 self._overdue(wall))
+        found, changed = alarms.watch(self._memory.alerts, self.arpa.alarms, silence, self._now())
+        self._memory = self._memory._replace(alerts=found)
+        self._publish_alarms(changed)
+
+    def _heading_now(self, wall: float) -> float:
+        """rad; nan where it was not heard lately."""
+        old = wall - self._heard_heading > self.arpa.parameters.sensor_timeout_s
+        return np.nan if old else self._heading
+
+    def _overdue(self, wall: float) -> tuple[float, ...]:
+        """s without plots of each radar; 0 while the next may still be to come: antennas and
+        replays differ."""
+        return tuple(
+            wall - heard if wall - heard > OVERDUE * median_low(spacing) else 0.0
+            for heard, spacing in zip(self._heard_plots, self._spacing, strict=True))
+
+    def _since_end(self) -> float:
+        """s since the last scan's end, once the next of every radar is overdue."""
+        return min(self._overdue(time.monotonic()))
+
+    def _now(self) -> float:
+        return self._end + self._since_end()
+
+    # -- commands ------------------------------------------------------------------------------
+
+    @guarded
+    def _on_acquire(self, message: PointStamped) -> None:
+        try:
+            acquired = acquisition.acquire(self._memory.acquisition, self._point(message),
+                                           self._end)
+        except ValueError as error:
+            self._refuse(str(error))
+        else:
+            self._memory = self._memory._replace(acquisition=acquired)
+
+    def _point(self, message: PointStamped) -> Array:
+        """Position [2] m in the frame `map`."""
+        frame, point = message.header.frame_id, np.array([message.point.x, message.point.y])
+        if frame in ('', topics.FRAME):
+            return point
+        if frame != topics.OWN_SHIP_FRAME:
+            raise ValueError(f'the point to acquire is in frame {frame!r}; it must be '
+                             f'{topics.FRAME} or {topics.OWN_SHIP_FRAME}')
+        heading = self._heading_now(time.monotonic())
+        if self.picture is None or not np.isfinite(heading):
+            raise ValueError(f'a point in {topics.OWN_SHIP_FRAME} cannot be acquired before '
+                             "plots came, or without own ship's heading")
+        ahead = np.array([np.sin(heading), np.cos(heading)])
+        port = np.array([-ahead[1], ahead[0]])
+        return self.picture.own.position + point[0] * ahead + point[1] * port
+
+    @guarded
+    def _on_cancel(self, message: UInt32) -> None:
+        try:
+            acquired, events = acquisition.cancel(self._memory.acquisition, message.data)
+        except ValueError as error:
+            self._refuse(str(error))
+        else:
+            self._cancelled(acquired, events)
+
+    @answered
+    def _on_cancel_all(self, _: Trigger.Request) -> str:
+        acquired, events = acquisition.cancel_all(self._memory.acquisition)
+        self._cancelled(acquired, events)
+        return f'{len(events.id)} targets cancelled'
+
+    def _cancelled(self, acquired: Acquisition, events: Events) -> None:
+        found, changed = alerts.dismiss(self._memory.alerts, events.id, self._now())
+        self._memory = self._memory._replace(acquisition=acquired, alerts=found)
+        self._publish_alarms(changed)
+
+    @answered
+    def _on_acknowledge(self, _: Trigger.Request) -> str:
+        return f'{self._acknowledge()} alerts acknowledged'
+
+    @guarded
+    def _on_acknowledge_target(self, message: UInt32) -> None:
+        try:
+            self._acknowledge(message.data)
+        except ValueError as error:
+            self._refuse(str(error))
+
+    def _acknowledge(self, number: int | None = None) -> int:
+        found, changed = alarms.acknowledge(self._memory.alerts, self._now(), number=number)
+        self._memory = self._memory._replace(alerts=found)
+        self._publish_alarms(changed)
+        return len(changed.kind)
+
+    @answered
+    def _on_trial(self, request: SetBool.Request) -> str:
+        if request.data:
+            self._trial_since = self._end
+            return f'trial manoeuvre on; see the topic {topics.TRIAL}'
+        self._trial_since = None
+        self._to_trial.publish(diagnostics.array(self._stamp(), []))
+        return 'trial manoeuvre off'
+
+    def _tell_of_clicks(self, events: Events) -> None:
+        for kind, position in zip(events.kind.tolist(), events.position.tolist()):
+            if kind in (NOTHING_THERE, NO_ROOM):
+                self._refuse(f'acquire at east {position[0]:.0f} m, north {position[1]:.0f} m: '
+                             f'{EVENTS[kind]}')
+
+    def _refuse(self, reason: str) -> None:
+        self.refused.add(REFUSED, time.monotonic())
+        self._node.get_logger().warning(f'command refused: {reason}')
+
+    # -- out -----------------------------------------------------------------------------------
+
+    def _publish_alarms(self, changed: Alerts) -> None:
+        if len(changed.kind):
+            present = self._memory.alerts
+            shown = append(take(present, present.state != NORMAL),
+                           take(changed, changed.state == NORMAL))
+            self._to_alarms.publish(alarms_message(
+                shown, self.arpa.zones, [radar.name for radar in self.arpa.radars], self._now(),
+                self._stamp(), self._hardware_id))
+
+    def _stamp(self) -> int:
+        """ns of now; of the node's clock before the first scan."""
+        if not self._end_ns:
+            return self._node.get_clock().now().nanoseconds
+        return self._end_ns + round(self._since_end() * 1e9)

@@ -1,0 +1,1 @@
+"""How the shipped weights and settings are found, from simulated tracks."""

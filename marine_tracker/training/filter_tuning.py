@@ -1,0 +1,296 @@
+"""The best settings of a filter that a search finds: rivals of `gwnn` as strong as can be.
+
+Tracks are those that the weights of `gwnn` are trained on, drawn with a seed apart, but of the
+first sort of radars only (for ships: none at close range): the comparison has no others, and a
+filter tuned for them too were a weaker rival.
+Every candidate sees the same plots (common random numbers), one scan ahead, with the gate of the
+comparison. What counts is the geometric mean, over kinds of motion and phases, of the RMS
+position error in the plots' true deviations: each kind and phase counts alike.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import optimize
+
+from ..estimators import cs_kalman, imm
+from ..estimators.contract import Estimator
+from ..evaluation.report import Figure
+from ..types import take
+from . import gwnn_samples, ship_tracks, track_trials, training_tracks
+
+# Weight of a cell where ships keep course and speed, by what the filter is tuned for.
+STRAIGHT_WEIGHT = {'training': 1.0, 'manoeuvre': 0.0}
+PERIOD = 60 / 22                # s, to which the settings refer
+LEAST_TRACKS = 10 * len(ship_tracks.KINDS)          # every vessel class has as many kinds
+DRAWN = 2                       # times as many tracks are drawn: close ones are left out
+GLOBAL_SHARE = 2 / 3            # of the evaluations, all over the bounds; the rest go downhill
+POPULATION = 4                  # times the number of settings searched, rounded up to 2^n
+SIMPLEX = 0.12                  # of the bounds' width, first step of the way down; then smaller
+
+# Least and most of what is searched, by its logarithm. Noises are deviations, m/s^2, of the
+# acceleration over a scan; a mode is left with the chance stated in a scan.
+BOUNDS = {
+    'quiet_noise': (1e-4, 0.1),
+    'loud_noise': (0.03, 5.0),
+    'noise': (1e-3, 5.0),           # of the only mode
+    'turn_noise': (1e-4, 1.0),
+    'turn_rate': (0.003, 0.45),     # rad/s
+    'leave_quiet': (1e-4, 0.3),
+    'leave_loud': (0.01, 0.45),
+    'leave_turn': (0.01, 0.45),
+    'max_acceleration': (0.05, 5.0),    # m/s^2, of CS-Kalman
+    'frequency': (1 / 300, 20.0),       # 1/s, likewise
+}
+
+Settings = imm.Modes | cs_kalman.Manoeuvre
+Progress = Callable[[int, int], None]
+
+
+class Family(NamedTuple):
+    """Filters of one form: what is searched, names of BOUNDS, and the settings of such values."""
+
+    searched: tuple[str, ...]
+    settings: Callable[..., Settings]
+
+    def at(self, point) -> Settings:
+        """The settings at a point of the search, each coordinate 0 to 1 over its bounds."""
+        low, high = np.log(np.array([BOUNDS[name] for name in self.searched])).T
+        return self.settings(*map(float, np.exp(low + np.clip(point, 0, 1) * (high - low))))
+
+
+def _four_modes(quiet, loud, turn, rate, leave_quiet, leave_loud, leave_turn) -> imm.Modes:
+    return _modes((quiet, loud, turn, turn), (0.0, 0.0, rate, -rate),
+                  (leave_quiet, leave_loud, leave_turn, leave_turn))
+
+
+def _modes(acceleration, turn_rate, leave) -> imm.Modes:
+    return imm.Modes(tuple(PERIOD * one ** 2 for one in acceleration), turn_rate,
+                     tuple(1 - one for one in leave), PERIOD)
+
+
+FAMILIES = {
+    'imm': Family(('quiet_noise', 'loud_noise', 'turn_noise', 'turn_rate', 'leave_quiet',
+                   'leave_loud', 'leave_turn'), _four_modes),
+    'cv_cv': Family(('quiet_noise', 'loud_noise', 'leave_quiet', 'leave_loud'),
+                    lambda quiet, loud, *leave: _modes((quiet, loud), (0.0, 0.0), leave)),
+    'cv': Family(('noise',), lambda noise: _modes((noise,), (0.0,), (0.0,))),
+    'cs': Family(('max_acceleration', 'frequency'), cs_kalman.Manoeuvre),
+}
+IMM = FAMILIES['imm']
+
+
+def filter_of(settings: Settings) -> Estimator:
+    """The filter with these settings."""
+    if isinstance(settings, cs_kalman.Manoeuvre):
+        return cs_kalman.cs_kalman(settings, training_tracks.SPEED)
+    return imm.imm(settings, training_tracks.SPEED)
+
+
+class Course(NamedTuple):
+    """Tracks to judge on, with which scans count for which cell.
+
+    trial; cells: names; counts [C, B, K]: a cell's scans; kind [B] number of each track's kind;
+    straight [C].
+    """
+
+    trial: track_trials.Trial
+    cells: tuple[str, ...]
+    counts: NDArray[np.bool_]
+    kind: NDArray[np.int64]
+    straight: NDArray[np.bool_]
+
+
+class Found(NamedTuple):
+    """What a search came to: the settings, their loss, and the best loss after each evaluation."""
+
+    settings: Settings
+    loss: float
+    best: list[float]
+
+
+def course(tracks: int, rng, vessel_class: str = 'ship') -> Course:
+    """About so many tracks, as many of each kind."""
+    waters = training_tracks.WATERS[vessel_class]
+    names = list(waters.kinds)
+    each = tracks // len(names)
+    drawn = training_tracks.draw(waters._replace(radars=waters.radars[:1]),
+                                 np.repeat(np.arange(len(names)), DRAWN * each),
+                                 gwnn_samples.SCANS, rng)
+    keep = np.concatenate([np.flatnonzero(drawn.kind == i)[:each] for i in range(len(names))])
+    on = track_trials.trial(take(drawn.ships, keep), take(drawn.radar, keep), rng)
+    kind, cells, counts, straight = drawn.kind[keep], [], [], []
+    for i, name in enumerate(names):
+        for phase, within in (('straight', ~on.phase), ('manoeuvre', on.phase)):
+            chosen = on.counts & within & (kind == i)[:, None]
+            if chosen.any():
+                cells.append(f'{name}, {phase}')
+                counts.append(chosen)
+                straight.append(phase == 'straight')
+    return Course(on, tuple(cells), np.stack(counts), kind, np.array(straight))
+
+
+def errors(settings: Settings, on: Course):
+    """Squared errors [C, B] of a filter summed over the scans of each cell, in true deviations."""
+    found = track_trials.run(filter_of(settings), on.trial, gated=True).position
+    found = found / np.square(on.trial.radar.truly)[:, None]
+    return np.einsum('bk,cbk->cb', found, on.counts)
+
+
+def loss(error, on: Course, target: str) -> float:
+    """Mean log RMS, over the cells that count for the target, of errors [C, B]."""
+    return float(_weights(on, target) @ _levels(error.sum(1), on.counts.sum((1, 2))))
+
+
+def _levels(square, count):
+    """Log RMS an axis of sums of squares."""
+    return 0.5 * np.log(square / count / 2)
+
+
+def _weights(on: Course, target: str):
+    weight = np.where(on.straight, STRAIGHT_WEIGHT[target], 1.0)
+    return weight / weight.sum()
+
+
+def cell_ratios(error, against, on: Course) -> dict[str, float]:
+    """RMS of errors [C, B] over that of others, by cell."""
+    return dict(zip(on.cells, np.sqrt(error.sum(1) / against.sum(1)).tolist()))
+
+
+def compare(error, against, on: Course, target: str, rng, resamples=1000) -> track_trials.Ratio:
+    """Geometric mean of the cells' ratios; its interval by tracks resampled within each kind."""
+    weight = _weights(on, target)
+    pick = np.concatenate([
+        rows[rng.integers(0, len(rows), (resamples, len(rows)))]
+        for rows in (np.flatnonzero(on.kind == i) for i in np.unique(on.kind))], 1)
+    times = np.stack([np.bincount(one, minlength=len(on.kind)) for one in pick])
+    # A resample may leave a cell of few tracks without any scan: it then has no say.
+    one, other = error @ times.T, against @ times.T
+    known = (one > 0) & (other > 0)
+    level = 0.5 * np.log(np.where(known, one, 1.0) / np.where(known, other, 1.0))
+    low, high = np.exp(np.percentile(weight @ level, [2.5, 97.5]))
+    value = np.exp(weight @ (0.5 * np.log(error.sum(1) / against.sum(1))))
+    return track_trials.Ratio(float(value), float(low), float(high))
+
+
+def search(judge: Callable[[Settings], float], evaluations: int, seed: int, start=None,
+           progress: Progress = lambda done, whole: None, family: Family = IMM) -> Found:
+    """The settings of the least loss found with so many evaluations; repeatable.
+
+    Two thirds of them by differential evolution over the bounds (there are several valleys), the
+    others downhill from its best by bounded Nelder-Mead, again with a smaller simplex when that
+    comes to rest.
+
+    judge  gives the loss
+    start  [.] within 0 to 1, where the search begins; the middle of the bounds by default
+    family of the filters searched
+    Raises FloatingPointError where a loss is not a finite number.
+    """
+    count = len(family.searched)
+    tried: list[tuple[float, tuple[float, ...]]] = []
+    best: list[float] = []
+
+    def at(point):
+        if len(tried) == limit:
+            raise _SpentError
+        settings = family.at(point)
+        value = judge(settings)
+        if not np.isfinite(value):
+            raise FloatingPointError(f'the error of {settings} is {value}')
+        tried.append((value, tuple(point)))
+        best.append(min(tried)[0])
+        progress(len(tried), evaluations)
+        return value
+
+    limit = max(1, int(GLOBAL_SHARE * evaluations))
+    bounds = [(0.0, 1.0)] * count
+    try:
+        optimize.differential_evolution(
+            at, bounds, x0=np.full(count, 0.5) if start is None else start, init='sobol',
+            popsize=POPULATION, maxiter=evaluations, tol=0, polish=False,
+            seed=np.random.default_rng([seed, 11]))
+    except _SpentError:
+        pass
+    limit = evaluations
+    try:
+        size = SIMPLEX
+        while True:
+            origin = np.array(min(tried)[1])
+            corners = np.tile(origin, (count + 1, 1))
+            corners[1:] += np.diag(np.where(origin < 0.5, size, -size))     # into the bounds
+            optimize.minimize(at, origin, method='Nelder-Mead', bounds=bounds,
+                              options={'initial_simplex': corners, 'adaptive': True,
+                                       'xatol': size / 20, 'fatol': 1e-5})
+            size /= 2
+    except _SpentError:
+        pass
+    least, point = min(tried)
+    return Found(family.at(point), least, best)
+
+
+class _SpentError(Exception):
+    """No evaluations are left."""
+
+
+def tune(target: str, tracks: int, evaluations: int, seed: int,
+         progress: Progress = lambda done, whole: None, vessel_class: str = 'ship',
+         family: Family = IMM) -> tuple[Found, Course]:
+    """The settings found for a target of STRAIGHT_WEIGHT, and the tracks they were found on."""
+    on = course(tracks, _tracks_rng(seed, 0), vessel_class)
+    return search(lambda settings: loss(errors(settings, on), on, target), evaluations, seed,
+                  progress=progress, family=family), on
+
+
+def fresh(tracks: int, seed: int, vessel_class: str = 'ship') -> Course:
+    """Tracks that `tune` with this seed does not see."""
+    return course(tracks, _tracks_rng(seed, 1), vessel_class)
+
+
+def _tracks_rng(seed: int, part: int):
+    """Apart from every seed of a training and of the comparison."""
+    return np.random.default_rng([seed, 11, 11, part])
+
+
+class Verdict(NamedTuple):
+    """The figures of settings beside others'; ratio: to one of them, on fresh tracks."""
+
+    figures: list[Figure]
+    ratio: track_trials.Ratio
+
+
+def judge(settings: Settings, shipped: dict[str, Settings], rival: str, target: str,
+          seen: Course, unseen: Course, seed: int) -> Verdict:
+    """How settings do beside the shipped ones, on tracks they were found on and on others.
+
+    rival  the one of `shipped` that is for the same target
+    """
+    rng = np.random.default_rng([seed, 11, 12])
+    figures = []
+    for place, on in (('tracks of the search', seen), ('fresh tracks', unseen)):
+        found = errors(settings, on)
+        others = {name: errors(one, on) for name, one in shipped.items()}
+        for name, error in [('found', found), *others.items()]:
+            figures.append(Figure(f'{place}: {name}', float(np.exp(loss(error, on, target))),
+                                  'sigma'))
+        for name, error in others.items():
+            ratio = compare(found, error, on, target, rng)
+            figures.append(Figure(f'{place}: found over {name}', ratio.value, '', None, None,
+                                  f'[{ratio.low:.4f} {ratio.high:.4f}]'))
+            if name == rival:
+                to_rival, cells = ratio, cell_ratios(found, error, on)
+    figures += [Figure(f'fresh tracks, {cell}: found over {rival}', value)
+                for cell, value in cells.items()]
+    return Verdict(figures, to_rival)
+
+
+def as_text(settings: Settings) -> str:
+    """The settings as Python, to paste."""
+    def value_text(value):
+        if isinstance(value, tuple):
+            return f'({", ".join(f"{one:.5g}" for one in value)}{"," * (len(value) == 1)})'
+        return '60 / 22' if value == PERIOD else f'{value:.5g}'
+    values = ', '.join(f'{name}={value_text(value)}'
+                       for name, value in settings._asdict().items())
+    return f'{type(settings).__name__}({values})'

@@ -1,0 +1,125 @@
+"""What the network of `gwnn` learns from: what it sees of simulated tracks, and what is true.
+
+Samples are taken from the same functions that the estimator runs (`gwnn.advance`,
+`inputs.inputs`, `gwnn.look`), so that training and use cannot drift apart. A sample is what
+the network saw after a plot and where the target was at that moment or at a later scan.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..estimators.gwnn import bank as filters
+from ..estimators.gwnn import gwnn, inputs
+from ..gaussian import linear_modes
+from ..types import Array, put, take
+from . import ship_tracks, training_tracks
+
+SCANS = 110
+CHUNK = 588                     # tracks made at once, as many of each kind
+EXPECTED, KNOWN = 0.22, 0.10    # part of the rows sampled a scan: before the plot, after it
+CLIP = 30.0                     # sigma: of the truth from the base
+
+
+class Samples(NamedTuple):
+    """n samples, float32.
+
+    seen      [n, I]      the network's inputs
+    apart     [n, 13, 4]  experts from the base at the time asked for
+    base      [n, 4]      log weights of the base's modes at that time
+    scans     [n]         from the last plot to that time
+    truth     [n, 4]      from the base
+    spread    [n, 4]      log variances of the base
+    area      [n]         m^2, mean variance of the plots' coordinates as stated
+    cell      [n]         kind, phase, after or before a plot, sort of radar: `Cell` in one number
+    truly     [n]         true deviation of the plots over the stated one
+    """
+
+    seen: Array
+    apart: Array
+    base: Array
+    scans: Array
+    truth: Array
+    spread: Array
+    area: Array
+    cell: Array
+    truly: Array
+
+
+class Cell(NamedTuple):
+    """What a sample is of, [n] each; its number in `Samples.cell` counts all combinations.
+
+    kind of motion; phase 1 in a manoeuvre; after 1 where the plot was known; sort of radar.
+    """
+
+    kind: NDArray[np.int64]
+    phase: NDArray[np.int64]
+    after: NDArray[np.int64]
+    sort: NDArray[np.int64]
+
+
+def cell_number(kind, phase, after, sort):
+    """Numbers [n] of cells."""
+    return ((kind * 2 + phase) * 2 + after) * 2 + sort
+
+
+def cell_of(number) -> Cell:
+    """The cells with these numbers [n]."""
+    return Cell(number // 8, number // 4 % 2, number // 2 % 2, number % 2)
+
+
+def cell_count(kinds: int) -> int:
+    """How many cells there are of so many kinds of motion."""
+    return 8 * kinds
+
+
+def make(bank: filters.Filters, waters: training_tracks.Waters, seed: int, chunk: int) -> Samples:
+    """The samples of one chunk of tracks: the same for the same seed and number."""
+    rng = np.random.default_rng([seed, chunk])
+    traffic = training_tracks.draw(waters, np.arange(CHUNK) % len(waters.names), SCANS, rng)
+    ships, radar = traffic.ships, traffic.radar
+    plots, seen = ship_tracks.observe(ships, radar, rng, traffic.hull)
+    phase = ship_tracks.phase(ships.manoeuvre)
+
+    state = filters.begin(bank, plots[0], training_tracks.SPEED)
+    memory = inputs.begin(plots[0])
+    parts = []
+    for k in range(1, SCANS):
+        warm = np.flatnonzero(memory.plots >= gwnn.WARM)
+        for after, share in ((0, EXPECTED), (1, KNOWN)):
+            rows = warm[rng.random(len(warm)) < share]
+            if after:
+                rows = rows[state.time[rows] == ships.time[rows, k - 1]]
+            if len(rows):
+                cell = cell_number(traffic.kind[rows], phase[rows, k - after], after,
+                                   traffic.sort[rows])
+                parts.append(_sample(bank, take(state, rows), take(memory, rows),
+                                     take(ships, rows), k - after, take(radar, rows), cell))
+        rows = np.flatnonzero(seen[:, k])
+        new_state, new_memory, _ = gwnn.advance(bank, take(state, rows), take(memory, rows),
+                                                take(plots[k], rows))
+        state, memory = put(state, rows, new_state), put(memory, rows, new_memory)
+    return join(parts)
+
+
+def _sample(bank, state, memory, ships, k, radar, cell) -> Samples:
+    """Samples that ask for scan k."""
+    time, frame = ships.time[:, k], memory.frame
+    ahead = filters.look(bank, state, time - state.time)
+    at = gwnn.look(state, frame, ahead, time)
+    truth = np.concatenate([ships.position[:, k], ships.velocity[:, k]], 1).T
+    off = inputs.to_sigma(frame, truth - ahead.mean)
+    columns = filters.base(bank, state, time)
+    _, covariance = linear_modes.unpack(columns.T)
+    spread = inputs.variances(frame, covariance)
+    return Samples._make([*(np.ascontiguousarray(array, np.float32) for array in (
+        inputs.inputs(bank, state, memory, radar.period), at.apart.transpose(2, 1, 0),
+        at.log_weight[:4].T, at.scans, np.clip(off, -CLIP, CLIP).T, np.log(spread).T,
+        np.square(frame[:, 2:]).mean(1))),
+        cell.astype(np.int16), radar.truly.astype(np.float32)])
+
+
+def join(parts) -> Samples:
+    """All samples of several parts."""
+    return Samples(*(np.concatenate(columns) for columns in zip(*parts)))

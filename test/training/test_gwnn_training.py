@@ -1,0 +1,79 @@
+"""How the wavelet network is trained, and that training can be stopped and repeated."""
+
+import numpy as np
+import pytest
+
+from marine_tracker.estimators.gwnn import bank, gwnn
+from marine_tracker.training import gwnn_checkpoint, gwnn_samples, gwnn_training, training_tracks
+from marine_tracker.training import gwnn_fusion as fusion
+from marine_tracker.types import take
+
+
+@pytest.fixture(scope='module')
+def samples():
+    return gwnn_samples.make(bank.BANKS['ship'], training_tracks.WATERS['ship'], 900, 0)
+
+
+def test_fusing_is_what_the_estimator_does(samples):
+    """The training's formula on [n, 13, 4] and the estimator's on [4, 13, n]."""
+    batch = take(samples, slice(0, 200))
+    output = np.random.default_rng(7).normal(size=(200, gwnn.OUTPUTS))
+    log_weight = np.full((13, 200), gwnn.OTHERS)
+    log_weight[:4] = batch.base.T
+    at = gwnn.Look(batch.apart.transpose(2, 1, 0), log_weight, batch.scans)
+    found, _ = fusion.fuse(output.astype(np.float32), batch)
+    np.testing.assert_allclose(found, gwnn.fuse(output, at).T, atol=1e-4)
+
+
+def test_gradients_of_fusing_are_those_of_differences(samples):
+    batch = take(samples, slice(0, 5))
+    batch = batch._replace(apart=batch.apart.astype(float))
+    output = np.random.default_rng(8).normal(size=(5, gwnn.OUTPUTS))
+    pull = np.random.default_rng(9).normal(size=(5, 4))
+    out, weight = fusion.fuse(output, batch)
+    back = fusion.fuse_backward(pull, out, weight, batch)
+    for i in range(gwnn.OUTPUTS):
+        push = np.zeros_like(output)
+        push[:, i] = 1e-2
+        slope = ((fusion.fuse(output + push, batch)[0]
+                  - fusion.fuse(output - push, batch)[0]) * pull).sum(1) / 2e-2
+        np.testing.assert_allclose(back[:, i], slope, rtol=0.02, atol=0.01)
+
+
+def test_stopped_and_gone_on_it_ends_where_it_would_have(samples, tmp_path):
+    def trained(stops):
+        training = fusion.begin(samples, 7, 3)
+        for until in stops:
+            training = fusion.train(training, samples, 3, 60, until)
+            gwnn_checkpoint.save(tmp_path / 'part', {'seed': 3}, training)
+            training = gwnn_checkpoint.resume(tmp_path / 'part', {'seed': 3}, fusion.LAYOUT)
+        return training.network
+    for one, other in zip(trained([60])[:5], trained([20, 45, 60])[:5]):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_checkpoints_of_other_trainings_and_damaged_ones_are_refused(samples, tmp_path):
+    file = tmp_path / 'w.npz.part'
+    gwnn_checkpoint.save(file, {'seed': 3}, fusion.begin(samples, 7, 3))
+    with pytest.raises(ValueError, match=r'another training \(.*seed 3, not 4.*remove it'):
+        gwnn_training.run(gwnn_training.plan('ship', 4, chunks=1, steps=10), file)
+    file.write_bytes(file.read_bytes()[:3000])
+    with pytest.raises(ValueError, match='damaged'):
+        gwnn_training.run(gwnn_training.plan('ship', 4, chunks=1, steps=10), file)
+
+
+def test_some_hundred_steps_already_gain(samples):
+    """On the samples it sees, the network's emphasised cells fall below the base's error."""
+    training = fusion.train(fusion.begin(samples, 7, 5), samples, 5, 400, 400)
+    known = training.against[:, 0, 0] > 1e-3
+    ratio = np.sqrt(training.size / training.against[..., 0])[known]
+    assert ratio.mean() < 0.99
+
+
+def test_the_worst_cells_gain_weight():
+    size, against = np.ones((4, 2)), np.ones((4, 2))
+    size[2] = 2.0
+    against[3] = 0.0
+    emphasis = fusion.emphasize(np.zeros((4, 2)), size, np.stack([against, 2 * against], 2),
+                                -1.2)
+    assert (emphasis[2] > emphasis[0]).all() and (emphasis[3] == 0).all()
