@@ -40,7 +40,7 @@ EVERYWHERE, ZONES, NOWHERE = WHERE = ('everywhere', 'zones', 'nowhere')
 MAX_CLICKS = 20                     # that may be pending
 
 
-class Settings(NamedTuple):
+class AcquisitionSettings(NamedTuple):
     """How targets are acquired.
 
     automatic     where tracks are acquired by themselves: everywhere, zones or nowhere
@@ -137,7 +137,7 @@ def how_acquired(state: Acquisition, ids) -> NDArray[np.int8]:
     return np.where(row >= 0, np.append(state.targets.acquired, 0)[row], -1).astype(np.int8)
 
 
-def step(state: Acquisition, settings: Settings, situation: Situation,
+def step(state: Acquisition, settings: AcquisitionSettings, situation: Situation,
          now: float) -> tuple[Acquisition, Events]:
     """One scan; now s. Afterwards the targets are tracks of the situation that live.
 
@@ -175,7 +175,7 @@ def step(state: Acquisition, settings: Settings, situation: Situation,
                    np.zeros(len(lapsed), np.int64), lapsed))
 
 
-def _bar(barred: Barred, settings: Settings, situation: Situation, events: Events,
+def _bar(barred: Barred, settings: AcquisitionSettings, situation: Situation, events: Events,
          now: float) -> Barred:
     """Who stays barred, and those that dropped out of the targets in an exclusion zone."""
     row = row_of(situation.id, barred.id)
@@ -191,7 +191,7 @@ def _bar(barred: Barred, settings: Settings, situation: Situation, events: Event
     return append(stay, Barred(new, np.zeros(len(new), bool), np.full(len(new), now)))
 
 
-def _answer_clicks(clicks: Clicks, settings: Settings, situation: Situation, how, now: float):
+def _answer_clicks(clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how, now: float):
     """Clicks that wait on, rows of the tracks clicked, and positions of clicks that lapse.
 
     A click takes the nearest track that is no target yet; where there are only targets, the

@@ -41,7 +41,7 @@ NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level th
 APART = 1.44                        # overlap of gates (see swap_risk) that ends a swap risk
 
 
-class Settings(NamedTuple):
+class AlarmSettings(NamedTuple):
     """How alarms behave.
 
     danger_after    s, how long a danger must show before it raises
@@ -81,7 +81,7 @@ class Silence(NamedTuple):
     plots: tuple[float, ...]
 
 
-def step(alerts: Alerts, settings: Settings, situation: Situation, acquisition: Acquisition,
+def step(alerts: Alerts, settings: AlarmSettings, situation: Situation, acquisition: Acquisition,
          events: Events, zones: Zones, tracking: Tracking, now: float) -> tuple[Alerts, Alerts]:
     """The alerts after a scan, and those that changed; now s.
 
@@ -108,7 +108,7 @@ def step(alerts: Alerts, settings: Settings, situation: Situation, acquisition: 
     return _advance(alerts, causes, settings, now)
 
 
-def watch(alerts: Alerts, settings: Settings, silence: Silence,
+def watch(alerts: Alerts, settings: AlarmSettings, silence: Silence,
           now: float) -> tuple[Alerts, Alerts]:
     """The alerts after a look at the sensors, and those that changed: to be called by the clock.
 
@@ -127,7 +127,7 @@ def acknowledge(alerts: Alerts, now: float, kind: int | None = None,
     return machine.acknowledge(alerts, now, MOMENTARY, kind, number)
 
 
-def rules(settings: Settings) -> tuple[Rule, ...]:
+def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
     """How each kind behaves."""
     return tuple(Rule(settings.danger_after if kind == DANGER else 0.0, settings.end_after,
                       settings.lapse_after, bool(CAUTION[kind]), bool(MOMENTARY[kind]))

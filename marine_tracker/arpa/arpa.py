@@ -24,14 +24,14 @@ from .swap_risk import swap_risk
 from .targets import Events, Targets
 
 
-class Memory(NamedTuple):
+class ArpaMemory(NamedTuple):
     """All that the ARPA knows between two scans; see the modules of the same names.
 
     own  own ship's samples of late
     """
 
     own: OwnShip
-    motion: motion.Memory
+    motion: motion.MotionMemory
     acquisition: Acquisition
     alerts: Alerts
     past: PastPositions
@@ -96,9 +96,9 @@ class Arpa:
         self.radars = radars_of(tracker)
         self.limits = situation.Limits(p.cpa_limit_nm * NAUTICAL_MILE, 60 * p.tcpa_limit_min)
         self.zones = zones.parse(p.zones)
-        self.acquisition = acquisition.Settings(p.acquisition, p.max_targets, p.click_radius_m,
+        self.acquisition = acquisition.AcquisitionSettings(p.acquisition, p.max_targets, p.click_radius_m,
                                                 p.click_wait_s)
-        self.alarms = alarms.Settings(sensor_timeout=p.sensor_timeout_s)
+        self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s)
         self.motion = motion.PRESETS[tracker.vessel_class]._replace(
             speed_sigma=0.5 * tracker.max_target_speed_mps)
         self.current = p.current_drift_kn * KNOT * unit_vector(np.radians(p.current_set_deg))
@@ -109,15 +109,15 @@ class Arpa:
         """What courses and speeds are measured against: 'sea' where a current is given."""
         return 'sea' if self.current.any() else 'ground'
 
-    def start(self) -> Memory:
+    def start(self) -> ArpaMemory:
         """No targets yet."""
         p = self.parameters
         nothing = OwnShip(np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2)))
-        return Memory(nothing, motion.begin(len(self.radars)), acquisition.begin(), alerts.begin(),
+        return ArpaMemory(nothing, motion.begin(len(self.radars)), acquisition.begin(), alerts.begin(),
                       past_positions.begin(p.past_positions, p.past_interval_s))
 
-    def step(self, memory: Memory, scan: Scan, report: Report, heading: float, fallen=False
-             ) -> tuple[Memory, Picture]:
+    def step(self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen=False
+             ) -> tuple[ArpaMemory, Picture]:
         """One antenna revolution; all is reckoned to its end.
 
         heading  rad, own ship's, true; nan where it is not known
@@ -158,7 +158,7 @@ class Arpa:
         targets = append(acquired.targets, take(before, np.isin(before.id, lost)))
         targets = take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
         row = row_of(tracks.id, targets.id)
-        return Memory(samples, remembered, acquired, alive, past), Picture(
+        return ArpaMemory(samples, remembered, acquired, alive, past), Picture(
             now, own, row, targets, take(moving, row), take(passing, row), past, at_rest[row],
             seen.danger[row], overlap[row], events, alive, changed)
 
@@ -172,7 +172,7 @@ class Arpa:
         return approach(moving._replace(position=position), own, self.limits.cpa,
                         self.limits.tcpa)
 
-    def _swap_risk(self, tracks, remembered: motion.Memory, passing: Approach, own: OwnMotion,
+    def _swap_risk(self, tracks, remembered: motion.MotionMemory, passing: Approach, own: OwnMotion,
                    now: float, radar: TrackerParameters):
         """Overlap [N] of the gates of the radar's next scan and the rows [N] of the others."""
         overlap, other = np.full(len(tracks.id), np.inf), np.full(len(tracks.id), -1)

@@ -21,7 +21,7 @@ MEMORY_NAMES = ('steady', 'manoeuvring')
 SURE = 0.5                  # m/s: a steady target's velocity is known as well as this
 
 
-class Settings(NamedTuple):
+class MotionSettings(NamedTuple):
     """What is expected of targets and their plots.
 
     glint_sigma  m, deviation of the point that echoes from the middle of the target, each axis
@@ -39,13 +39,13 @@ class Settings(NamedTuple):
 
 
 PRESETS = {
-    'ship': Settings(),
-    'small_craft': Settings(GLINT_SIGMA['small_craft'],
+    'ship': MotionSettings(),
+    'small_craft': MotionSettings(GLINT_SIGMA['small_craft'],
                             habits=leg_hypotheses.Habits(600.0, 10.0, 4.0)),
 }
 
 
-class Memory(NamedTuple):
+class MotionMemory(NamedTuple):
     """What is remembered of each track, one row a track, by ascending id.
 
     id          [N]
@@ -95,13 +95,13 @@ class Motion(NamedTuple):
     stationary: NDArray[np.bool_]
 
 
-def begin(radars: int = 1) -> Memory:
+def begin(radars: int = 1) -> MotionMemory:
     """No track yet."""
     return _blank(np.zeros(0, np.int64), radars)
 
 
-def step(memory: Memory, report: Report, plots: Plots, settings: Settings, radar: int = 0
-         ) -> Memory:
+def step(memory: MotionMemory, report: Report, plots: Plots, settings: MotionSettings, radar: int = 0
+         ) -> MotionMemory:
     """The memory after one scan of the radar; its rows are those of `report.tracks`.
 
     plots  the scan's plots as `geometry.locate` gives them, to which `report.plot` refers
@@ -119,7 +119,7 @@ def step(memory: Memory, report: Report, plots: Plots, settings: Settings, radar
     return _next_plots(memory, rows[~blank], take(plots, ~blank), settings, radar)
 
 
-def at(memory: Memory, time) -> Motion:
+def at(memory: MotionMemory, time) -> Motion:
     """The motion of every row at `time`, s: [N] or one for all. `types.take` chooses rows first."""
     bank = linear_modes.straight(memory.noise[None])
     mean, covariance = linear_modes.unpack(
@@ -132,18 +132,18 @@ def at(memory: Memory, time) -> Motion:
                   (memory.memory == STEADY) & known, memory.stationary)
 
 
-def _blank(id_, radars: int) -> Memory:
+def _blank(id_, radars: int) -> MotionMemory:
     """Rows of tracks that had no plot yet."""
     count = len(id_)
     nothing = np.full(count, np.nan)
-    return Memory(id_, nothing, nothing, (plot_noise.begin(count),) * radars,
+    return MotionMemory(id_, nothing, nothing, (plot_noise.begin(count),) * radars,
                   leg_hypotheses.begin(np.full((count, 2), np.nan), np.full((count, 2, 2), np.nan),
                              nothing, 1.0),
                   np.full((count, 14), np.nan), nothing, np.full(count, STEADY), nothing, nothing,
                   np.zeros(count, bool))
 
 
-def _follow(memory: Memory, id_) -> Memory:
+def _follow(memory: MotionMemory, id_) -> MotionMemory:
     """The rows of the tracks `id_` [N], ascending; those not known yet are blank."""
     if np.array_equal(memory.id, id_):
         return memory
@@ -152,7 +152,7 @@ def _follow(memory: Memory, id_) -> Memory:
     return put(blank, known, take(memory, memory.id.searchsorted(id_[known])))
 
 
-def _first_plots(memory: Memory, rows, plots: Plots, settings: Settings, radar: int) -> Memory:
+def _first_plots(memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int) -> MotionMemory:
     """The rows [K] begin with one plot each."""
     count = len(rows)
     if not count:
@@ -161,14 +161,14 @@ def _first_plots(memory: Memory, rows, plots: Plots, settings: Settings, radar: 
     scatters[radar], covariance, _ = plot_noise.observe(scatters[radar], plots,
                                                         settings.glint_sigma)
     hypotheses = leg_hypotheses.begin(plots.position, covariance, plots.time, settings.speed_sigma)
-    return put(memory, rows, Memory(
+    return put(memory, rows, MotionMemory(
         memory.id[rows], plots.time, plots.time, tuple(scatters), hypotheses,
         hypotheses.rows[:, 0],
         np.full(count, settings.habits.noise), np.full(count, STEADY), plots.time,
         np.full(count, np.nan), np.zeros(count, bool)))
 
 
-def _next_plots(memory: Memory, rows, plots: Plots, settings: Settings, radar: int) -> Memory:
+def _next_plots(memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int) -> MotionMemory:
     """The rows [K] take one more plot each."""
     if not len(rows):
         return memory
@@ -182,13 +182,13 @@ def _next_plots(memory: Memory, rows, plots: Plots, settings: Settings, radar: i
         before.legs, plots.time, plots.time - before.time, plots.position, covariance, stretch,
         plot_noise.FREEDOM * scatter.plots, settings.habits)
     noise = hypotheses.weight[:, 0] * settings.habits.noise
-    return put(memory, rows, Memory(
+    return put(memory, rows, MotionMemory(
         before.id, before.first, plots.time, tuple(scatters), hypotheses, shown, noise,
         *_manoeuvre(before, hypotheses, plots.time, 2 * settings.habits.manoeuvre),
         *_rest(before, shown, plots.time, settings)))
 
 
-def _manoeuvre(before: Memory, hypotheses: leg_hypotheses.Legs, time, lasting: float):
+def _manoeuvre(before: MotionMemory, hypotheses: leg_hypotheses.Legs, time, lasting: float):
     """STEADY or MANOEUVRING [N], and since when [N] s, after the times [N] s.
 
     In a turn every moment may be the beginning of a new leg, so one that is younger than `lasting`
@@ -203,7 +203,7 @@ def _manoeuvre(before: Memory, hypotheses: leg_hypotheses.Legs, time, lasting: f
     return np.where(turns, MANOEUVRING, STEADY), np.where(turns, since, begun)
 
 
-def _rest(before: Memory, shown, time, settings: Settings):
+def _rest(before: MotionMemory, shown, time, settings: MotionSettings):
     """Since when [N] tracks are still, and whether they count as stationary, after the times [N].
 
     A target comes to rest when its velocity is within 2.4 deviations of 0, and surely slow, for a

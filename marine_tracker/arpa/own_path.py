@@ -12,7 +12,7 @@ MAX_SPEED = 100 * KNOT
 STRETCHES = 32          # of the path while course and speed change, and again while one still does
 
 
-class Trial(NamedTuple):
+class TrialManoeuvre(NamedTuple):
     """The manoeuvre to be tried.
 
     course        rad, true, over ground, to be steered; reached by the shorter turn
@@ -44,7 +44,7 @@ class Path(NamedTuple):
     velocity: Array
 
 
-def check(trial: Trial) -> None:
+def check(trial: TrialManoeuvre) -> None:
     """ValueError for the first value that no manoeuvre can have."""
     for name, unit, low, high in (('course', 'rad', -np.inf, np.inf),
                                   ('speed', 'm/s', 0.0, MAX_SPEED), ('delay', 's', 0.0, 3600.0)):
@@ -58,14 +58,14 @@ def check(trial: Trial) -> None:
             raise ValueError(f'trial {name} is {value:g} {unit}; it must be above 0')
 
 
-def countdown(trial: Trial, elapsed: float) -> Trial:
+def countdown(trial: TrialManoeuvre, elapsed: float) -> TrialManoeuvre:
     """The same trial `elapsed` s later: its delay is what is left of it, 0 once it is due."""
     if not elapsed >= 0:
         raise ValueError(f'elapsed is {elapsed:g} s; a countdown does not run backwards')
     return trial._replace(delay=max(trial.delay - elapsed, 0.0))
 
 
-def paths(own: OwnMotion, trial: Trial, courses: Array) -> Path:
+def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
     """Own ship's path for each of the courses [C] rad, which take the place of the trial's own.
 
     Course and speed change together, each at its constant rate, from own ship's course over ground

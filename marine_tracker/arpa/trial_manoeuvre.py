@@ -14,7 +14,7 @@ from ..types import Array, take
 from .cpa import HAIR, LEAST_SPEED, OwnMotion, cpa_of
 from .miss_distance import danger_probability
 from .motion import Motion
-from .own_path import Path, Trial, paths
+from .own_path import Path, TrialManoeuvre, paths
 
 AT_ONCE = 100_000       # distances reckoned at a time: what a cache holds
 COURSES = np.radians(np.arange(360.0))
@@ -56,7 +56,7 @@ class SafeCourses(NamedTuple):
     sectors: Array
 
 
-def trial_approach(motion: Motion, own: OwnMotion, trial: Trial, cpa_limit: float,
+def trial_approach(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, cpa_limit: float,
                    tcpa_limit: float) -> TrialApproach:
     """CPA, TCPA and danger of the N targets under the trial; limits in m and s (inf for none).
 
@@ -66,7 +66,7 @@ def trial_approach(motion: Motion, own: OwnMotion, trial: Trial, cpa_limit: floa
     return TrialApproach(*(values[0] for values in every))
 
 
-def safe_courses(motion: Motion, own: OwnMotion, trial: Trial, cpa_limit: float,
+def safe_courses(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, cpa_limit: float,
                  tcpa_limit: float = np.inf, risk: float = 0.05) -> SafeCourses:
     """Which courses, all else as in the trial, keep the probability of danger below the risk.
 
@@ -87,7 +87,7 @@ def safe_courses(motion: Motion, own: OwnMotion, trial: Trial, cpa_limit: float,
     return SafeCourses(COURSES, probability, cpa, nearest, safe, _sectors(safe))
 
 
-def _approaches(motion: Motion, own: OwnMotion, trial: Trial, courses: Array, cpa_limit: float,
+def _approaches(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, courses: Array, cpa_limit: float,
                 tcpa_limit: float) -> TrialApproach:
     """[C, N] of each course and target."""
     for name, limit, unit in (('CPA', cpa_limit, 'm'), ('TCPA', tcpa_limit, 's')):

@@ -103,7 +103,7 @@ def told(data: TargetData, place) -> Array:
         approach.course, approach.speed)])
 
 
-class Trial(NamedTuple):
+class AccuracyTrial(NamedTuple):
     """What is to be run: a scenario's mapping, and when its target is judged.
 
     moment  s, the end of a revolution        steady_since  s, own ship's course is held from here
@@ -114,14 +114,14 @@ class Trial(NamedTuple):
     steady_since: float = 0.0
 
 
-def a823_trial(number: int, judged_after: float, own_turn_deg: float = 0.0) -> Trial:
+def a823_trial(number: int, judged_after: float, own_turn_deg: float = 0.0) -> AccuracyTrial:
     """A scenario of A.823 judged some seconds after acquisition, or after own ship's turn."""
     moment = standard_scenarios.judged_at(judged_after, own_turn_deg)
-    return Trial(standard_scenarios.a823(number, judged_after, own_turn_deg, moment), moment,
+    return AccuracyTrial(standard_scenarios.a823(number, judged_after, own_turn_deg, moment), moment,
                  standard_scenarios.judged_at(0.0, own_turn_deg) if own_turn_deg else 0.0)
 
 
-def judged(trial: Trial) -> Array:
+def judged(trial: AccuracyTrial) -> Array:
     """The true FIGURES [6] of a trial's only target when it is judged."""
     loaded = scenario.build(trial.values, 'trial')
     truth, own = loaded.truth_at(trial.moment), loaded.own_ship_at(trial.moment)
@@ -129,7 +129,7 @@ def judged(trial: Trial) -> Array:
                       truth.velocity[0])
 
 
-def follow(trial: Trial, estimators: Sequence[str], seeds: Sequence[int]) -> Array:
+def follow(trial: AccuracyTrial, estimators: Sequence[str], seeds: Sequence[int]) -> Array:
     """FIGURES [R, W, 6] that the fit and the service with each estimator find in R runs."""
     loaded = scenario.build(trial.values, 'trial')
     services = [Service(loaded, name) for name in estimators]
@@ -163,7 +163,7 @@ def fit(scans: Sequence[Scan], steady_since: float) -> Array:
     return figures_of(at - own[-1].position[-1], velocity - own_velocity, velocity)
 
 
-def run(trials: Sequence[Trial], estimators: Sequence[str], runs: int, seed: int,
+def run(trials: Sequence[AccuracyTrial], estimators: Sequence[str], runs: int, seed: int,
         progress: Progress = silent, processes: int | None = None) -> list[Outcome]:
     """Each trial `runs` times; what comes out depends on seed and runs alone."""
     work, whose = [], []

@@ -18,7 +18,7 @@ from ..simulation import radar, scenario
 from ..simulation.standard_scenarios import A823_RADAR, REVOLUTION
 from ..types import Array
 from . import ring_of_ships
-from .accuracy import Trial, a823_trial
+from .accuracy import AccuracyTrial, a823_trial
 from .target_data import Service
 
 OWN_TURNS = (-45.0, 45.0)                       # deg
@@ -29,7 +29,7 @@ AFTER = 90.0                                    # s watched after it
 RIGHT = 5.0                                     # deg: the course is right again below this
 
 
-def own_turns(number: int, after: float = MET_AGAIN) -> list[Trial]:
+def own_turns(number: int, after: float = MET_AGAIN) -> list[AccuracyTrial]:
     """The scenario of A.823 judged `after` s after own ship's turn to port, and to starboard."""
     return [a823_trial(number, after, turn) for turn in OWN_TURNS]
 

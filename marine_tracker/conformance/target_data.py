@@ -21,8 +21,8 @@ class Memory(NamedTuple):
     report  that of the last scan
     """
 
-    tracker: tracker.Memory
-    motion: motion.Memory
+    tracker: tracker.TrackerMemory
+    motion: motion.MotionMemory
     own: OwnShip
     report: tracker.Report
 

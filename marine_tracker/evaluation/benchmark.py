@@ -33,7 +33,7 @@ class Traffic(NamedTuple):
     velocity: np.ndarray
 
 
-class Found(NamedTuple):
+class BenchmarkResult(NamedTuple):
     """One turn: CPU time of a scan, s, the estimator's part of it (nan where it is not known),
     and the tracks' positions [., 2] m after each scan."""
 
@@ -102,7 +102,7 @@ class Clock:
         return Estimator(estimator.init, timed(estimator.extrapolate), timed(estimator.update))
 
 
-def run_tracker(scene: Traffic, estimator: str) -> Iterator[Found]:
+def run_tracker(scene: Traffic, estimator: str) -> Iterator[BenchmarkResult]:
     """This tracker: whole steps, from extrapolation to the initiation of new tracks.
 
     Each turn takes the timed scans once more, from the same memory.
@@ -124,12 +124,12 @@ def run_tracker(scene: Traffic, estimator: str) -> Iterator[Found]:
             memory, _ = tracker.step(memory, scan)
             after.append(memory.tracks)
         cpu = time.process_time() - begin
-        yield Found(cpu / len(timed), clock.spent / len(timed), [
+        yield BenchmarkResult(cpu / len(timed), clock.spent / len(timed), [
             tracker.extrapolate(tracks, scan.end).position[tracks.number > 0]
             for tracks, scan in zip(after, timed, strict=True)])
 
 
-def run_stone_soup(scene: Traffic) -> Iterator[Found]:
+def run_stone_soup(scene: Traffic) -> Iterator[BenchmarkResult]:
     """Stone Soup's EKF and DetectionKDTreeGNN2D with five neighbours, its fastest set-up.
 
     Each turn takes one timed scan.
@@ -183,7 +183,7 @@ def run_stone_soup(scene: Traffic) -> Iterator[Found]:
         for track, hypothesis in associator.associate(tracks, detections, now).items():
             track.append(updater.update(hypothesis) if hypothesis else hypothesis.prediction)
         cpu = time.process_time() - begin
-        yield Found(cpu, np.nan, [np.array([[float(t.state_vector[0]), float(t.state_vector[2])]
+        yield BenchmarkResult(cpu, np.nan, [np.array([[float(t.state_vector[0]), float(t.state_vector[2])]
                                     for t in tracks])])
 
 
@@ -194,7 +194,7 @@ def _nearest(truth, found):
     return cKDTree(found).query(truth)[0]
 
 
-def _result(turns: Sequence[Found], found, scene: Traffic) -> Result:
+def _result(turns: Sequence[BenchmarkResult], found, scene: Traffic) -> Result:
     truth = scene.position[WARM_UP:]
     errors = np.array([_nearest(*pair) for pair in zip(truth, found, strict=True)])
     distance = np.hypot(*np.moveaxis(truth, -1, 0))
@@ -218,7 +218,7 @@ def benchmark(targets: int, clutter: int, estimators: Sequence[str], timed_scans
     theirs = None
     if not alone and find_spec('stonesoup'):
         theirs = run_stone_soup(scene)
-    found: dict[str, list[Found]] = {name: [] for name in ours}
+    found: dict[str, list[BenchmarkResult]] = {name: [] for name in ours}
     soup = []
     for _ in range(timed_scans):
         for name, turns in ours.items():

@@ -22,7 +22,7 @@ from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, Plots, PolarPlots, Scan, row_of, take
 from . import hulls, land_map
 from .clustering import Clusters, Gates, cluster, in_gates
-from .hulls import OUTLINE, Hulls, Shapes
+from .hulls import BY_GAUSSIAN_PROCESS, Hulls, Shapes
 from .land_map import LONGEST, LandMap
 from .lit_edge import lit_edge
 from .random_matrix import SHIP, cell_covariance
@@ -31,7 +31,7 @@ from .smear import smear
 # Of a ship's length: how far the centroid strays along her axis; across, as the lit side changes.
 STRAY_ALONG, STRAY_ACROSS = 0.1, 0.04
 RAMP = 0.2                  # of the way to an outline's centre that the plots move each scan
-BOX = 12.0                  # length^2 over variance of a rod
+ROD_SPREAD = 12.0                  # length^2 over variance of a rod
 # A gate is so many times the extent, the smear and the expectation's covariance: half again the
 # half length, and 2.8 deviations.
 OF_EXTENT, OF_NOISE = 1.5, 8.0
@@ -39,7 +39,7 @@ AT_SEA = 22                 # scans clear of land that prove a ship, though she 
 ALIKE, DRIFT = 9.0, 2.0     # squared distance of velocities, and m/s, of two parts of one hull
 
 
-class Memory(NamedTuple):
+class ExtentsMemory(NamedTuple):
     """All that is known between two scans.
 
     hulls   one row a track
@@ -82,18 +82,18 @@ class Extents:
         self.parameters = parameters
         self.beam_width = float(np.radians(parameters.beam_width_deg))
 
-    def start(self) -> Memory:
+    def start(self) -> ExtentsMemory:
         """No targets yet."""
-        return Memory(hulls.begin(self.parameters.extent == 'gp'), np.zeros((0, 2)),
+        return ExtentsMemory(hulls.begin(self.parameters.extent == 'gp'), np.zeros((0, 2)),
                       np.zeros(0, np.int64), land_map.empty(), 0)
 
-    def adopt(self, known: Memory, previous: 'Extents') -> Memory:
+    def adopt(self, known: ExtentsMemory, previous: 'Extents') -> ExtentsMemory:
         """The memory of another; sizes are found anew where it was asked for something else."""
         same = self.parameters.extent == previous.parameters.extent
         return known if same else self.start()
 
-    def track(self, tracker: Any, tracks: Any, known: Memory, scan: Scan
-              ) -> tuple[tuple[Any, Memory], Any, Scan, Shapes | None]:
+    def track(self, tracker: Any, tracks: Any, known: ExtentsMemory, scan: Scan
+              ) -> tuple[tuple[Any, ExtentsMemory], Any, Scan, Shapes | None]:
         """One antenna revolution: a step of a `tracking.tracker.Tracker` and of this.
 
         Returns the tracker's memory and this one's, the tracker's report, the scan that it refers
@@ -111,7 +111,7 @@ class Extents:
         noise = self._noise(known.hulls.matrix.mean[:, :2] - seen.own)
         return (tracks, known), report, plain, hulls.shapes(known.hulls, noise, estimate.position)
 
-    def reduce(self, memory: Memory, scan: Scan, ids, ahead: Extrapolation) -> tuple[Scan, Seen]:
+    def reduce(self, memory: ExtentsMemory, scan: Scan, ids, ahead: Extrapolation) -> tuple[Scan, Seen]:
         """The scan with one plot a cluster, land left out.
 
         ids [N] of the tracks that are surely targets, and where they are expected.
@@ -132,7 +132,7 @@ class Extents:
         plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan)
         return scan._replace(plots=plots), Seen(cells, found, chosen, int(dry.sum()), own, land)
 
-    def step(self, memory: Memory, seen: Seen, ids, time, plot, estimate: Extrapolation) -> Memory:
+    def step(self, memory: ExtentsMemory, seen: Seen, ids, time, plot, estimate: Extrapolation) -> ExtentsMemory:
         """After the tracker's step: ids [N] of its tracks, time [N] s, plot [N] rows of the
         reduced scan or -1, and its estimate then."""
         taken = np.where(plot >= 0, np.append(seen.chosen, -1)[plot], -1)
@@ -148,9 +148,9 @@ class Extents:
         at_sea += ~land_map.on_land(seen.map, estimate.position)
         wanted = np.zeros_like(shift)
         if known.outline is not None:
-            lined = known.method == OUTLINE
+            lined = known.method == BY_GAUSSIAN_PROCESS
             wanted[lined] = known.outline.mean[lined, :2] - known.matrix.mean[lined, :2]
-        return Memory(known, shift + RAMP * (wanted - shift), at_sea, seen.map, seen.shores)
+        return ExtentsMemory(known, shift + RAMP * (wanted - shift), at_sea, seen.map, seen.shores)
 
     def _noise(self, offset):
         range_, bearing = to_range_bearing(offset)
@@ -189,7 +189,7 @@ class Extents:
         of = row[chosen.gate[own]]
         extent[own], shift[own] = memory.hulls.matrix.extent[of], memory.shift[of]
         value, vector = np.linalg.eigh(extent)
-        length = np.sqrt(BOX * SHIP.spread * value[:, 1])
+        length = np.sqrt(ROD_SPREAD * SHIP.spread * value[:, 1])
         stray = (vector * np.square([STRAY_ACROSS, STRAY_ALONG])) @ vector.swapaxes(1, 2)
         covariance = (cell_covariance(extent, chosen.noise) / count
                       + np.square(length)[:, None, None] * stray)

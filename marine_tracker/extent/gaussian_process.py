@@ -26,7 +26,7 @@ from .input_noise import VARIANTS, input_variance, noisy_radius
 from .radial_function import Contour, radius
 from .random_matrix import constant_velocity
 
-HEADING, RATE, OUTLINE = 4, 5, 6        # where they begin in the state
+HEADING, RATE, FIRST_RADIUS = 4, 5, 6        # where they begin in the state
 PLACE = np.array([0, 1, HEADING])       # on which the angle depends
 NEAREST = 0.5                           # of mu: cells nearer to the centre turn no further
 TINY = 1e-6                             # m
@@ -84,10 +84,10 @@ def start(model: Model, time, motion, covariance, f, semi_axes) -> GpState:
     """
     if model.variant not in VARIANTS:
         raise ValueError(f'variant is {model.variant!r}; it must be one of {", ".join(VARIANTS)}')
-    n = OUTLINE + len(model.contour.angle)
+    n = FIRST_RADIUS + len(model.contour.angle)
     joint = np.zeros((len(time), n, n))
-    joint[:, :OUTLINE, :OUTLINE] = covariance
-    joint[:, OUTLINE:, OUTLINE:] = model.contour.covariance
+    joint[:, :FIRST_RADIUS, :FIRST_RADIUS] = covariance
+    joint[:, FIRST_RADIUS:, FIRST_RADIUS:] = model.contour.covariance
     return GpState(np.array(time, float), np.concatenate([motion, f], 1), joint,
                    np.array(semi_axes, float))
 
@@ -112,7 +112,7 @@ def measure(state: GpState, cell, noise, model: Model, rng=None) -> Measurement:
     distance, bearing = to_range_bearing(cell - state.mean[:, :2])
     along = unit_vector(bearing)
     across = np.stack([along[:, 1], -along[:, 0]], -1)              # t = dp / dtheta
-    angle, f = bearing - state.mean[:, HEADING], state.mean[:, OUTLINE:]
+    angle, f = bearing - state.mean[:, HEADING], state.mean[:, FIRST_RADIUS:]
     distance = np.maximum(distance, TINY)
     known = radius(model.contour, state.semi_axes, f, angle[:, None]).mean[:, 0]
     at = noisy_radius(model.contour, state.semi_axes, f, angle, input_variance(
@@ -122,7 +122,7 @@ def measure(state: GpState, cell, noise, model: Model, rng=None) -> Measurement:
     jacobian = np.zeros_like(state.mean)
     jacobian[:, :2] = along - (inside * at.slope / distance)[:, None] * across
     jacobian[:, HEADING] = -inside * at.slope
-    jacobian[:, OUTLINE:] = inside * at.weight
+    jacobian[:, FIRST_RADIUS:] = inside * at.weight
     radial = ((along[:, None] @ noise)[:, 0] * along).sum(-1)
     return Measurement(distance - inside * at.mean, jacobian,
                        radial + inside ** 2 * at.variance

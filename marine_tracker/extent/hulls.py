@@ -20,10 +20,10 @@ from . import gaussian_process, outline_measures, random_matrix
 from .clustering import Clusters
 from .gaussian_process import HEADING, GpState
 from .lit_edge import FRINGE, Edge
-from .random_matrix import BOX, NO_MEMORY, RandomMatrixState
+from .random_matrix import BOX_SPREAD, NO_MEMORY, RandomMatrixState
 from .ship_outline import SHIP, SLENDER, from_random_matrix, off_course
 
-RANDOM_MATRIX, OUTLINE = 0, 1       # methods
+BY_RANDOM_MATRIX, BY_GAUSSIAN_PROCESS = 0, 1       # methods
 SCANS, CELLS, SMEAR = 10, 10.0, 0.4     # for an outline: scans; mean cells; smear over half beam
 OFF_COURSE = np.radians(15)         # of an outline's heading: it is wrong
 NIS = 3.0                           # mean nu^2 / S of an outline's cells: they contradict it
@@ -197,7 +197,7 @@ def _outlines(hulls, time, rows, taken, own, edge, own_ship):
     velocity = matrix.mean[:, 2:]
     course = np.arctan2(*velocity.T)
     moving = np.hypot(*velocity.T) > SLOW
-    active = hulls.method == OUTLINE
+    active = hulls.method == BY_GAUSSIAN_PROCESS
     outline = where(active, gaussian_process.predict(outline, time, SHIP), outline)
     half = 0.5 * found.length / SLENDER
     abeam = unit_vector(course + np.pi / 2)
@@ -210,17 +210,17 @@ def _outlines(hulls, time, rows, taken, own, edge, own_ship):
         outline = put(outline, fresh, from_random_matrix(
             take(matrix, fresh), take(found, fresh), own_ship))
     method = hulls.method.copy()
-    method[fresh] = OUTLINE
+    method[fresh] = BY_GAUSSIAN_PROCESS
     nis = hulls.nis.copy()
     nis[fresh] = 1.0
-    lined = rows[method[rows] == OUTLINE]
+    lined = rows[method[rows] == BY_GAUSSIAN_PROCESS]
     if len(lined):
         padded, count = _padded(edge, taken[lined])
         outline, found_nis = gaussian_process.update(
             outline, lined, padded, count, edge.noise[taken[lined]], SHIP)
         nis[lined] += (found_nis - nis[lined]) / RECENT
-    failed = (method == OUTLINE) & ((moving & (off_course(outline) > OFF_COURSE)) | (nis > NIS))
-    method[failed] = RANDOM_MATRIX
+    failed = (method == BY_GAUSSIAN_PROCESS) & ((moving & (off_course(outline) > OFF_COURSE)) | (nis > NIS))
+    method[failed] = BY_RANDOM_MATRIX
     return hulls._replace(outline=outline, method=method, nis=nis,
                           scans=np.where(failed, 1, hulls.scans))
 
@@ -240,7 +240,7 @@ def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
     over its length L and F = FRINGE deviations of R beyond either end, not as a sum of both. So a
     random matrix, which takes R off in squares, is left with about L^2 + 4 L F; here F goes.
     """
-    found = random_matrix.measures(matrix, noise, size=BOX)
+    found = random_matrix.measures(matrix, noise, size=BOX_SPREAD)
     line = unit_vector(found.axis)
     fringe = FRINGE * np.sqrt(np.einsum('ni,nij,nj->n', line, noise, line))
     return found._replace(length=np.sqrt(found.length ** 2 + 4 * fringe ** 2) - 2 * fringe)
@@ -267,7 +267,7 @@ def shapes(hulls: Hulls, noise, position) -> Shapes:
     length, length_sd, beam = found.length, found.length_sd, found.beam
     heading_sd = np.where(by_course, course_sd, found.axis_sd)
     source = np.where(by_course, COURSE, AXIS).astype(np.int8)
-    lined = (hulls.method == OUTLINE).nonzero()[0]
+    lined = (hulls.method == BY_GAUSSIAN_PROCESS).nonzero()[0]
     if len(lined):
         outline = take(hulls.outline, lined)
         of = outline_measures.measures(outline, SHIP.contour)

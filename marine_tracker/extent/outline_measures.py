@@ -6,7 +6,7 @@ import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector
 from ..types import Array
-from .gaussian_process import HEADING, OUTLINE, GpState
+from .gaussian_process import FIRST_RADIUS, HEADING, GpState
 from .radial_function import Contour, radius
 from .random_matrix import Measures, RandomMatrixState
 
@@ -96,11 +96,11 @@ def shape_error(points, centre, heading, true_radius):
 
 def _radius(state, prior, angle):
     each = np.broadcast_to(angle, (len(state.time), len(angle)))
-    return radius(prior, state.semi_axes, state.mean[:, OUTLINE:], each)
+    return radius(prior, state.semi_axes, state.mean[:, FIRST_RADIUS:], each)
 
 
 def _outline_covariance(state):
-    return state.covariance[:, OUTLINE:, OUTLINE:]
+    return state.covariance[:, FIRST_RADIUS:, FIRST_RADIUS:]
 
 
 def _points(centre, distance, bearing):
@@ -116,7 +116,7 @@ def _width(state, prior, found, direction):
     """Width m [N] along an angle off the bow, and its deviation; found [N, A] m at AROUND."""
     share = np.cos(AROUND - direction)
     ends = np.stack([(found * share).argmax(1), (found * share).argmin(1)], 1)      # [N, 2]
-    at = radius(prior, state.semi_axes, state.mean[:, OUTLINE:], AROUND[ends])
+    at = radius(prior, state.semi_axes, state.mean[:, FIRST_RADIUS:], AROUND[ends])
     share = share[ends]
     gradient = (share[:, 0, None] * at.weight[:, 0] - share[:, 1, None] * at.weight[:, 1])
     variance = (_form(gradient[:, None], _outline_covariance(state))[:, 0]

@@ -17,7 +17,7 @@ from ..types import Array, put, take
 
 SURFACE, CONTOUR = 1 / 4, 1 / 2     # z_s of scatterers all over an ellipse, and along its outline
 NO_MEMORY = 2.0                     # the weight at which an extent says nothing
-BOX = np.sqrt(3.0)                  # length over sqrt(X) of a box, all over: L^2 / 12 = X / 4
+BOX_SPREAD = np.sqrt(3.0)                  # length over sqrt(X) of a box, all over: L^2 / 12 = X / 4
 ELLIPSE = 2.0                       # the same of the ellipse itself
 AXIS_UNKNOWN = np.pi / np.sqrt(12)  # rad, deviation of an axis that may lie anywhere
 
@@ -150,7 +150,7 @@ def root_2x2(matrix):
 
 
 def measures(state: RandomMatrixState, noise, model: Model = SHIP,
-             size: float = BOX) -> Measures:
+             size: float = BOX_SPREAD) -> Measures:
     """Length, beam and axis of all rows; size: BOX for hulls, ELLIPSE.
 
     noise [N, 2, 2] m^2: R of a single cell, which widens the deviations. These are what `weight`

@@ -8,7 +8,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from ..arpa import alarm_text, alarms, alerts
 from ..arpa.alerts import NORMAL, Alerts
 from ..arpa.arpa import Arpa, Picture
-from ..arpa.own_path import Trial, countdown
+from ..arpa.own_path import TrialManoeuvre, countdown
 from ..arpa.situation import LIKELY
 from ..arpa.targets import label
 from ..arpa.trial_manoeuvre import safe_courses, trial_approach
@@ -59,7 +59,7 @@ def trial_message(arpa: Arpa, picture: Picture, elapsed: float, time_ns: int, ha
         return diagnostics.array(time_ns, [diagnostics.status(
             TRIAL, hardware_id, WARN, 'no TRIAL: own ship lies still, heading unknown', {})])
     trial = countdown(
-        Trial(np.radians(p.trial_course_deg), p.trial_speed_kn * KNOT, 60 * p.trial_delay_min,
+        TrialManoeuvre(np.radians(p.trial_course_deg), p.trial_speed_kn * KNOT, 60 * p.trial_delay_min,
               np.radians(p.trial_turn_rate_deg_min) / 60, p.trial_acceleration_mps2), elapsed)
     found = trial_approach(picture.motion, own, trial, limits.cpa, limits.tcpa)
     safe = safe_courses(picture.motion, own, trial, limits.cpa, limits.tcpa)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..types import Array
-from .scenario import Clutter, Radar
+from .scenario import Clutter, ScenarioRadar
 
 # Power over the noise of false plots: they only just pass the threshold, sea spikes by more.
 UNIFORM_EXCESS = 1.0
@@ -11,7 +11,7 @@ SEA_EXCESS = 5.0
 WAVE_SPEED = 1.0        # m/s, standard deviation of the radial speeds of waves
 
 
-def uniform_plots(clutter: Clutter, radar: Radar, random: np.random.Generator
+def uniform_plots(clutter: Clutter, radar: ScenarioRadar, random: np.random.Generator
                   ) -> tuple[Array, Array, Array]:
     """Range m, bearing rad and power above the threshold [M] of one revolution's noise plots.
 
@@ -24,7 +24,7 @@ def uniform_plots(clutter: Clutter, radar: Radar, random: np.random.Generator
             random.exponential(UNIFORM_EXCESS, count))
 
 
-def sea_plots(clutter: Clutter, radar: Radar, random: np.random.Generator
+def sea_plots(clutter: Clutter, radar: ScenarioRadar, random: np.random.Generator
               ) -> tuple[Array, Array, Array]:
     """The same of sea clutter: range is exponential from the blind range, cut at the maximum.
 
@@ -38,7 +38,7 @@ def sea_plots(clutter: Clutter, radar: Radar, random: np.random.Generator
             random.exponential(SEA_EXCESS, count))
 
 
-def radial_speeds(radar: Radar, noise: int, waves: int, random: np.random.Generator) -> Array:
+def radial_speeds(radar: ScenarioRadar, noise: int, waves: int, random: np.random.Generator) -> Array:
     """Radial speeds [noise + waves] m/s over ground of noise plots, then of sea clutter.
 
     Noise lies anywhere in the radar's Doppler band; waves come and go.

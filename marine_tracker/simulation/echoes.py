@@ -10,13 +10,13 @@ import numpy as np
 
 from ..geometry import wrap_bearing
 from ..types import Array, PolarPlots, take
-from .scenario import Radar
+from .scenario import ScenarioRadar
 
 THRESHOLD = 20.0                 # power over noise at which a plot is declared: 13 dB
 NEAR = np.arange(-2, 3)          # cells; two off, pulse and beam are 48 dB down or more
 
 
-def cells(radar: Radar, start: float, distance: Array, bearing: Array, echo,
+def cells(radar: ScenarioRadar, start: float, distance: Array, bearing: Array, echo,
           random: np.random.Generator) -> PolarPlots:
     """The cells over the threshold in the revolution that begins at `start` s.
 

@@ -16,7 +16,7 @@ from ..geometry import to_range_bearing, unit_vector, wrap_angle, wrap_bearing
 from ..types import PolarPlots, Scan, Truth, append, take
 from . import beam, clutter, extended, sensor_errors
 from .echoes import THRESHOLD
-from .scenario import Radar, Scenario
+from .scenario import Scenario, ScenarioRadar
 
 STRONGEST = 0.9999               # probability of detection that sets the amplitude of a sure plot
 OWN_SHIP_SAMPLES = 4             # a revolution, both ends included
@@ -92,7 +92,7 @@ def _detect(scenario, target, distance, chance):
     return seen, np.maximum(power, THRESHOLD)
 
 
-def _resolve(radar: Radar, passages, distance, power, start):
+def _resolve(radar: ScenarioRadar, passages, distance, power, start):
     """Plots without noise, one a resolution cell, and for each the row of its strongest echo.
 
     Echoes closer than a cell in range and in the beam's angle merge, chains of them too; the plot

@@ -69,7 +69,7 @@ CLUTTER_KEYS = 'uniform sea sea_scale_m|sea_scale_nm'
 TRACKER_KEYS = 'max_target_speed_kn|max_target_speed_mps vessel_class'
 
 
-class Radar(NamedTuple):
+class ScenarioRadar(NamedTuple):
     """The simulated radar.
 
     rotation            rpm, antenna; the beam passes true north at the start of a revolution
@@ -137,7 +137,7 @@ class Scenario:
     name: str
     description: str
     duration: float
-    radar: Radar
+    radar: ScenarioRadar
     clutter: Clutter
     fleet: ships.Fleet
     shores: tuple[land.Shore, ...]
@@ -272,7 +272,7 @@ def _radar(section):
                 raise ValueError(f'radar has {key} beside sensor_errors: imo, which states all '
                                  'noise; leave one out')
     pd_near = section.number('pd_near', 0.01, 1.0, 0.98)
-    radar = Radar(
+    radar = ScenarioRadar(
         section.number('rotation_rpm', 1.0, 300.0, 22.0),
         section.length('max_range', 100.0, MAX_RANGE, 12 * NAUTICAL_MILE),
         section.length('blind_range', 0.0, 10000.0, 50.0),

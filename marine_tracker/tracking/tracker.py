@@ -32,7 +32,7 @@ class OfRadar(NamedTuple):
     clutter: clutter_map.ClutterMap
 
 
-class Memory(NamedTuple):
+class TrackerMemory(NamedTuple):
     """All that the tracker knows between two scans.
 
     tracks       N tracks, lost ones left out
@@ -98,19 +98,19 @@ class Tracker:
         self.speed_gate = (float(ndtri(0.5 + 0.5 * parameters.gate_probability))
                            if parameters.doppler_gate else np.inf)
 
-    def start(self) -> Memory:
+    def start(self) -> TrackerMemory:
         """No tracks yet."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
         of_radar = OfRadar(plots, clutter_map.empty())
-        return Memory(self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1)
+        return TrackerMemory(self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1)
 
     def extrapolate(self, tracks: Tracks, time) -> Extrapolation:
         """The tracks at the times [N] s (or one time for all)."""
         return self.estimator.extrapolate(tracks.state,
                                           np.broadcast_to(time, tracks.id.shape).astype(float))
 
-    def step(self, memory: Memory, scan: Scan) -> tuple[Memory, Report]:
+    def step(self, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemory, Report]:
         """One antenna revolution."""
         p, tracks, radar = self.radars[scan.radar], memory.tracks, memory.radars[scan.radar]
         count, lone, bearing_sigma = len(tracks.id), radar.leftover, np.radians(p.bearing_sigma_deg)
@@ -210,7 +210,7 @@ class Tracker:
         radars = list(memory.radars)
         radars[scan.radar] = OfRadar(take(plots, free), clutter)
         alive = status != LOST
-        return Memory(
+        return TrackerMemory(
             tracks if alive.all() else take(tracks, alive), tuple(radars),
             scan.own_ship.position[-1],
             memory.next_id + len(second), memory.next_number + len(newly),
@@ -218,7 +218,7 @@ class Tracker:
                   begun._replace(covariance=begun.covariance - self.glint)
                   if p.glint_sigma else begun)
 
-    def adopt(self, memory: Memory, previous: 'Tracker') -> Memory:
+    def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.
 
         Where the estimator differs, each track starts anew from its last estimate's position and

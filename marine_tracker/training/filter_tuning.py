@@ -96,14 +96,14 @@ class Course(NamedTuple):
     straight [C].
     """
 
-    trial: track_trials.Trial
+    trial: track_trials.TrackTrial
     cells: tuple[str, ...]
     counts: NDArray[np.bool_]
     kind: NDArray[np.int64]
     straight: NDArray[np.bool_]
 
 
-class Found(NamedTuple):
+class TuningResult(NamedTuple):
     """What a search came to: the settings, their loss, and the best loss after each evaluation."""
 
     settings: Settings
@@ -176,7 +176,7 @@ def compare(error, against, on: Course, target: str, rng, resamples=1000) -> tra
 
 
 def search(judge: Callable[[Settings], float], evaluations: int, seed: int, start=None,
-           progress: Progress = lambda done, whole: None, family: Family = IMM) -> Found:
+           progress: Progress = lambda done, whole: None, family: Family = IMM) -> TuningResult:
     """The settings of the least loss found with so many evaluations; repeatable.
 
     Two thirds of them by differential evolution over the bounds (there are several valleys), the
@@ -227,7 +227,7 @@ def search(judge: Callable[[Settings], float], evaluations: int, seed: int, star
     except _SpentError:
         pass
     least, point = min(tried)
-    return Found(family.at(point), least, best)
+    return TuningResult(family.at(point), least, best)
 
 
 class _SpentError(Exception):
@@ -236,7 +236,7 @@ class _SpentError(Exception):
 
 def tune(target: str, tracks: int, evaluations: int, seed: int,
          progress: Progress = lambda done, whole: None, vessel_class: str = 'ship',
-         family: Family = IMM) -> tuple[Found, Course]:
+         family: Family = IMM) -> tuple[TuningResult, Course]:
     """The settings found for a target of STRAIGHT_WEIGHT, and the tracks they were found on."""
     on = course(tracks, _tracks_rng(seed, 0), vessel_class)
     return search(lambda settings: loss(errors(settings, on), on, target), evaluations, seed,

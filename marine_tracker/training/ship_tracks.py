@@ -162,7 +162,7 @@ def phase(manoeuvre):
     return out
 
 
-class Radar(NamedTuple):
+class RunRadar(NamedTuple):
     """What a radar is like, [B] each: every track may have one of its own.
 
     range_sigma m, bearing_sigma rad: as stated to the tracker
@@ -180,7 +180,7 @@ class Radar(NamedTuple):
     period: Array
 
 
-def observe(ships: Ships, radar: Radar, rng, hull=None) -> tuple[list[Plots], NDArray[np.bool_]]:
+def observe(ships: Ships, radar: RunRadar, rng, hull=None) -> tuple[list[Plots], NDArray[np.bool_]]:
     """Plots of every ship, a list over the scans, and which were detected [B, K].
 
     The first two scans always are. hull [B] m: how far the plots wander and jump over the ship,

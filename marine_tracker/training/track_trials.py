@@ -13,13 +13,13 @@ from ..estimators.contract import Estimator
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import unit_vector
 from ..types import Array, take
-from .ship_tracks import Radar, Ships, observe, phase
+from .ship_tracks import RunRadar, Ships, observe, phase
 
 SETTLED = 20                    # scans that do not count
 GATE, REFUSALS = 16.0, 2        # squared distance; plots refused in a row, at most
 
 
-class Trial(NamedTuple):
+class TrackTrial(NamedTuple):
     """B tracks of K scans and their plots.
 
     ships, radar; plots: K of B rows; seen [B, K]; counts [B, K]: scans that count;
@@ -27,7 +27,7 @@ class Trial(NamedTuple):
     """
 
     ships: Ships
-    radar: Radar
+    radar: RunRadar
     plots: list
     seen: NDArray[np.bool_]
     counts: NDArray[np.bool_]
@@ -44,15 +44,15 @@ class Outcome(NamedTuple):
     state: Any
 
 
-def trial(ships: Ships, radar: Radar, rng) -> Trial:
+def trial(ships: Ships, radar: RunRadar, rng) -> TrackTrial:
     """The tracks and a radar's plots of them."""
     plots, seen = observe(ships, radar, rng)
     counts = np.zeros(seen.shape, bool)
     counts[:, SETTLED:] = True
-    return Trial(ships, radar, plots, seen, counts, phase(ships.manoeuvre))
+    return TrackTrial(ships, radar, plots, seen, counts, phase(ships.manoeuvre))
 
 
-def run(estimator: Estimator, on: Trial, gated: bool, watch=None) -> Outcome:
+def run(estimator: Estimator, on: TrackTrial, gated: bool, watch=None) -> Outcome:
     """One estimator over the trial.
 
     gated  refuse plots far off, as the bank of `gwnn` does by itself

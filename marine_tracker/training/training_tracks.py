@@ -12,7 +12,7 @@ from ..simulation import motion
 from ..simulation.scenario import Scenario
 from ..types import Array, put, take
 from . import ship_tracks
-from .ship_tracks import Kind, Radar, Ships
+from .ship_tracks import Kind, RunRadar, Ships
 
 SPEED = 25.0                    # m/s, the fastest target the tracker is told of
 # Radars under hard conditions: least and most of what is drawn evenly, and in what part of them.
@@ -90,7 +90,7 @@ class Traffic(NamedTuple):
     """
 
     ships: Ships
-    radar: Radar
+    radar: RunRadar
     kind: NDArray[np.int64]
     sort: NDArray[np.int64]
     hull: Array
@@ -113,7 +113,7 @@ def draw(waters: Waters, kind, scans: int, rng) -> Traffic:
     hard = rng.random(count) < own['hard']
     some = rng.random((2, count)) < np.array([[WITH_OUTLIERS], [WRONGLY_STATED]])
     period = 60 / np.where(hard, drawn('hard_rpm'), drawn('rpm'))
-    radar = Radar(
+    radar = RunRadar(
         range_sigma=drawn('range_sigma'), bearing_sigma=np.radians(drawn('bearing_sigma')),
         detection=np.where(hard, rng.uniform(*DETECTION, count), drawn('detection')),
         outliers=np.where(hard & some[0], rng.uniform(*OUTLIERS, count), 0.0),

@@ -3,7 +3,7 @@ import pytest
 
 from marine_tracker.arpa import acquisition
 from marine_tracker.arpa.acquisition import (
-    Settings,
+    AcquisitionSettings,
     acquire,
     begin,
     cancel,
@@ -36,7 +36,7 @@ def run(scenes, state=None, settings=None, period=3.0, start=0.0):
     """The state and the events after the last scene, `period` s apart."""
     state, events = state or begin(), None
     for k, scene in enumerate(scenes):
-        state, events = step(state, settings or Settings(), scene, start + k * period)
+        state, events = step(state, settings or AcquisitionSettings(), scene, start + k * period)
     return state, events
 
 
@@ -49,12 +49,12 @@ def test_every_confirmed_track_is_acquired_by_default(situate):
     state, events = run([scene])
     assert ids(state) == [1, 3] and told(events) == [('acquired', 1), ('acquired', 3)]
     assert state.targets.number.tolist() == [1, 3] and (state.targets.acquired == AUTOMATIC).all()
-    state, events = step(state, Settings(), scene, 3.0)
+    state, events = step(state, AcquisitionSettings(), scene, 3.0)
     assert ids(state) == [1, 3] and told(events) == [] and (state.targets.since == 0).all()
 
 
 def test_in_zones_only_what_enters_a_guard_zone_is_acquired_and_stays_a_target(situate):
-    settings = Settings(automatic='zones')
+    settings = AcquisitionSettings(automatic='zones')
     far, near = [[2500, 0], [-3000, 0]], [[1990, 0], [-3000, 0]]
     state, _ = run([situate(far, zones=RING)], settings=settings)
     assert ids(state) == []
@@ -66,7 +66,7 @@ def test_in_zones_only_what_enters_a_guard_zone_is_acquired_and_stays_a_target(s
 
 def test_nowhere_acquires_by_hand_only(situate):
     scene = situate([[1500, 0], [0, 1500]], zones=RING)
-    settings = Settings(automatic='nowhere')
+    settings = AcquisitionSettings(automatic='nowhere')
     state, _ = run([scene], settings=settings)
     assert ids(state) == []
     state, events = run([scene], acquire(state, [10, 1400], 1.0), settings, start=3.0)
@@ -77,7 +77,7 @@ def test_nowhere_acquires_by_hand_only(situate):
 
 def test_an_unknown_place_to_acquire_is_an_error_that_names_it(situate):
     with pytest.raises(ValueError, match="'zone'; it must be one of everywhere, zones, nowhere"):
-        run([situate([[0, 0]])], settings=Settings(automatic='zone'))
+        run([situate([[0, 0]])], settings=AcquisitionSettings(automatic='zone'))
 
 
 def test_a_click_takes_the_nearest_track_that_is_no_target_yet(situate):
@@ -167,14 +167,14 @@ def test_a_target_that_was_held_for_some_time_is_lost(situate):
 
 
 def test_a_track_that_was_no_target_ends_without_a_word(situate):
-    settings = Settings(automatic='nowhere')
+    settings = AcquisitionSettings(automatic='nowhere')
     state, _ = run([situate([[0, 0]])], settings=settings)
     _, events = run([situate([[0, 0]], status=LOST)], state, settings, start=3.0)
     assert told(events) == []
 
 
 def test_a_target_merged_into_another_track_goes_on_as_that(situate):
-    settings = Settings(automatic='nowhere')
+    settings = AcquisitionSettings(automatic='nowhere')
     both = situate([[0, 0], [30, 0], [10, 0]], status=[CONFIRMED, CONFIRMED, TENTATIVE])
     state, _ = run([both], acquire(begin(), [0, 0], 0.0), settings)
     assert ids(state) == [1]
@@ -202,7 +202,7 @@ def test_tracks_in_an_exclusion_zone_are_not_acquired(situate):
 def test_exclusion_beats_guard(situate):
     ring = '{name: ring, kind: guard, range_m: [0, 9000]}'
     state, _ = run([situate([[0, 0], [600, 0]], zones=f'{QUAY[:-1]}, {ring}]')],
-                   settings=Settings(automatic='zones'))
+                   settings=AcquisitionSettings(automatic='zones'))
     assert ids(state) == [2]
 
 
@@ -226,7 +226,7 @@ def test_a_target_at_the_border_of_an_exclusion_zone_does_not_come_and_go(situat
     state, acquired = begin(), 0
     for k in range(60):
         scene = situate([[499 + 2 * (k % 2), 0]], zones=QUAY)
-        state, events = step(state, Settings(border=20.0), scene, 3.0 * k)
+        state, events = step(state, AcquisitionSettings(border=20.0), scene, 3.0 * k)
         acquired += ('acquired', 1) in told(events)
     assert acquired <= 1
     state, events = run([situate([[520, 0]], zones=QUAY)] * 9, state, start=180.0)
@@ -238,19 +238,19 @@ def test_a_target_at_the_border_of_an_exclusion_zone_does_not_come_and_go(situat
 def test_the_nearest_are_acquired_first(situate):
     position = np.column_stack([1000 + 100 * np.arange(30), np.zeros(30)])
     order = np.random.default_rng(1).permutation(30)
-    state, _ = run([situate(position[order])], settings=Settings(capacity=10))
+    state, _ = run([situate(position[order])], settings=AcquisitionSettings(capacity=10))
     assert sorted(state.targets.id.tolist()) == sorted((np.argsort(order)[:10] + 1).tolist())
     assert state.waiting == 20
 
 
 def test_those_that_close_come_before_those_nearer_that_go(situate):
     scene = situate([[3000, 3000], [3000, 0]], velocity=[[-4, -2.5], [8, 0]])
-    state, _ = run([scene], settings=Settings(capacity=1))
+    state, _ = run([scene], settings=AcquisitionSettings(capacity=1))
     assert ids(state) == [1]
 
 
 def test_a_newcomer_takes_a_place_only_if_it_is_clearly_nearer(situate):
-    settings = Settings(capacity=2)
+    settings = AcquisitionSettings(capacity=2)
     state, _ = run([situate([[5000, 0], [4000, 0]])], settings=settings)
     state, events = run([situate([[5000, 0], [4000, 0], [4100, 0]])], state, settings, start=3.0)
     assert told(events) == [] and state.waiting == 1
@@ -263,7 +263,7 @@ def test_a_newcomer_takes_a_place_only_if_it_is_clearly_nearer(situate):
 
 
 def test_two_tracks_as_near_do_not_take_turns(situate):
-    settings, state, swaps = Settings(capacity=1), begin(), 0
+    settings, state, swaps = AcquisitionSettings(capacity=1), begin(), 0
     rng = np.random.default_rng(3)
     for k in range(100):
         scene = situate(np.column_stack([3000 + rng.normal(0, 60, 2), np.zeros(2)]))
@@ -279,7 +279,7 @@ def closing(count, first=3000):
 
 
 def test_a_dangerous_track_takes_the_place_of_a_nearer_harmless_one(situate):
-    settings = Settings(capacity=1)
+    settings = AcquisitionSettings(capacity=1)
     state, _ = run([situate([[1500, 0]])], settings=settings)
     danger, velocity = closing(1, 6000)
     scene = situate(np.vstack([[[1500, 0]], danger]), np.vstack([[[0, 0]], velocity]))
@@ -288,7 +288,7 @@ def test_a_dangerous_track_takes_the_place_of_a_nearer_harmless_one(situate):
 
 
 def test_a_dangerous_track_need_not_come_much_nearer_than_the_one_that_gives_way(situate):
-    settings = Settings(capacity=1)
+    settings = AcquisitionSettings(capacity=1)
     state, _ = run([situate([[1000, 0]])], settings=settings)
     scene = situate([[1000, 0], [900, 3000]], [[0, 0], [0, -8]])
     state, _ = run([scene], state, settings, start=3.0)
@@ -296,7 +296,7 @@ def test_a_dangerous_track_need_not_come_much_nearer_than_the_one_that_gives_way
 
 
 def test_dangerous_targets_and_those_by_hand_never_give_way(situate):
-    settings = Settings(capacity=2)
+    settings = AcquisitionSettings(capacity=2)
     danger, velocity = closing(1)
     base = np.vstack([danger, [[9000, 0]]]), np.vstack([velocity, [[0, 0]]])
     state, _ = run([situate(*base)], acquire(begin(), [9000, 0], 0.0), settings)
@@ -308,7 +308,7 @@ def test_dangerous_targets_and_those_by_hand_never_give_way(situate):
 
 
 def test_a_click_takes_the_place_of_the_farthest_automatic_target(situate):
-    settings, scene = Settings(capacity=2), situate([[1000, 0], [2000, 0], [3000, 0]])
+    settings, scene = AcquisitionSettings(capacity=2), situate([[1000, 0], [2000, 0], [3000, 0]])
     state, _ = run([scene], settings=settings)
     state, events = run([scene], acquire(state, [3000, 0], 1.0), settings, start=3.0)
     assert ids(state) == [1, 3]
@@ -316,7 +316,7 @@ def test_a_click_takes_the_place_of_the_farthest_automatic_target(situate):
 
 
 def test_a_click_finds_no_room_among_targets_by_hand(situate):
-    settings, scene = Settings(capacity=2, automatic='nowhere', click_radius=100), situate(
+    settings, scene = AcquisitionSettings(capacity=2, automatic='nowhere', click_radius=100), situate(
         [[1000, 0], [2000, 0], [3000, 0]])
     state = begin()
     for k in (1, 2):
@@ -329,13 +329,13 @@ def test_a_click_finds_no_room_among_targets_by_hand(situate):
 def test_a_smaller_capacity_takes_effect_at_once(situate):
     scene = situate([[1000, 0], [2000, 0], [3000, 0], [4000, 0]])
     state, _ = run([scene])
-    state, events = run([scene], state, Settings(capacity=2), start=3.0)
+    state, events = run([scene], state, AcquisitionSettings(capacity=2), start=3.0)
     assert ids(state) == [1, 2] and len(told(events)) == 2
 
 
 def test_the_capacity_is_never_exceeded_but_by_what_never_gives_way(situate):
     """A busy hour: tracks come, go, close, are clicked."""
-    rng, state, settings = np.random.default_rng(5), begin(), Settings(capacity=12)
+    rng, state, settings = np.random.default_rng(5), begin(), AcquisitionSettings(capacity=12)
     for k in range(200):
         count = int(rng.integers(0, 40))
         chosen = np.sort(rng.permutation(60)[:count])
@@ -374,7 +374,7 @@ def test_a_click_acquires_a_cancelled_target_again(situate):
 
 
 def test_a_cancelled_target_is_acquired_when_it_enters_a_guard_zone_anew(situate):
-    settings = Settings(automatic='zones', border=20.0)
+    settings = AcquisitionSettings(automatic='zones', border=20.0)
     inside, out = situate([[1500, 0]], zones=RING), situate([[900, 0]], zones=RING)
     state, _ = run([inside], settings=settings)
     state, _ = cancel(state, 1)
@@ -425,6 +425,6 @@ def test_nothing_in_the_arguments_is_written_to(situate):
     scene = situate([[0, 0], [600, 0], [1500, 0]], zones=QUAY)
     state, _ = run([scene])
     before = [np.copy(a) for part in state[:3] for a in part] + [np.copy(a) for a in scene]
-    step(acquire(cancel(state, 2)[0], [0, 0], 1.0), Settings(capacity=1), scene, 3.0)
+    step(acquire(cancel(state, 2)[0], [0, 0], 1.0), AcquisitionSettings(capacity=1), scene, 3.0)
     for a, b in zip(before, [a for part in state[:3] for a in part] + list(scene)):
         np.testing.assert_array_equal(a, b)

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from marine_tracker.arpa import acquisition, alarms, alerts, zones
 from marine_tracker.arpa.alarm_text import parts, text
-from marine_tracker.arpa.alarms import NAMES, Settings, Silence, Tracking
+from marine_tracker.arpa.alarms import NAMES, AlarmSettings, Silence, Tracking
 from marine_tracker.arpa.alerts import STATES
 from marine_tracker.arpa.situation import Limits
 from marine_tracker.geometry import KNOT, NAUTICAL_MILE
@@ -33,8 +33,8 @@ class Bridge:
     def __init__(self, situate, zone_text='', acquiring=None, **alarm_settings):
         self.situate, self.now = situate, -PERIOD
         self.zones = zones.parse(zone_text)
-        self.acquiring = acquiring or acquisition.Settings(brief=0.0)
-        self.settings = Settings(**alarm_settings)
+        self.acquiring = acquiring or acquisition.AcquisitionSettings(brief=0.0)
+        self.settings = AlarmSettings(**alarm_settings)
         self.acquisition, self.alerts = acquisition.begin(), alerts.begin()
 
     def scan(self, position, velocity=None, fallen=0, overlap=None, other=None, **about):
@@ -168,7 +168,7 @@ def test_when_own_ship_comes_to_rest_its_dangers_end(bridge):
 
 
 def test_a_target_in_acquisition_and_a_track_that_is_no_target_raise_no_danger(bridge):
-    one = bridge(acquiring=acquisition.Settings(automatic='nowhere'))
+    one = bridge(acquiring=acquisition.AcquisitionSettings(automatic='nowhere'))
     one.acquisition = acquisition.acquire(one.acquisition, [0.0, 2000.0], 0.0)
     for _ in range(5):
         assert one.scan([[0.0, 2000.0], [0.0, 3000.0]], [[0.0, -8.0]] * 2,
@@ -201,14 +201,14 @@ def test_a_dangerous_target_that_is_lost_tells_both(bridge):
 @pytest.mark.parametrize(('scans', 'expected'), [
     (13, []), (14, [('lost target', 1, UNACKNOWLEDGED)])])
 def test_a_target_lost_soon_after_it_was_acquired_raises_nothing(bridge, scans, expected):
-    one = bridge(acquiring=acquisition.Settings(brief=40.0))
+    one = bridge(acquiring=acquisition.AcquisitionSettings(brief=40.0))
     for _ in range(scans):                                  # 39 s and 42 s until it is lost
         one.scan([[3000.0, 4000.0]])
     assert one.scan([[3000.0, 4000.0]], status=LOST) == expected
 
 
 def test_a_target_acquired_by_hand_raises_however_soon_it_is_lost(bridge):
-    one = bridge(acquiring=acquisition.Settings(brief=40.0))
+    one = bridge(acquiring=acquisition.AcquisitionSettings(brief=40.0))
     one.acquisition = acquisition.acquire(one.acquisition, [3000.0, 4000.0], 0.0)
     one.scan([[3000.0, 4000.0]])
     assert one.scan([[3000.0, 4000.0]], status=LOST) == [('lost target', 1, UNACKNOWLEDGED)]
@@ -268,7 +268,7 @@ def test_a_target_first_detected_inside_raises(bridge):
 
 
 def test_a_track_in_a_guard_zone_raises_where_nothing_is_acquired(bridge):
-    one = bridge(f'[{RING}]', acquisition.Settings(automatic='nowhere'))
+    one = bridge(f'[{RING}]', acquisition.AcquisitionSettings(automatic='nowhere'))
     assert one.scan([[1500.0, 0.0]]) == [('new target', 1, UNACKNOWLEDGED)]
 
 
@@ -318,7 +318,7 @@ def test_cancelled_and_excluded_tracks_are_no_new_targets(bridge):
 # capacity, fallback, swap risk, sensors
 
 def test_capacity_warns_at_nine_tenths_and_when_full(bridge):
-    one = bridge(acquiring=acquisition.Settings(capacity=20))
+    one = bridge(acquiring=acquisition.AcquisitionSettings(capacity=20))
     def crowd(count):
         return one.scan(np.column_stack([5000.0 + 300 * np.arange(count), np.zeros(count)]))
     assert crowd(17) == []
@@ -381,7 +381,7 @@ def test_a_danger_tells_its_values(bridge):
 
 def test_every_kind_has_words_a_priority_and_a_rule():
     count = len(NAMES)
-    assert len(alarms.PRIORITY) == len(alarms.rules(Settings())) == count
+    assert len(alarms.PRIORITY) == len(alarms.rules(AlarmSettings())) == count
     kinds = np.arange(count)
     every = alerts.Alerts(kinds.astype(np.int8), 0 * kinds, kinds, kinds, 0 * kinds.astype(np.int8),
                           0.0 * kinds, 0.0 * kinds, np.zeros((count, 2)),
@@ -397,7 +397,7 @@ def test_every_kind_has_words_a_priority_and_a_rule():
 def test_whatever_happens_every_change_follows_from_the_state_before(situate, seed):
     """Random traffic, operator and sensors: changes are the differences, no alert is twofold."""
     rng = np.random.default_rng(seed)
-    one = Bridge(situate, f'[{RING}, {INNER}]', acquisition.Settings(capacity=6))
+    one = Bridge(situate, f'[{RING}, {INNER}]', acquisition.AcquisitionSettings(capacity=6))
     before, where = {}, rng.uniform(-2500, 2500, (15, 2))
     for _ in range(30):
         chosen = np.sort(rng.permutation(15)[:rng.integers(0, 12)])

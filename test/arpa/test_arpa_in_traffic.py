@@ -56,16 +56,16 @@ def watch():
         memory, report = tracker.step(memory, scan)
         plots = locate(scan.plots, scan.own_ship, 10.0,
                        np.radians(tracker.parameters.bearing_sigma_deg))
-        moving = motion.step(moving, report, plots, motion.Settings())
+        moving = motion.step(moving, report, plots, motion.MotionSettings())
         shown = motion.at(moving, now)
         own = own_motion(scan.own_ship, now, 0.0)
         situation = look(report.tracks, report.reason, shown.position,
                          cpa.approach(shown, own, limits.cpa, limits.tcpa), shown.stationary,
                          zone, own, limits)
-        targets, events = acquisition.step(targets, acquisition.Settings(), situation, now)
+        targets, events = acquisition.step(targets, acquisition.AcquisitionSettings(), situation, now)
         gates = swap_risk(shown.position, shown.covariance[:, :2, :2] + 400 * np.eye(2),
                           own.position, tracker.gate_size)
-        alarm, changed = alarms.step(alarm, alarms.Settings(), situation, targets, events, zone,
+        alarm, changed = alarms.step(alarm, alarms.AlarmSettings(), situation, targets, events, zone,
                                      alarms.Tracking(200, 0, *gates), now)
         past = past_positions.step(past, report.tracks.id, report.tracks.first_time,
                                    shown.position, shown.velocity, own.position, own.velocity, now)

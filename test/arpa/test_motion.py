@@ -10,7 +10,7 @@ import pytest
 
 from marine_tracker.arpa import motion
 from marine_tracker.arpa.cpa import OwnMotion, approach, cpa_of
-from marine_tracker.arpa.motion import MANOEUVRING, PRESETS, STEADY, Settings
+from marine_tracker.arpa.motion import MANOEUVRING, PRESETS, STEADY, MotionSettings
 from marine_tracker.geometry import (
     locate,
     polar_to_position,
@@ -56,7 +56,7 @@ class Run:
 
     def __init__(self, position, velocity, seed, settings=None, sigmas=(RANGE, BEARING)):
         """position, velocity [scans, N, 2]."""
-        settings = settings or Settings(glint_sigma=GLINT)
+        settings = settings or MotionSettings(glint_sigma=GLINT)
         rng = np.random.default_rng(seed)
         self.position, self.velocity = position, velocity
         count = position.shape[1]
@@ -135,7 +135,7 @@ def test_deviations_on_a_straight_course_are_right(fleet):
 @pytest.mark.parametrize('factor', [0.4, 2.5])
 def test_a_radar_described_wrongly_still_gives_fair_deviations(factor):
     """Sigmas configured 2.5 times too small or too large, unlearned: 6.2 and .16 instead of 1."""
-    run = Run(*straight(400, 67, seed=3), seed=3, settings=Settings(glint_sigma=GLINT * factor),
+    run = Run(*straight(400, 67, seed=3), seed=3, settings=MotionSettings(glint_sigma=GLINT * factor),
               sigmas=(RANGE * factor, BEARING * factor))
     assert 0.5 < run.nees(66).mean() < 1.5
 
@@ -242,7 +242,7 @@ def fed(polars, settings=None, missed=()):
                 plot[target] = -1
         begun = plots_of(polars[0], 0.0) if k == 1 else NONE
         memory = motion.step(memory, report(np.arange(count), plot, begun),
-                             plots_of(polar, k * PERIOD), settings or Settings())
+                             plots_of(polar, k * PERIOD), settings or MotionSettings())
     return memory
 
 
@@ -274,7 +274,7 @@ def test_tracks_come_and_go_and_do_not_touch_each_other(polars):
             begun = take(plots_of(polars[9], 9 * PERIOD), np.array([5]))
         plot = place[np.where(ids == 9, 5, ids)]
         memory = motion.step(memory, report(ids, plot, begun),
-                             take(plots_of(polars[k], k * PERIOD), order), Settings())
+                             take(plots_of(polars[k], k * PERIOD), order), MotionSettings())
         np.testing.assert_array_equal(memory.id, ids)
     found = motion.at(memory, 29 * PERIOD)
     same(take(found, np.arange(4)), take(whole, np.array([0, 1, 2, 4])), slice(None))
@@ -298,11 +298,11 @@ def test_a_missed_plot_leaves_a_track_behind_and_extrapolates_it(polars):
 def test_a_track_without_any_plot_is_unknown_until_it_has_one(polars):
     """As when motion is asked of tracks that were there before it: it begins with their next."""
     memory = motion.step(motion.begin(), report([4, 7], [-1, 0]), plots_of(polars[0], 0.0),
-                         Settings())
+                         MotionSettings())
     now = motion.at(memory, 1.0)
     assert np.isnan(now.position[0]).all() and np.isfinite(now.position[1]).all()
     assert not now.steady[0] and not now.stationary[0]
-    memory = motion.step(memory, report([4, 7], [1, 0]), plots_of(polars[1], PERIOD), Settings())
+    memory = motion.step(memory, report([4, 7], [1, 0]), plots_of(polars[1], PERIOD), MotionSettings())
     assert np.isfinite(motion.at(memory, PERIOD).covariance).all()
 
 
@@ -313,7 +313,7 @@ def test_what_is_handed_in_stays_as_it_was(polars):
               if isinstance(a, np.ndarray)]
     for array in frozen:
         array.flags.writeable = False
-    after = motion.step(memory, report(np.arange(6), np.arange(6)), plots, Settings())
+    after = motion.step(memory, report(np.arange(6), np.arange(6)), plots, MotionSettings())
     motion.at(after, 21 * PERIOD)
     motion.at(memory, 21 * PERIOD)
 
@@ -357,7 +357,7 @@ def test_through_the_tracker_every_track_has_its_motion():
                                                   bearing, np.full(len(distance), 10.0)), own)
         memory, found = tracker.step(memory, scan)
         plots = locate(scan.plots, own, p.range_sigma_m, np.radians(p.bearing_sigma_deg))
-        moving = motion.step(moving, found, plots, Settings(glint_sigma=0.0))
+        moving = motion.step(moving, found, plots, MotionSettings(glint_sigma=0.0))
         np.testing.assert_array_equal(moving.id, found.tracks.id)
     shown = motion.at(moving, now + 1)
     for place, way in zip(start + (now + 1) * velocity, velocity):

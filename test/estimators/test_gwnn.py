@@ -29,7 +29,7 @@ def radar(count, **other):
     every = np.ones(count)
     values = {'range_sigma': 25.0, 'bearing_sigma': np.radians(0.4), 'detection': 1.0,
               'outliers': 0.0, 'truly': 1.0, 'period': PERIOD, **other}
-    return ship_tracks.Radar(**{name: value * every for name, value in values.items()})
+    return ship_tracks.RunRadar(**{name: value * every for name, value in values.items()})
 
 
 def make_trial(kind, seed=5, count=SHARE, scans=60, **other):

@@ -67,7 +67,7 @@ def test_a_tracker_without_tracks_keeps_nothing():
     """The judge's own check: of tracks elsewhere none counts."""
     scene = benchmark.traffic(10, 0, benchmark.WARM_UP + 3, 5)
     far = [np.full((10, 2), 1e6)] * 3
-    turns = [benchmark.Found(1.0, 0.5, far)]
+    turns = [benchmark.BenchmarkResult(1.0, 0.5, far)]
     lost = benchmark._result(turns, far, scene)
     assert lost.kept == 0 and np.isnan(lost.rmse)
     none = benchmark._result(turns, [np.zeros((0, 2))] * 3, scene)

@@ -7,7 +7,7 @@ import pytest
 
 from marine_tracker.extent.clustering import Gates
 from marine_tracker.extent.extents import Extents, one_a_ship
-from marine_tracker.extent.hulls import OUTLINE, RANDOM_MATRIX
+from marine_tracker.extent.hulls import BY_GAUSSIAN_PROCESS, BY_RANDOM_MATRIX
 from marine_tracker.lab.hulls import at_sea
 from marine_tracker.lab.hulls.at_sea import FINE, Case
 from marine_tracker.parameters import TrackerParameters
@@ -68,7 +68,7 @@ def test_ship_is_one_track_with_her_length_heading_and_centre(one_ship, extent, 
     assert shapes.extended.all() and shapes.length[0] == pytest.approx(200, abs=length)
     assert shapes.beam[0] > 25
     assert np.degrees(shapes.heading[0]) == pytest.approx(135, abs=4)
-    assert shapes.method[0] == (OUTLINE if extent == 'gp' else RANDOM_MATRIX)
+    assert shapes.method[0] == (BY_GAUSSIAN_PROCESS if extent == 'gp' else BY_RANDOM_MATRIX)
     there = truth.position[0] + (report.time[0] - truth.time[0]) * truth.velocity[0]
     at = run.tracker.extrapolate(report.tracks, report.time).position[0]
     assert np.hypot(*(at - there)) < centre

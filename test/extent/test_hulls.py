@@ -5,7 +5,7 @@ import pytest
 
 from marine_tracker.extent import hulls
 from marine_tracker.extent.clustering import Clusters
-from marine_tracker.extent.hulls import OUTLINE, RANDOM_MATRIX
+from marine_tracker.extent.hulls import BY_GAUSSIAN_PROCESS, BY_RANDOM_MATRIX
 from marine_tracker.extent.lit_edge import Edge
 from marine_tracker.types import Extrapolation
 
@@ -54,8 +54,8 @@ class Sea:
 def test_an_outline_takes_over_after_ten_clusters_and_finds_the_centre():
     sea = Sea(ships=12)
     methods = [sea.step().method.copy() for _ in range(30)]
-    assert (np.array(methods[:9]) == RANDOM_MATRIX).all()
-    assert (np.array(methods[12:]) == OUTLINE).all()
+    assert (np.array(methods[:9]) == BY_RANDOM_MATRIX).all()
+    assert (np.array(methods[12:]) == BY_GAUSSIAN_PROCESS).all()
     middle = sea.middle - [0, SPEED * PERIOD]
     plain, outlined = (np.hypot(*(mean[:, :2] - middle).T).mean() for mean in (
         sea.known.matrix.mean, sea.known.outline.mean))
@@ -69,14 +69,14 @@ def test_no_outline_without_cells_of_her_own(change):
     sea = Sea()
     for _ in range(20):
         known = sea.step(**change)
-    assert known.method == [RANDOM_MATRIX]
+    assert known.method == [BY_RANDOM_MATRIX]
 
 
 def test_no_outline_where_none_was_asked_for():
     sea = Sea(outlines=False)
     for _ in range(15):
         known = sea.step()
-    assert known.outline is None and known.method == [RANDOM_MATRIX]
+    assert known.outline is None and known.method == [BY_RANDOM_MATRIX]
 
 
 @pytest.mark.parametrize('change', [{'turned': np.radians(25)}, {'sigma': 25.0}])
@@ -85,10 +85,10 @@ def test_outline_that_is_contradicted_is_given_up(change):
     sea = Sea()
     for _ in range(16):
         known = sea.step()
-    assert known.method == [OUTLINE]
+    assert known.method == [BY_GAUSSIAN_PROCESS]
     fell = False
     for _ in range(25):
-        fell |= bool(sea.step(**change).method == [RANDOM_MATRIX])
+        fell |= bool(sea.step(**change).method == [BY_RANDOM_MATRIX])
     assert fell
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from marine_tracker.estimators.contract import Velocity
 from marine_tracker.extent import outline_measures, random_matrix
-from marine_tracker.extent.gaussian_process import OUTLINE, Model, start
+from marine_tracker.extent.gaussian_process import FIRST_RADIUS, Model, start
 from marine_tracker.extent.radial_function import contour as contour_prior
 from marine_tracker.extent.radial_function import radius
 
@@ -51,7 +51,7 @@ def test_deviations_are_those_of_drawn_outlines(prior, axes):
     mean = 1 + 0.1 * np.cos(2 * prior.angle) if prior is PAPER else np.ones(24)
     covariance = 1e-6 * prior.covariance
     state = target(prior, mean, axes)
-    state.covariance[0, OUTLINE:, OUTLINE:] = covariance
+    state.covariance[0, FIRST_RADIUS:, FIRST_RADIUS:] = covariance
     found = outline_measures.measures(state, prior)
     outline = outline_measures.of_gaussian_process(state, prior)
     draws = rng.multivariate_normal(mean, covariance, 2000)
@@ -83,7 +83,7 @@ def test_errors_of_drawn_outlines_are_calibrated():
     f = rng.multivariate_normal(truth, covariance, 400)
     state = start(Model(PAPER, 'gp', 0.0, 0.0), np.zeros(400), np.zeros((400, 6)), np.eye(6), f,
                   np.ones((400, 2)))
-    state.covariance[:, OUTLINE:, OUTLINE:] = covariance
+    state.covariance[:, FIRST_RADIUS:, FIRST_RADIUS:] = covariance
     found = outline_measures.error(state, PAPER, truth)
     assert abs(np.square(found.mahalanobis).mean() - 36) < 4 * np.sqrt(72 / 400)
     assert found.coverage.mean() == pytest.approx(0.9973, abs=0.004)

@@ -6,7 +6,7 @@ import pytest
 from marine_tracker.estimators.contract import Velocity
 from marine_tracker.extent import outline_measures, random_matrix, ship_outline
 from marine_tracker.extent.gaussian_process import HEADING
-from marine_tracker.extent.random_matrix import BOX
+from marine_tracker.extent.random_matrix import BOX_SPREAD
 from marine_tracker.geometry import unit_vector
 
 
@@ -14,7 +14,7 @@ def ship(heading, course, position=(1000.0, 1000.0), length=200.0, beam=32.0):
     """A random matrix of that length and beam, and its measures."""
     ahead = unit_vector(np.array(heading))
     abeam = unit_vector(np.array(heading + np.pi / 2))
-    extent = (length ** 2 * np.outer(ahead, ahead) + beam ** 2 * np.outer(abeam, abeam)) / BOX ** 2
+    extent = (length ** 2 * np.outer(ahead, ahead) + beam ** 2 * np.outer(abeam, abeam)) / BOX_SPREAD ** 2
     matrix = random_matrix.start(
         np.array([5.0]), np.array([position]), 4.0 * np.eye(2)[None],
         Velocity(6 * unit_vector(np.array([course])), 0.01 * np.eye(2)[None]), extent[None], 500.0)

@@ -16,7 +16,7 @@ from marine_tracker.lab.extended.trials import (
     SIGMA,
     Case,
     Drawn,
-    Trial,
+    ExtendedTrial,
     gaussian_process_trial,
     random_matrix_trial,
     scene,
@@ -94,12 +94,12 @@ def test_the_jacobian_is_within_the_figure_demanded():
 def made_up(**of_gp_mc):
     """Findings in which all the paper's claims hold, but for what is given of gp_mc."""
     drawn = Drawn(NOTHING)
-    trials = {'gp': Trial(1.1, 12.0, 0.8, 0.5, 1.2, 1.0, drawn),
-              'gp_ts': Trial(1.05, 8.0, 0.9, 0.7, 1.1, 1.0, drawn),
-              'gp_ss': Trial(1.05, 8.0, 0.9, 0.8, 1.1, 1.0, drawn),
-              'gp_mc': Trial(1.0, 6.0, 0.99, 0.9, 1.0, 1.0, drawn)._replace(**of_gp_mc),
-              'gp_q15': Trial(1.0, 6.0, 0.99, 0.9, 1.0, 1.0, drawn),
-              RANDOM_MATRIX: Trial(np.nan, np.nan, np.nan, np.nan, 1.3, 1.0, drawn)}
+    trials = {'gp': ExtendedTrial(1.1, 12.0, 0.8, 0.5, 1.2, 1.0, drawn),
+              'gp_ts': ExtendedTrial(1.05, 8.0, 0.9, 0.7, 1.1, 1.0, drawn),
+              'gp_ss': ExtendedTrial(1.05, 8.0, 0.9, 0.8, 1.1, 1.0, drawn),
+              'gp_mc': ExtendedTrial(1.0, 6.0, 0.99, 0.9, 1.0, 1.0, drawn)._replace(**of_gp_mc),
+              'gp_q15': ExtendedTrial(1.0, 6.0, 0.99, 0.9, 1.0, 1.0, drawn),
+              RANDOM_MATRIX: ExtendedTrial(np.nan, np.nan, np.nan, np.nan, 1.3, 1.0, drawn)}
     return {(case, name): trial for case in figures.CASES
             for name, trial in trials.items()}
 

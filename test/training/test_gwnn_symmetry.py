@@ -27,7 +27,7 @@ def test_tracks_mirrored_give_the_inputs_mirrored():
     rng = np.random.default_rng(6)
     ships = ship_tracks.sail(['sharp'] * count, np.full(count, 5000.0),
                              np.full((count, scans), PERIOD), rng)
-    radar = ship_tracks.Radar(15 * every, 0.006 * every, every, 0 * every, every,
+    radar = ship_tracks.RunRadar(15 * every, 0.006 * every, every, 0 * every, every,
                               PERIOD * every)
     plots, _ = ship_tracks.observe(ships, radar, rng)
     mirror = np.diag([-1.0, 1.0])

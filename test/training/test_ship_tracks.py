@@ -39,7 +39,7 @@ def test_plots_have_the_noise_outliers_and_gaps_asked_for():
     count, scans, every = 300, 40, np.ones(300)
     ships = ship_tracks.sail(['steady'] * count, np.full(count, 8000.0),
                              np.full((count, scans), PERIOD), np.random.default_rng(2))
-    radar = ship_tracks.Radar(20 * every, 0.005 * every, 0.8 * every, 0.0 * every, 2 * every,
+    radar = ship_tracks.RunRadar(20 * every, 0.005 * every, 0.8 * every, 0.0 * every, 2 * every,
                               PERIOD * every)
     plots, seen = ship_tracks.observe(ships, radar, np.random.default_rng(3))
     off = np.stack([p.range for p in plots], 1) - np.hypot(*np.moveaxis(ships.position, -1, 0))
@@ -60,7 +60,7 @@ def test_plots_wander_and_jump_over_a_hull():
         np.tile(PERIOD * np.arange(scans), (count, 1)),
         np.tile([0.0, 1000.0], (count, scans, 1)), np.zeros((count, scans, 2)),
         np.zeros((count, scans), bool))
-    radar = ship_tracks.Radar(1e-6 * every, 1e-9 * every, every, 0 * every, every, PERIOD * every)
+    radar = ship_tracks.RunRadar(1e-6 * every, 1e-9 * every, every, 0 * every, every, PERIOD * every)
     plots, _ = ship_tracks.observe(still, radar, np.random.default_rng(4), 4.0 * every)
     along = np.stack([p.range for p in plots], 1) - 1000.0
     across = 1000.0 * np.stack([p.bearing for p in plots], 1)

@@ -9,7 +9,7 @@ All take the same plots. From them come 13 experts, each with its own opinion wh
     12     a second IMM, good at what the base is not
 
 The base IMM's mean is where a network that says nothing leaves the track. There is a bank for
-each vessel class (`BANKS`); what tells them apart is data (`Settings`).
+each vessel class (`BANKS`); what tells them apart is data (`BankSettings`).
 """
 
 import hashlib
@@ -31,7 +31,7 @@ CS, SECOND_IMM = 11, 12         # experts
 TURNS = ((2, 3), (5, 6))        # experts right and left
 
 
-class Settings(NamedTuple):
+class BankSettings(NamedTuple):
     """What tells the bank of one vessel class from that of another.
 
     base       the IMM [4] that a silent network leaves: straight, any, turns right and left
@@ -80,14 +80,14 @@ STRONGEST = {
 }
 
 SETTINGS = {
-    'ship': Settings(
+    'ship': BankSettings(
         base=TUNED_ON_ALL,
         nine=_modes((0.0005, 0.05, 0.6) + (0.03,) * 6, _turns(1, 2.5, 6),
                     (0.992,) + (0.85,) * 8),
         entered=(1, 1, 0.5, 1, 1, 1, 1, 0.5, 0.5), slow=(0.0005, 0.006, 0.03, 0.12),
         second=TUNED_FOR_MANOEUVRE, manoeuvre=cs_kalman.Manoeuvre(1.0, 1 / 60)),
     # The product's own filters, so that the network begins where they are.
-    'small_craft': Settings(
+    'small_craft': BankSettings(
         base=imm.PRESETS['small_craft'],
         nine=_modes((0.005, 0.2, 1.5) + (0.1,) * 6, _turns(4, 10, 22), (0.97,) + (0.85,) * 8),
         entered=(1, 1, 0.5, 1, 1, 1, 1, 0.5, 0.5), slow=(0.002, 0.02, 0.1, 0.4),
@@ -106,7 +106,7 @@ class Filters(NamedTuple):
     mark   of the settings: weights belong to the filters that they were trained over
     """
 
-    settings: Settings
+    settings: BankSettings
     modes: linear_modes.Bank
     base: linear_modes.Bank
     start: Array
@@ -114,7 +114,7 @@ class Filters(NamedTuple):
     mark: str
 
 
-def build(settings: Settings) -> Filters:
+def build(settings: BankSettings) -> Filters:
     """The bank with these settings."""
     slow = _modes(settings.slow, (0,) * 4, (1,) * 4)
     groups = (settings.base, settings.nine, slow, settings.second)
@@ -134,7 +134,7 @@ def build(settings: Settings) -> Filters:
                    np.stack([turn_rate > 0, turn_rate < 0]).astype(float), _mark(settings))
 
 
-def _mark(settings: Settings) -> str:
+def _mark(settings: BankSettings) -> str:
     numbers = [number for modes in (settings.base, settings.nine, settings.second)
                for number in (*modes.noise, *modes.turn_rate, *modes.stay, modes.period)]
     numbers += [*settings.entered, *settings.slow, *settings.manoeuvre]

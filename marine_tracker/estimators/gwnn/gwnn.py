@@ -77,7 +77,7 @@ class GwnnState(NamedTuple):
     what the track has learned."""
 
     bank: filters.BankState
-    memory: inputs.Memory
+    memory: inputs.ResidualMemory
     monitor: Monitor
     output: Array
     adapted: adaptation.Adapted
@@ -154,7 +154,7 @@ def flaw(output):
     return np.where(~np.isfinite(output).all(1), 2.0, np.where(alone > MOST, 3.0, 0.0))
 
 
-def advance(bank: filters.Filters, state: filters.BankState, memory: inputs.Memory, plots):
+def advance(bank: filters.Filters, state: filters.BankState, memory: inputs.ResidualMemory, plots):
     """States and memories of N rows after one plot each; and what the filters had expected.
 
     A plot far off a settled track is refused by all filters alike, up to REFUSALS times in a

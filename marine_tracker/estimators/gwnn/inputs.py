@@ -41,7 +41,7 @@ COUNT = sum(1 if kind in (S, P) else 2 for kind in KINDS)
 _KEEP = np.array([1 - 1 / m for m in MEMORIES] + [keep for keep in SLOW_KEEP for _ in range(4)])
 
 
-class Memory(NamedTuple):
+class ResidualMemory(NamedTuple):
     """What is kept of the plots beside the filters.
 
     frame     [N, 4]      unit vector east and north to the last plot; its sigma along, across, m
@@ -69,11 +69,11 @@ class Memory(NamedTuple):
     plots: Array
 
 
-def begin(plots: Plots) -> Memory:
+def begin(plots: Plots) -> ResidualMemory:
     """Memories of one plot each."""
     count = len(plots.time)
     zero, pair = np.zeros(count), np.zeros((count, 2))
-    return Memory(frame_of(plots), np.zeros((count, TRENDS, 2)), pair,
+    return ResidualMemory(frame_of(plots), np.zeros((count, TRENDS, 2)), pair,
                   np.full((count, 2, 1 + len(JUDGED)), 2.0), pair + 1, pair.copy(),
                   zero, zero.copy(), zero + SCAN, zero + 1)
 
@@ -124,7 +124,7 @@ def variances(frame, covariance):
         for at, unit in ((slice(0, 2), sigma), (slice(2, 4), sigma / VELOCITY))])
 
 
-def remember(memory: Memory, expected: filters.Expected, plots: Plots, step, used) -> Memory:
+def remember(memory: ResidualMemory, expected: filters.Expected, plots: Plots, step, used) -> ResidualMemory:
     """Memories after one plot each, which the filters took where `used` [N] holds."""
     frame = frame_of(plots)
     tells = (frame[:, 2:] < TELLS * memory.frame[:, 2:]).all(1)
@@ -150,12 +150,12 @@ def remember(memory: Memory, expected: filters.Expected, plots: Plots, step, use
     detail = np.where(both, DETAIL_KEEP * memory.detail + (1 - DETAIL_KEEP) * differ,
                       memory.detail)
     taken = used[:, None]
-    return Memory(frame, np.where(taken[..., None], trend, memory.trend), nis, fit, detail,
+    return ResidualMemory(frame, np.where(taken[..., None], trend, memory.trend), nis, fit, detail,
                   np.where(taken, off, memory.last), used.astype(float),
                   np.where(used, 0.0, memory.refused + 1), step, memory.plots + tells)
 
 
-def inputs(bank: filters.Filters, state: filters.BankState, memory: Memory, period):
+def inputs(bank: filters.Filters, state: filters.BankState, memory: ResidualMemory, period):
     """The network's inputs [N, COUNT] after a plot; period s of the radar (or [N])."""
     frame, sigma = memory.frame, memory.frame[:, 2:].T
     ahead = filters.look(bank, state, np.atleast_1d(np.asarray(period, float)))

@@ -112,7 +112,7 @@ def in_sharp_turns(name: str, scene: str, runs: int, seed: int) -> Errors:
     ships = ship_tracks.sail(['sharp'] * runs, rng.uniform(near, far, runs),
                              np.full((runs, SHARP_SCANS), PERIOD), rng, kinds=kinds)
     every = np.ones(runs)
-    on = track_trials.trial(ships, ship_tracks.Radar(
+    on = track_trials.trial(ships, ship_tracks.RunRadar(
         RANGE_SIGMA * every, BEARING_SIGMA * every, 0.9 * every, 0 * every, every,
         PERIOD * every), rng)
     estimator, count = made(name, vessel_class), np.arange(runs)

@@ -6,7 +6,7 @@ from ...evaluation.report import Claim
 from ...evaluation.result import BORNE_OUT, IN_PART, NOT_BORNE_OUT
 from ...extent.input_noise import VARIANTS
 from .figures import CASES, Findings
-from .trials import RANDOM_MATRIX, Trial
+from .trials import RANDOM_MATRIX, ExtendedTrial
 
 SOURCE = 'paper 004'
 PAPERS = ('gp', 'gp_ts', 'gp_ss', 'gp_mc')      # its four filters
@@ -19,8 +19,8 @@ def claims(found: Findings) -> list[Claim]:
     cases = {case: {name: found[case, name] for name in (*VARIANTS, RANDOM_MATRIX)}
              for case in CASES}
 
-    def told(claim: str, holds: Callable[[dict[str, Trial]], bool],
-             show: Callable[[Trial], str], names=PAPERS, note: str = '') -> Claim:
+    def told(claim: str, holds: Callable[[dict[str, ExtendedTrial]], bool],
+             show: Callable[[ExtendedTrial], str], names=PAPERS, note: str = '') -> Claim:
         kept = [case for case in cases if holds(cases[case])]
         values = '; '.join(f'{case}: ' + ', '.join(
             f'{name} {show(cases[case][name])}' for name in names) for case in cases)

@@ -19,7 +19,7 @@ from .trials import (
     START_VARIANCE,
     TURN_NOISE,
     Case,
-    Trial,
+    ExtendedTrial,
 )
 
 SPARSE, DENSE = 'complex, .8 a frame', 'complex, .8 a metre'
@@ -37,7 +37,7 @@ CELLS = 30              # of a scan whose cost is taken
 REPEATS = 20
 STEP = 1e-6             # m and rad, of finite differences
 
-Findings = dict[tuple[str, str], Trial]     # by case, or what is otherwise, and filter
+Findings = dict[tuple[str, str], ExtendedTrial]     # by case, or what is otherwise, and filter
 
 
 def figures(found: Findings) -> list[Figure]:

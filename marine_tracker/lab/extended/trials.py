@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...estimators.contract import Velocity
 from ...extent import gaussian_process, outline_measures, random_matrix
-from ...extent.gaussian_process import OUTLINE, GpState, Model
+from ...extent.gaussian_process import FIRST_RADIUS, GpState, Model
 from ...extent.radial_function import contour as contour_prior
 from ...geometry import unit_vector
 from ...types import Array
@@ -73,7 +73,7 @@ class Drawn(NamedTuple):
     deviation: Array = NOTHING
 
 
-class Trial(NamedTuple):
+class ExtendedTrial(NamedTuple):
     """What became of N runs of one filter; nan what a random matrix does not tell.
 
     rmse         m, of the outline in its own frame, RMS over angles and runs
@@ -121,7 +121,7 @@ def first_guess(runs: int, drawn: bool, rng):
 
 
 def gaussian_process_trial(case: Case, variant: str, runs: int, seed: int,
-                           full: bool = True, drawn: bool = False) -> Trial:
+                           full: bool = True, drawn: bool = False) -> ExtendedTrial:
     """All runs of one variant, on the scenes of the seed, with its bound."""
     rng = np.random.default_rng(seed)
     seen, guess = scene(case, runs, rng), first_guess(runs, drawn, rng)
@@ -143,8 +143,8 @@ def gaussian_process_trial(case: Case, variant: str, runs: int, seed: int,
     off = outline_measures.error(state, PRIOR, at_angles)
     found = outline_measures.of_gaussian_process(state, PRIOR)
     shape, place = _against(found, case, seen, state.mean)
-    return Trial(_rms(off.rmse), float(off.mahalanobis.mean()), float(off.coverage.mean()),
-                 _rms(np.sqrt(np.diag(bound)[OUTLINE:])), shape, place,
+    return ExtendedTrial(_rms(off.rmse), float(off.mahalanobis.mean()), float(off.coverage.mean()),
+                 _rms(np.sqrt(np.diag(bound)[FIRST_RADIUS:])), shape, place,
                  _drawn(state, found, at_angles, seen))
 
 
@@ -158,7 +158,7 @@ def _drawn(state: GpState, found: outline_measures.Outline, at_angles, seen: Sce
                  at.radius_sd[0])
 
 
-def random_matrix_trial(case: Case, runs: int, seed: int) -> Trial:
+def random_matrix_trial(case: Case, runs: int, seed: int) -> ExtendedTrial:
     """The same scenes by a random matrix that takes the points of a scan as one cluster."""
     rng = np.random.default_rng(seed)
     seen, guess = scene(case, runs, rng), first_guess(runs, False, rng)
@@ -173,7 +173,7 @@ def random_matrix_trial(case: Case, runs: int, seed: int) -> Trial:
         state = random_matrix.update(state, rows, centroid, scatter, count, noise[rows], ELLIPSE)
     found = outline_measures.of_random_matrix(state)
     shape, place = _against(found, case, seen, state.mean)
-    return Trial(np.nan, np.nan, np.nan, np.nan, shape, place,
+    return ExtendedTrial(np.nan, np.nan, np.nan, np.nan, shape, place,
                  Drawn(found.points[0] - seen.truth[-1, 0, :2]))
 
 
@@ -182,7 +182,7 @@ def _rms(values) -> float:
 
 
 def _against(found: outline_measures.Outline, case: Case, seen: Scene, mean):
-    """`shape` and `place` of a `Trial`."""
+    """`shape` and `place` of a `ExtendedTrial`."""
     truth = seen.truth[-1]
     shape = outline_measures.shape_error(found.points, truth[:, :2], truth[:, 4],
                                          SHAPES[case.shape])

@@ -101,7 +101,7 @@ def trial(vessel_class: str, kind: str, runs: int, radar: Conditions, rng, data:
     nearest = np.hypot(*np.moveaxis(ships.position, -1, 0)).min(1)
     ships = take(ships, np.flatnonzero(nearest > fleet.nearest)[:runs])
     every = np.ones(len(ships.time))
-    return track_trials.trial(ships, ship_tracks.Radar(
+    return track_trials.trial(ships, ship_tracks.RunRadar(
         radar.range_sigma * every, np.radians(radar.bearing_sigma) * every,
         radar.detection * every, radar.outliers * every, radar.truly * every,
         period * every), rng)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...extent.extents import Extents
-from ...extent.hulls import OUTLINE
+from ...extent.hulls import BY_GAUSSIAN_PROCESS
 from ...geometry import wrap_angle
 from ...parameters import TrackerParameters
 from ...simulation import radar, scenario
@@ -29,7 +29,7 @@ class Case(NamedTuple):
     cell: tuple[float, float]
 
 
-class Found(NamedTuple):
+class HullsAtSea(NamedTuple):
     """What one run ends with; errors are estimate minus truth, nan where nothing was tracked.
 
     length m, course rad, beam m; centre [2] m along and across the ship's axis, mean of the last
@@ -59,7 +59,7 @@ def scene(case: Case) -> scenario.Scenario:
                      'hull': {'beam_m': BEAMS[case.length]}}]}, 'one ship')
 
 
-def run(case: Case, extent: str, seed: int) -> Found:
+def run(case: Case, extent: str, seed: int) -> HullsAtSea:
     """One run of the tracker with extents."""
     loaded = scene(case)
     parameters = TrackerParameters(**loaded.tracker_parameters() | {'extent': extent})
@@ -84,7 +84,7 @@ def run(case: Case, extent: str, seed: int) -> Found:
                 wrap_angle(np.arctan2(*velocity) - course), shapes.beam[row] - BEAMS[case.length])
         if k >= SCANS // 2:
             off.append(axes @ (estimate.position[row] - there[row]))
-            lined.append(known.hulls.method[row] == OUTLINE)
+            lined.append(known.hulls.method[row] == BY_GAUSSIAN_PROCESS)
     if not off:
-        return Found(*last, (np.nan, np.nan), 0.0)
-    return Found(*last, tuple(np.mean(off, 0)), float(np.mean(lined)))
+        return HullsAtSea(*last, (np.nan, np.nan), 0.0)
+    return HullsAtSea(*last, tuple(np.mean(off, 0)), float(np.mean(lined)))

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...evaluation import report
 from ...evaluation.result import Picture, Progress, Result, silent
-from .at_sea import COARSE, FINE, Case, Found
+from .at_sea import COARSE, FINE, Case, HullsAtSea
 from .at_sea import run as run_case
 from .pictures import paint
 from .traffic import track
@@ -35,7 +35,7 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
 
     figures = []
     for cell, (limit, name) in LIMITS.items():
-        found: list[Found] = []
+        found: list[HullsAtSea] = []
         for length in LENGTHS:
             for distance in DISTANCES:
                 own = []
@@ -92,7 +92,7 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
     return Result(figures, (), pictures)
 
 
-def _runs(case: Case, extent: str, runs: int, seed: int) -> list[Found]:
+def _runs(case: Case, extent: str, runs: int, seed: int) -> list[HullsAtSea]:
     return [run_case(case, extent, seed + n) for n in range(runs)]
 
 
@@ -100,6 +100,6 @@ def _rms(values) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def _bias(found: list[Found]) -> float:
+def _bias(found: list[HullsAtSea]) -> float:
     """Length m of the mean offset over the runs."""
     return float(np.hypot(*np.mean([of.centre for of in found], 0)))

@@ -32,7 +32,7 @@ class Snapshot(NamedTuple):
     own: Array
 
 
-class Found(NamedTuple):
+class HullsInTraffic(NamedTuple):
     """confirmed: tracks ever confirmed; held [T]: part of the scans in which each ship had a track;
     rmse m: of the tracks that the ships kept; nearest m: the same of whatever track was nearest;
     snapshot of one scan, None without extents."""
@@ -44,7 +44,7 @@ class Found(NamedTuple):
     snapshot: Snapshot | None
 
 
-def track(name: str, extent: str, seed: int) -> Found:
+def track(name: str, extent: str, seed: int) -> HullsInTraffic:
     """One run of a shipped scenario; a ship keeps its track as long as that is confirmed and near.
 
     The nearest of many tracks on one hull would flatter a tracker that has too many.
@@ -83,7 +83,7 @@ def track(name: str, extent: str, seed: int) -> Found:
                 squares.append(away[one] ** 2)
                 nearest.append(away.min() ** 2)
     rmse, least = (float(np.sqrt(np.mean(of))) for of in (squares, nearest))
-    return Found(len(confirmed), held / np.maximum(seen, 1), rmse, least, snapshot)
+    return HullsInTraffic(len(confirmed), held / np.maximum(seen, 1), rmse, least, snapshot)
 
 
 def _away(estimate: Extrapolation, time, truth, row) -> Array:

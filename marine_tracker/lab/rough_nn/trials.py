@@ -52,7 +52,7 @@ SETTINGS = {
 }
 
 
-class Radar(NamedTuple):
+class TrialRadar(NamedTuple):
     """A radar and a target on a straight course that it sees.
 
     vessel_class   preset of the filters
@@ -72,11 +72,11 @@ class Radar(NamedTuple):
 
 
 RADARS = {
-    '22 rpm, 15 m, 0.5 deg, 3 km': Radar('ship', 60 / 22, 15.0, 0.5, 3000.0, 1.0),
-    '22 rpm, 15 m, 0.5 deg, 20 km': Radar('ship', 60 / 22, 15.0, 0.5, 20000.0, 1.0),
-    'the same, one plot in five missed': Radar('ship', 60 / 22, 15.0, 0.5, 20000.0, 0.8),
-    '12 rpm, 25 m, 0.4 deg, 9 km': Radar('ship', 5.0, 25.0, 0.4, 9000.0, 0.9),
-    '48 rpm, 3 m, 0.7 deg, 500 m, small craft': Radar('small_craft', 1.25, 3.0, 0.7, 500.0, 0.9),
+    '22 rpm, 15 m, 0.5 deg, 3 km': TrialRadar('ship', 60 / 22, 15.0, 0.5, 3000.0, 1.0),
+    '22 rpm, 15 m, 0.5 deg, 20 km': TrialRadar('ship', 60 / 22, 15.0, 0.5, 20000.0, 1.0),
+    'the same, one plot in five missed': TrialRadar('ship', 60 / 22, 15.0, 0.5, 20000.0, 0.8),
+    '12 rpm, 25 m, 0.4 deg, 9 km': TrialRadar('ship', 5.0, 25.0, 0.4, 9000.0, 0.9),
+    '48 rpm, 3 m, 0.7 deg, 500 m, small craft': TrialRadar('small_craft', 1.25, 3.0, 0.7, 500.0, 0.9),
 }
 QUIET_SCANS = 120
 
@@ -237,7 +237,7 @@ def answers(runs: int, seed: int, progress: Progress) -> dict[tuple[str, str, st
     return found
 
 
-def quiet_share(kind: str, radar: Radar, runs: int, seed: int) -> float:
+def quiet_share(kind: str, radar: TrialRadar, runs: int, seed: int) -> float:
     """Mean O of a target that keeps its course, in the latter half of QUIET_SCANS."""
     rng = np.random.default_rng(seed)
     estimator = cs_rough_nn.parallel(cs_kalman.PRESETS[radar.vessel_class], 25.0,

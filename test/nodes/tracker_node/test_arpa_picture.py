@@ -7,7 +7,7 @@ pytest.importorskip('rclpy')
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from visualization_msgs.msg import MarkerArray
 
-from marine_tracker.arpa.own_path import Trial
+from marine_tracker.arpa.own_path import TrialManoeuvre
 from marine_tracker.arpa.trial_manoeuvre import safe_courses, trial_approach
 from marine_tracker.geometry import KNOT, NAUTICAL_MILE
 from marine_tracker.nodes import topics
@@ -41,7 +41,7 @@ def test_a_trial_shows_what_would_come_of_it_and_changes_nothing(bridge, sea, co
     assert (told['course_deg'], told['speed_kn'], told['stabilised']) == ('060.0', '12.0', 'ground')
     left = 60 - (here.last.end - begun)
     assert float(told['countdown_min']) == pytest.approx(left / 60, abs=0.051)
-    trial = Trial(np.radians(60), 12 * KNOT, left, np.radians(1.0), 0.02)
+    trial = TrialManoeuvre(np.radians(60), 12 * KNOT, left, np.radians(1.0), 0.02)
     safe = safe_courses(picture.motion, picture.own, trial, 0.5 * NAUTICAL_MILE, 720.0)
     sectors = np.array([[float(end) for end in sector.split('-')]
                         for sector in told['safe_courses_deg'].split(', ')])
