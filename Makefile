@@ -32,6 +32,7 @@ test: $(INSTALLED)
 
 check: $(TOOLS)
 	$(BIN)/ruff check
+	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	@$(MAKE) --no-print-directory test
 

@@ -62,6 +62,6 @@ setup(
             'radar_simulator = marine_tracker.nodes.run:radar_simulator',
             'recording_player = marine_tracker.nodes.run:recording_player',
             'tracker = marine_tracker.nodes.run:tracker',
-        ],
+        ]
     },
 )

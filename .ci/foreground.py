@@ -20,7 +20,6 @@ if not foreground:
     os.execvp(command[0], command)
 
 
-
 def take_terminal():
     """In the child, before it becomes the command."""
     os.tcsetpgrp(terminal, os.getpid())

@@ -21,7 +21,7 @@ print(f'{chosen.name}: {chosen.description}')
 # What belongs to the radar (noise, range, rotation) comes from the scenario; the rest are defaults.
 tracker = Tracker(TrackerParameters(**chosen.tracker_parameters()))
 memory = tracker.start()
-for scan, truth in radar.simulate(chosen, seed=1):     # noqa: B007, the last one is used below
+for scan, truth in radar.simulate(chosen, seed=1):  # noqa: B007, the last one is used below
     memory, report = tracker.step(memory, scan)
 
 # After the last scan: every track on display, and how far the nearest target really is from it.
@@ -33,6 +33,8 @@ for row in np.flatnonzero(np.isin(report.tracks.status, (CONFIRMED, COASTING))):
     speed, course = to_range_bearing(estimate.velocity[row])
     really = truth.position + (report.time[row] - truth.time)[:, None] * truth.velocity
     error = np.linalg.norm(really - estimate.position[row], axis=1).min(initial=np.inf)
-    print(f'{report.tracks.number[row]:2d} {STATUS_NAMES[report.tracks.status[row]]:9s}'
-          f'{range_ / NAUTICAL_MILE:5.2f} NM  {np.degrees(bearing):5.1f}°   '
-          f'{np.degrees(course):5.1f}°  {speed / KNOT:4.1f} kn  {error:5.0f} m')
+    print(
+        f'{report.tracks.number[row]:2d} {STATUS_NAMES[report.tracks.status[row]]:9s}'
+        f'{range_ / NAUTICAL_MILE:5.2f} NM  {np.degrees(bearing):5.1f}°   '
+        f'{np.degrees(course):5.1f}°  {speed / KNOT:4.1f} kn  {error:5.0f} m'
+    )

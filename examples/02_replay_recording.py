@@ -23,8 +23,9 @@ with tempfile.TemporaryDirectory() as work:
     else:
         folder = Path(work, 'encounters')
         chosen = scenario.load('encounters')
-        csv_folder.write(folder, chosen.name, radar.simulate(chosen, seed=1),
-                         chosen.tracker_parameters())
+        csv_folder.write(
+            folder, chosen.name, radar.simulate(chosen, seed=1), chosen.tracker_parameters()
+        )
 
     recording = csv_folder.read(folder)
     plots = sum(len(scan.plots.time) for scan in recording.scans)
@@ -36,7 +37,9 @@ with tempfile.TemporaryDirectory() as work:
         with open(tracks, 'w', newline='') as file:
             write_tracks(tracker, zip(recording.numbers, recording.scans), file)
         figures = metrics.score(recording, track_file.read(tracks)).figures
-        print(f'{estimator:9s}  held {figures["held"]:6.1%}'
-              f'  position {figures["position_rmse_m"]:5.1f} m'
-              f'  velocity {figures["velocity_rmse_mps"]:5.2f} m/s'
-              f'  GOSPA {figures["gospa_mean_m"]:6.1f} m')
+        print(
+            f'{estimator:9s}  held {figures["held"]:6.1%}'
+            f'  position {figures["position_rmse_m"]:5.1f} m'
+            f'  velocity {figures["velocity_rmse_mps"]:5.2f} m/s'
+            f'  GOSPA {figures["gospa_mean_m"]:6.1f} m'
+        )

@@ -17,9 +17,9 @@ from marine_tracker.tracking.lifecycle import COASTING, CONFIRMED
 from marine_tracker.tracking.tracker import Tracker
 from marine_tracker.types import Array, Extrapolation, put
 
-NOISE = 0.05            # m^2/s^3: density of the white acceleration that a target may show
-FIRST_SPEED = 10.0      # m/s: standard deviation of a velocity nothing is known of
-H = np.eye(2, 4)        # the position in the state [east, north, v east, v north]
+NOISE = 0.05  # m^2/s^3: density of the white acceleration that a target may show
+FIRST_SPEED = 10.0  # m/s: standard deviation of a velocity nothing is known of
+H = np.eye(2, 4)  # the position in the state [east, north, v east, v north]
 
 
 class State(NamedTuple):
@@ -35,7 +35,7 @@ def init(plots, velocity=None):
     count = len(plots.time)
     mean, covariance = np.zeros((count, 4)), np.zeros((count, 4, 4))
     mean[:, :2], covariance[:, :2, :2] = plots.position, plots.covariance
-    covariance[:, 2:, 2:] = FIRST_SPEED ** 2 * np.eye(2)
+    covariance[:, 2:, 2:] = FIRST_SPEED**2 * np.eye(2)
     if velocity is not None:
         mean[:, 2:], covariance[:, 2:, 2:] = velocity.mean, velocity.covariance
     return State(plots.time, mean, covariance)
@@ -47,10 +47,14 @@ def predict(state, time):
     move = np.tile(np.eye(4), (len(step), 1, 1))
     move[:, 0, 2] = move[:, 1, 3] = step
     t = np.abs(step)[:, None, None]
-    noise = NOISE * np.block([[t ** 3 / 3 * np.eye(2), t ** 2 / 2 * np.eye(2)],
-                              [t ** 2 / 2 * np.eye(2), t * np.eye(2)]])
-    return State(time, (move @ state.mean[..., None])[..., 0],
-                 move @ state.covariance @ move.swapaxes(1, 2) + noise)
+    noise = NOISE * np.block(
+        [[t**3 / 3 * np.eye(2), t**2 / 2 * np.eye(2)], [t**2 / 2 * np.eye(2), t * np.eye(2)]]
+    )
+    return State(
+        time,
+        (move @ state.mean[..., None])[..., 0],
+        move @ state.covariance @ move.swapaxes(1, 2) + noise,
+    )
 
 
 def extrapolate(state, time):
@@ -65,8 +69,15 @@ def update(state, plots, rows):
     spread = H @ ahead.covariance @ H.T + plots.covariance
     gain = ahead.covariance @ H.T @ np.linalg.inv(spread)
     innovation = plots.position - ahead.mean[:, :2]
-    return put(state, rows, State(plots.time, ahead.mean + (gain @ innovation[..., None])[..., 0],
-                                  ahead.covariance - gain @ H @ ahead.covariance))
+    return put(
+        state,
+        rows,
+        State(
+            plots.time,
+            ahead.mean + (gain @ innovation[..., None])[..., 0],
+            ahead.covariance - gain @ H @ ahead.covariance,
+        ),
+    )
 
 
 def typical_error(tracker, chosen):

@@ -27,7 +27,7 @@ def track(parameters, scans):
     errors, numbers = [], set()
     for scan in scans:
         memory, _ = tracker.step(memory, scan)
-        if scan.end < 120:                  # all have been found by then
+        if scan.end < 120:  # all have been found by then
             continue
         held = memory.tracks.number > 0
         now = tracker.extrapolate(memory.tracks, scan.end).position[held]
@@ -38,9 +38,10 @@ def track(parameters, scans):
 
 
 for name, parameters, scans in (
-        ('X band', x.tracker_parameters(), scans_x),
-        ('S band', s.tracker_parameters(), scans_s),
-        ('both', together, merged(scans_x, scans_s)),
-        ('S fails', together, merged(scans_x, fails))):
+    ('X band', x.tracker_parameters(), scans_x),
+    ('S band', s.tracker_parameters(), scans_s),
+    ('both', together, merged(scans_x, scans_s)),
+    ('S fails', together, merged(scans_x, fails)),
+):
     error, numbers = track(parameters, scans)
     print(f'{name:7s} six ships followed by {len(numbers)} tracks, off by {error:5.1f} m')

@@ -8,8 +8,18 @@ from importlib import metadata
 
 from .processes import one_thread
 
-COMMANDS = ('demo', 'replay', 'score', 'bench', 'experiments', 'train', 'tune', 'scenario', 'imo',
-            'doctor')
+COMMANDS = (
+    'demo',
+    'replay',
+    'score',
+    'bench',
+    'experiments',
+    'train',
+    'tune',
+    'scenario',
+    'imo',
+    'doctor',
+)
 
 DESCRIPTION = """\
 Track vessels by radar as an ARPA does: on simulated, recorded or live plots."""
@@ -35,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())   # reader left: be quiet
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # reader left: be quiet
         return 141
     except ModuleNotFoundError as error:
         print(f'marine_tracker: {_missing(error)}; see marine_tracker doctor', file=sys.stderr)
@@ -55,8 +65,11 @@ class _Parser(argparse.ArgumentParser):
 def _parser(argv: list[str]) -> _Parser:
     """The parser; only the command that is asked for is imported."""
     parser = _Parser(
-        'marine_tracker', description=DESCRIPTION, epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+        'marine_tracker',
+        description=DESCRIPTION,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument('--version', action='version', version=f'marine_tracker {_version()}')
     commands = parser.add_subparsers(title='commands', metavar='COMMAND', required=True)
     asked = next((word for word in argv if not word.startswith('-')), None)
@@ -68,8 +81,12 @@ def _parser(argv: list[str]) -> _Parser:
                 raise
             commands.add_parser(name, help=f'(cannot run: {_missing(error)})')
             continue
-        sub = commands.add_parser(name, help=command.HELP, description=command.__doc__,
-                                  formatter_class=argparse.RawDescriptionHelpFormatter)
+        sub = commands.add_parser(
+            name,
+            help=command.HELP,
+            description=command.__doc__,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
         command.add_arguments(sub)
         sub.set_defaults(run=command.run)
     return parser

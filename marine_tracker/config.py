@@ -26,4 +26,5 @@ def _root(package: Path) -> Path:
             return installed
     raise FileNotFoundError(
         f'no configuration found for the marine_tracker package in {package}: it stands neither '
-        'in its source tree nor below a prefix with share/marine_tracker/config')
+        'in its source tree nor below a prefix with share/marine_tracker/config'
+    )

@@ -7,15 +7,15 @@ import numpy as np
 
 from .types import OwnShip, Plots, PolarPlots
 
-NAUTICAL_MILE = 1852.0              # m
-KNOT = NAUTICAL_MILE / 3600.0       # m/s
-EARTH_RADIUS = 6371008.8            # m, mean
+NAUTICAL_MILE = 1852.0  # m
+KNOT = NAUTICAL_MILE / 3600.0  # m/s
+EARTH_RADIUS = 6371008.8  # m, mean
 
 
 def wrap_bearing(angle):
     """The same angle in [0, 2 pi)."""
     wrapped = np.mod(angle, 2 * np.pi)
-    return wrapped * (wrapped < 2 * np.pi)      # -1e-17 % 2 pi rounds up to 2 pi
+    return wrapped * (wrapped < 2 * np.pi)  # -1e-17 % 2 pi rounds up to 2 pi
 
 
 def wrap_angle(angle):
@@ -53,13 +53,13 @@ def polar_to_position(range_, bearing, range_sigma, bearing_sigma):
     included, which matter at long range (Longbin, Xiaoquan, Yiyu, Kang, Bar-Shalom, "Unbiased
     converted measurements for tracking", IEEE T-AES 34(3), 1998, eq 11).
     """
-    shrink = np.exp(-0.5 * bearing_sigma ** 2)
+    shrink = np.exp(-0.5 * bearing_sigma**2)
     unit = unit_vector(bearing)
     position = (range_ / shrink)[..., None] * unit
     # Along and across the line of sight. E[cos^2 db] = (1 + shrink^4) / 2.
-    second = 0.5 * (range_ ** 2 + range_sigma ** 2)
-    along = (shrink ** -2 - 2) * range_ ** 2 + second * (1 + shrink ** 4)
-    across = second * (1 - shrink ** 4)
+    second = 0.5 * (range_**2 + range_sigma**2)
+    along = (shrink**-2 - 2) * range_**2 + second * (1 + shrink**4)
+    across = second * (1 - shrink**4)
     covariance = (along - across)[..., None, None] * (unit[..., :, None] * unit[..., None, :])
     covariance[..., 0, 0] += across
     covariance[..., 1, 1] += across
@@ -79,7 +79,8 @@ def own_ship_at(own_ship: OwnShip, time):
     inside = np.clip(time, at[0], at[-1])
     position, velocity = (
         np.stack([np.interp(inside, at, column) for column in columns.T], -1)
-        for columns in (own_ship.position, own_ship.velocity))
+        for columns in (own_ship.position, own_ship.velocity)
+    )
     return position + np.asarray(time - inside)[..., None] * velocity, velocity
 
 
@@ -93,15 +94,26 @@ def locate(polar: PolarPlots, own_ship: OwnShip, range_sigma: float, bearing_sig
     offset, covariance = polar_to_position(polar.range, polar.bearing, range_sigma, bearing_sigma)
     if polar.covariance is not None:
         covariance = polar.covariance
-    return Plots(polar.time, polar.range, wrap_bearing(polar.bearing), polar.amplitude,
-                 origin, origin + offset, covariance, polar.radial_speed)
+    return Plots(
+        polar.time,
+        polar.range,
+        wrap_bearing(polar.bearing),
+        polar.amplitude,
+        origin,
+        origin + offset,
+        covariance,
+        polar.radial_speed,
+    )
 
 
 def local_from_geodetic(latitude_deg, longitude_deg, origin_latitude_deg, origin_longitude_deg):
     """East and north [..., 2] m of geodetic positions near an origin, on a sphere."""
     north = np.radians(np.subtract(latitude_deg, origin_latitude_deg)) * EARTH_RADIUS
-    east = (np.radians(np.subtract(longitude_deg, origin_longitude_deg)) * EARTH_RADIUS
-            * np.cos(np.radians(origin_latitude_deg)))
+    east = (
+        np.radians(np.subtract(longitude_deg, origin_longitude_deg))
+        * EARTH_RADIUS
+        * np.cos(np.radians(origin_latitude_deg))
+    )
     return np.stack([east, north], -1)
 
 
@@ -109,5 +121,6 @@ def geodetic_from_local(position, origin_latitude_deg, origin_longitude_deg):
     """Latitude [...] and longitude [...] in degrees of local positions [..., 2] m."""
     latitude = origin_latitude_deg + np.degrees(position[..., 1] / EARTH_RADIUS)
     longitude = origin_longitude_deg + np.degrees(
-        position[..., 0] / (EARTH_RADIUS * np.cos(np.radians(origin_latitude_deg))))
+        position[..., 0] / (EARTH_RADIUS * np.cos(np.radians(origin_latitude_deg)))
+    )
     return latitude, longitude

@@ -37,19 +37,29 @@ def limits(field) -> str:
 def yaml_value(value) -> str:
     """A parameter's value as YAML that every reader takes for the same type."""
     if isinstance(value, str):
-        plain = value.isidentifier() and yaml.safe_load(value) == value     # not yes, no, null
+        plain = value.isidentifier() and yaml.safe_load(value) == value  # not yes, no, null
         return value if plain else json.dumps(value)
     return json.dumps(value)
 
 
 def node_yaml(node: str) -> str:
     """The parameter file of a node: every parameter at its default, described above it."""
-    lines = [f'# Parameters of the node `{node}` at their defaults. Written by', f'# `{COMMAND}`.',
-             '/**:', '  ros__parameters:']
+    lines = [
+        f'# Parameters of the node `{node}` at their defaults. Written by',
+        f'# `{COMMAND}`.',
+        '/**:',
+        '  ros__parameters:',
+    ]
     for field in fields(node):
-        facts = [part for part in (
-            f'unit {field.metadata["unit"]}' if field.metadata['unit'] else '', limits(field),
-            'may change while running' if field.metadata['live'] else '') if part]
+        facts = [
+            part
+            for part in (
+                f'unit {field.metadata["unit"]}' if field.metadata['unit'] else '',
+                limits(field),
+                'may change while running' if field.metadata['live'] else '',
+            )
+            if part
+        ]
         text = field.metadata['text'] + (f' ({"; ".join(facts)})' if facts else '')
         lines += textwrap.wrap(text, 96, initial_indent='    # ', subsequent_indent='    #   ')
         lines.append(f'    {field.name}: {yaml_value(field.default)}')
@@ -58,17 +68,33 @@ def node_yaml(node: str) -> str:
 
 def document() -> str:
     """doc/parameters.md: one table for each node."""
-    lines = ['# Parameters', '', f'Written by `{COMMAND}`; do not edit by hand.', '',
-             'A node refuses to start on an unknown, mistyped or out-of-range parameter and names',
-             'it. A double is written with its point (`15.0`, not `15`). Those marked live may',
-             'change while the node runs; no track is lost by it.']
+    lines = [
+        '# Parameters',
+        '',
+        f'Written by `{COMMAND}`; do not edit by hand.',
+        '',
+        'A node refuses to start on an unknown, mistyped or out-of-range parameter and names',
+        'it. A double is written with its point (`15.0`, not `15`). Those marked live may',
+        'change while the node runs; no track is lost by it.',
+    ]
     for node in NODES:
-        lines += ['', f'## {node}', '', '| name | default | unit | limits | live | meaning |',
-                  '|---|---|---|---|---|---|']
+        lines += [
+            '',
+            f'## {node}',
+            '',
+            '| name | default | unit | limits | live | meaning |',
+            '|---|---|---|---|---|---|',
+        ]
         for field in fields(node):
             about = field.metadata
-            cells = (f'`{field.name}`', f'`{yaml_value(field.default)}`', about['unit'],
-                     limits(field), 'live' if about['live'] else '', about['text'])
+            cells = (
+                f'`{field.name}`',
+                f'`{yaml_value(field.default)}`',
+                about['unit'],
+                limits(field),
+                'live' if about['live'] else '',
+                about['text'],
+            )
             lines.append('| ' + ' | '.join(cells) + ' |')
     return '\n'.join(lines) + '\n'
 

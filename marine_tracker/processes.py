@@ -5,9 +5,9 @@ import ctypes
 import os
 import signal
 
-PR_SET_PDEATHSIG = 1                                # sys/prctl.h
-M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3         # malloc.h of the GNU C library
-KEEP = 64 * 1024 * 1024                             # bytes
+PR_SET_PDEATHSIG = 1  # sys/prctl.h
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h of the GNU C library
+KEEP = 64 * 1024 * 1024  # bytes
 THREADS = ('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS', 'MKL_NUM_THREADS')
 
 
@@ -35,6 +35,6 @@ def keep_freed_memory() -> bool:
     """
     try:
         mallopt = ctypes.CDLL(None).mallopt
-    except (AttributeError, OSError):               # not the GNU C library
+    except (AttributeError, OSError):  # not the GNU C library
         return False
     return bool(mallopt(M_TRIM_THRESHOLD, KEEP) and mallopt(M_MMAP_THRESHOLD, KEEP // 2))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-HISTORY = 20        # scans of hits and misses that a track remembers, bits of Tracks.history
+HISTORY = 20  # scans of hits and misses that a track remembers, bits of Tracks.history
 
 
 class OwnShip(NamedTuple):
@@ -162,8 +162,10 @@ def take(rows_of: Any, rows: Any) -> Any:
         return _map(lambda a: a[rows], rows_of)
     if rows.dtype == bool:
         rows = rows.nonzero()[0]
-    parts = [take(a, rows) if isinstance(a, tuple) else None if a is None else a.take(rows, 0)
-             for a in rows_of]
+    parts = [
+        take(a, rows) if isinstance(a, tuple) else None if a is None else a.take(rows, 0)
+        for a in rows_of
+    ]
     return rows_of._make(parts) if hasattr(rows_of, '_make') else tuple(parts)
 
 
@@ -176,15 +178,19 @@ def where(choose_first: Any, first: Any, second: Any) -> Any:
     """Row by row: `first` where the mask [N] holds, else `second`."""
     return _map(
         lambda a, b: np.where(choose_first.reshape((-1,) + (1,) * (a.ndim - 1)), a, b),
-        first, second)
+        first,
+        second,
+    )
 
 
 def put(into: Any, rows: Any, new: Any) -> Any:
     """A copy of `into` with the named rows replaced by the rows of `new`."""
+
     def one(a, b):
         a = a.copy()
         a[rows] = b
         return a
+
     return _map(one, into, new)
 
 
@@ -200,7 +206,12 @@ def row_of(ids, wanted) -> NDArray[np.int64]:
 
 def _map(f, *structures):
     first = structures[0]
-    parts = [_map(f, *column) if isinstance(column[0], tuple)
-             else None if all(one is None for one in column) else f(*column)
-             for column in zip(*structures)]
+    parts = [
+        _map(f, *column)
+        if isinstance(column[0], tuple)
+        else None
+        if all(one is None for one in column)
+        else f(*column)
+        for column in zip(*structures)
+    ]
     return first._make(parts) if hasattr(first, '_make') else tuple(parts)

@@ -21,11 +21,16 @@ def recordings():
 @pytest.fixture(scope='session')
 def command():
     """Run `python -m marine_tracker ARGUMENTS...` as a process; gives the CompletedProcess."""
+
     def run(*arguments, timeout=60, **environment):
         return subprocess.run(
-            [sys.executable, '-m', 'marine_tracker', *map(str, arguments)], text=True,
-            capture_output=True, timeout=timeout,
-            env={**os.environ, 'PYTHONPATH': str(CHECKOUT), **environment})
+            [sys.executable, '-m', 'marine_tracker', *map(str, arguments)],
+            text=True,
+            capture_output=True,
+            timeout=timeout,
+            env={**os.environ, 'PYTHONPATH': str(CHECKOUT), **environment},
+        )
+
     return run
 
 
@@ -37,6 +42,7 @@ def condition():
     z_k = H x_k + v_k. Its joint covariance is written out and conditioned on all z at once:
     no recursion over plots.
     """
+
     def solve(mean, covariance, steps, observe, plots):
         """steps: (F, u, Q) per plot; plots: (z, R) per plot."""
         n, m, count = len(mean), len(observe), len(steps)
@@ -62,4 +68,5 @@ def condition():
         gain = np.linalg.solve(spread, cross.T).T
         measured = np.concatenate([z for z, _ in plots])
         return offset + gain @ (measured - centre), weight @ source @ weight.T - gain @ cross.T
+
     return solve

@@ -36,8 +36,9 @@ MAY_IMPORT = {
     'lab': SERVICE | SOURCES | {'evaluation', 'conformance', 'training'},
     'display': SERVICE,
     'nodes': SERVICE | SOURCES | {'display', 'parameter_files'},
-    'commands': SERVICE | SOURCES | {'display', 'evaluation', 'conformance', 'training', 'lab',
-                                     'nodes', 'parameter_files'},
+    'commands': SERVICE
+    | SOURCES
+    | {'display', 'evaluation', 'conformance', 'training', 'lab', 'nodes', 'parameter_files'},
     'cli': {'commands', 'processes'},
     '__main__': {'cli'},
     '__init__': SERVICE,
@@ -60,16 +61,21 @@ def imports(file, text):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            base = home[:len(home) - node.level + 1] if node.level else ()
+            base = home[: len(home) - node.level + 1] if node.level else ()
             base += (node.module,) if node.module else ()
             yield from ('.'.join((*base, alias.name)) for alias in node.names)
 
 
 def is_ros(name):
     top = name.split('.')[0]
-    return (top in {'rclpy', 'rosgraph_msgs', 'rosidl_runtime_py', 'rpyutils', 'ament_index_python',
-                    'tf2_ros'}
-            or top.endswith(('_msgs', '_srvs', '_interfaces')))
+    return top in {
+        'rclpy',
+        'rosgraph_msgs',
+        'rosidl_runtime_py',
+        'rpyutils',
+        'ament_index_python',
+        'tf2_ros',
+    } or top.endswith(('_msgs', '_srvs', '_interfaces'))
 
 
 @pytest.mark.parametrize('file', MODULES, ids=lambda f: str(f.relative_to(PACKAGE)))
@@ -81,7 +87,8 @@ def test_imports_follow_the_architecture(file):
         if top == 'marine_tracker' and rest:
             assert rest[0] == part or rest[0] in MAY_IMPORT[part], f'{part} imports {name}'
             assert rest[0] != 'lab' or part == 'lab' or name.startswith(LAB), (
-                f'{part} imports {name}; only the lab sees its own insides')
+                f'{part} imports {name}; only the lab sees its own insides'
+            )
         if is_ros(name):
             assert part == 'nodes', f'{part} imports {name}; only nodes/ may import ROS packages'
 
@@ -91,6 +98,7 @@ def test_no_part_depends_on_itself_through_others():
         assert part not in seen, ' -> '.join((*seen, part))
         for other in MAY_IMPORT.get(part, ()):
             below(other, (*seen, part))
+
     for part in MAY_IMPORT:
         below(part)
 
@@ -113,14 +121,18 @@ def test_no_file_is_longer_than_a_few_screens():
 
 def test_modules_import_each_other_in_one_direction():
     """No circle, within the parts either."""
-    names = {'.'.join(('marine_tracker', *file.relative_to(PACKAGE).with_suffix('').parts)): file
-             for file in MODULES}
+    names = {
+        '.'.join(('marine_tracker', *file.relative_to(PACKAGE).with_suffix('').parts)): file
+        for file in MODULES
+    }
     below = {}
     for name, file in names.items():
         full = set(imports(file, file.read_text()))
-        below[name] = {other for other in names
-                       if other != name and (other in full or
-                                             any(one.startswith(other + '.') for one in full))}
+        below[name] = {
+            other
+            for other in names
+            if other != name and (other in full or any(one.startswith(other + '.') for one in full))
+        }
 
     def walk(name, path):
         assert name not in path, ' -> '.join((*path, name))
@@ -128,17 +140,21 @@ def test_modules_import_each_other_in_one_direction():
             for other in below[name]:
                 walk(other, (*path, name))
             done.add(name)
+
     done = set()
     for name in names:
         walk(name, ())
 
 
-@pytest.mark.parametrize(('line', 'expected'), [
-    ('import rclpy.node', ['rclpy.node']),
-    ('from ..types import Scan', ['marine_tracker.types.Scan']),
-    ('from . import gate', ['marine_tracker.tracking.gate']),
-    ('from .. import geometry', ['marine_tracker.geometry']),
-    ('def f():\n    from ..nodes.run import main', ['marine_tracker.nodes.run.main']),
-])
+@pytest.mark.parametrize(
+    ('line', 'expected'),
+    [
+        ('import rclpy.node', ['rclpy.node']),
+        ('from ..types import Scan', ['marine_tracker.types.Scan']),
+        ('from . import gate', ['marine_tracker.tracking.gate']),
+        ('from .. import geometry', ['marine_tracker.geometry']),
+        ('def f():\n    from ..nodes.run import main', ['marine_tracker.nodes.run.main']),
+    ],
+)
 def test_every_form_of_import_is_seen(line, expected):
     assert list(imports(PACKAGE / 'tracking' / 'gate.py', line)) == expected

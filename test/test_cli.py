@@ -32,21 +32,24 @@ def test_every_command_explains_itself(name, command):
     done = command(name, '--help')
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(f'usage: marine_tracker {name}')
-    assert len(done.stdout.split('\n\n')[1]) > 20         # what it is for, in words
+    assert len(done.stdout.split('\n\n')[1]) > 20  # what it is for, in words
 
 
-@pytest.mark.parametrize(('arguments', 'message'), [
-    ([], 'marine_tracker: the following arguments are required: COMMAND'),
-    (['fly'], "marine_tracker: argument COMMAND: invalid choice: 'fly'"),
-    (['replay', 'x'], 'marine_tracker replay: the following arguments are required: --out'),
-    (['replay', 'nowhere', '--out', 'x.csv'], 'marine_tracker: '),
-    (['score', 'nowhere', 'x.csv'], 'marine_tracker: recording nowhere is not a folder'),
-    (['doctor', '--listen', '-1'], 'marine_tracker: --listen is -1 s'),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        ([], 'marine_tracker: the following arguments are required: COMMAND'),
+        (['fly'], "marine_tracker: argument COMMAND: invalid choice: 'fly'"),
+        (['replay', 'x'], 'marine_tracker replay: the following arguments are required: --out'),
+        (['replay', 'nowhere', '--out', 'x.csv'], 'marine_tracker: '),
+        (['score', 'nowhere', 'x.csv'], 'marine_tracker: recording nowhere is not a folder'),
+        (['doctor', '--listen', '-1'], 'marine_tracker: --listen is -1 s'),
+    ],
+)
 def test_wrong_use_is_one_line_and_exit_code_2(capsys, arguments, message):
     try:
         code = cli.main(arguments)
-    except SystemExit as stop:                  # argparse's way
+    except SystemExit as stop:  # argparse's way
         code = stop.code
     out, err = capsys.readouterr()
     assert code == 2 and out == ''
@@ -57,16 +60,23 @@ def test_wrong_use_is_one_line_and_exit_code_2(capsys, arguments, message):
 def test_a_process_with_wrong_input_ends_with_2_and_no_traceback(command):
     done = command('score', 'nowhere', 'x.csv')
     assert (done.returncode, done.stdout, done.stderr) == (
-        2, '', 'marine_tracker: recording nowhere is not a folder\n')
+        2,
+        '',
+        'marine_tracker: recording nowhere is not a folder\n',
+    )
 
 
 def test_ctrl_c_ends_quietly_with_130(tmp_path):
     out = tmp_path / 'tracks.csv'
     process = subprocess.Popen(
         [sys.executable, '-m', 'marine_tracker', 'replay', 'busy_strait', '--out', out],
-        cwd=PACKAGE.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        cwd=PACKAGE.parent,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
         # A shell in the background may hand SIGINT down as ignored.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     try:
         deadline = time.monotonic() + 30
         while not out.exists() and time.monotonic() < deadline:
@@ -81,12 +91,16 @@ def test_ctrl_c_ends_quietly_with_130(tmp_path):
 @pytest.mark.parametrize('missing', ['numpy', 'yaml'])
 def test_without_a_package_it_says_so_and_doctor_still_runs(command, tmp_path, missing):
     (tmp_path / f'{missing}.py').write_text(
-        f'raise ModuleNotFoundError("No module named {missing!r}", name={missing!r})')
+        f'raise ModuleNotFoundError("No module named {missing!r}", name={missing!r})'
+    )
     path = f'{tmp_path}:{PACKAGE.parent}'
     done = command('replay', 'clean', '--out', '-', PYTHONPATH=path)
     assert (done.returncode, done.stdout, done.stderr) == (
-        2, '', f'marine_tracker: the Python module {missing} is not installed; '
-               'see marine_tracker doctor\n')
+        2,
+        '',
+        f'marine_tracker: the Python module {missing} is not installed; '
+        'see marine_tracker doctor\n',
+    )
     listed = command('--help', PYTHONPATH=path).stdout
     assert f'cannot run: the Python module {missing} is not installed' in ' '.join(listed.split())
     assert command('doctor', '--listen', '0', PYTHONPATH=path).returncode == 1
@@ -95,7 +109,12 @@ def test_without_a_package_it_says_so_and_doctor_still_runs(command, tmp_path, m
 def test_a_reader_that_leaves_early_is_no_error(tmp_path):
     done = subprocess.run(
         f'"{sys.executable}" -m marine_tracker replay clean --out - 2> "{tmp_path}/err" | head -1',
-        shell=True, cwd=PACKAGE.parent, capture_output=True, text=True, timeout=60)
+        shell=True,
+        cwd=PACKAGE.parent,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert done.stdout.startswith('time_s,track,') and done.stdout.count('\n') == 1
     assert (tmp_path / 'err').read_text() == ''
 

@@ -17,19 +17,25 @@ def found_by(package, parts=('tracker.yaml',)):
     code = f'from marine_tracker import config; print(config.path(*{parts!r}))'
     # -P keeps the current folder, which may hold the source tree, out of the way.
     return subprocess.run(
-        [sys.executable, '-P', '-c', code], env={'PYTHONPATH': str(package.parent)},
-        capture_output=True, text=True, timeout=60)
+        [sys.executable, '-P', '-c', code],
+        env={'PYTHONPATH': str(package.parent)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
 
 
 @pytest.fixture
 def package_in(tmp_path):
     """Copies what config.py needs of the package into a folder below tmp_path."""
+
     def copy(folder):
         package = tmp_path / folder / 'marine_tracker'
         package.mkdir(parents=True)
         for name in ('__init__.py', 'config.py'):
             shutil.copy(ROOT / 'marine_tracker' / name, package)
         return package
+
     return copy
 
 
@@ -38,11 +44,14 @@ def test_source_tree_uses_its_own_config():
     assert config.path('scenarios', 'x.yaml') == ROOT / 'config' / 'scenarios' / 'x.yaml'
 
 
-@pytest.mark.parametrize('libraries', [
-    'lib/python3.12/site-packages',                # pip in a venv, colcon
-    'local/lib/python3.12/dist-packages',          # Debian's Python
-    'somewhere',                                   # pip --target
-])
+@pytest.mark.parametrize(
+    'libraries',
+    [
+        'lib/python3.12/site-packages',  # pip in a venv, colcon
+        'local/lib/python3.12/dist-packages',  # Debian's Python
+        'somewhere',  # pip --target
+    ],
+)
 def test_installed_package_uses_the_share_of_its_prefix(package_in, tmp_path, libraries):
     package = package_in(libraries)
     share = tmp_path / 'share' / 'marine_tracker' / 'config'

@@ -15,8 +15,13 @@ EXAMPLES = Path(marine_tracker.__file__).resolve().parents[1] / 'examples'
 def output_of(example, *arguments):
     """What an example prints, run from another folder than its own."""
     run = subprocess.run(
-        [sys.executable, EXAMPLES / example, *arguments], cwd='/', timeout=100,
-        env={'PYTHONPATH': str(EXAMPLES.parent), 'PATH': ''}, capture_output=True, text=True)
+        [sys.executable, EXAMPLES / example, *arguments],
+        cwd='/',
+        timeout=100,
+        env={'PYTHONPATH': str(EXAMPLES.parent), 'PATH': ''},
+        capture_output=True,
+        text=True,
+    )
     assert run.returncode == 0, run.stderr
     return run.stdout
 

@@ -50,14 +50,22 @@ def make_in_terminal(tmp_path):
     def start(exit_code):
         (tmp_path / 'command.py').write_text(COMMAND)
         (tmp_path / 'Makefile').write_text(
-            f'all:\n\t@exec {sys.executable} {HELPER} {sys.executable} -u command.py {exit_code}\n')
+            f'all:\n\t@exec {sys.executable} {HELPER} {sys.executable} -u command.py {exit_code}\n'
+        )
         terminal, inside = pty.openpty()
-        process = subprocess.Popen([sys.executable, '-c', MAKE], cwd=tmp_path, stdin=inside,
-                                   stdout=inside, stderr=inside, start_new_session=True)
+        process = subprocess.Popen(
+            [sys.executable, '-c', MAKE],
+            cwd=tmp_path,
+            stdin=inside,
+            stdout=inside,
+            stderr=inside,
+            start_new_session=True,
+        )
         os.close(inside)
         started.append((process, terminal))
         read_until(terminal, 'ready')
         return process, terminal
+
     yield start
     for process, terminal in started:
         os.close(terminal)

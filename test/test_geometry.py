@@ -21,8 +21,15 @@ from marine_tracker.geometry import (
 from marine_tracker.types import OwnShip, PolarPlots
 
 ANGLES = st.floats(-1e4, 1e4) | st.sampled_from(
-    [s * np.nextafter(k * np.pi, towards) for s in (-1, 1) for k in (0, 1, 2, 3)
-     for towards in (-np.inf, np.inf)] + [k * np.pi for k in range(-4, 5)] + [-1e-17, -5e-324])
+    [
+        s * np.nextafter(k * np.pi, towards)
+        for s in (-1, 1)
+        for k in (0, 1, 2, 3)
+        for towards in (-np.inf, np.inf)
+    ]
+    + [k * np.pi for k in range(-4, 5)]
+    + [-1e-17, -5e-324]
+)
 
 
 @given(ANGLES)
@@ -39,12 +46,20 @@ def test_a_wrapped_angle_is_the_same_direction_within_half_a_turn_either_way(ang
     assert math.cos(wrapped - angle) == pytest.approx(1.0, abs=1e-12)
 
 
-@pytest.mark.parametrize(('bearing_deg', 'east', 'north', 'yaw_deg'), [
-    (0, 0, 1, 90), (90, 1, 0, 0), (180, 0, -1, -90), (270, -1, 0, -180),
-    (45, 0.5 ** 0.5, 0.5 ** 0.5, 45), (225, -(0.5 ** 0.5), -(0.5 ** 0.5), -135),
-])
+@pytest.mark.parametrize(
+    ('bearing_deg', 'east', 'north', 'yaw_deg'),
+    [
+        (0, 0, 1, 90),
+        (90, 1, 0, 0),
+        (180, 0, -1, -90),
+        (270, -1, 0, -180),
+        (45, 0.5**0.5, 0.5**0.5, 45),
+        (225, -(0.5**0.5), -(0.5**0.5), -135),
+    ],
+)
 def test_bearings_run_clockwise_from_north_and_yaw_counter_clockwise_from_east(
-        bearing_deg, east, north, yaw_deg):
+    bearing_deg, east, north, yaw_deg
+):
     bearing = np.radians(bearing_deg)
     assert unit_vector(bearing) == pytest.approx([east, north], abs=1e-12)
     distance, back = to_range_bearing(1000.0 * np.array([east, north]))
@@ -83,8 +98,9 @@ def test_the_mean_of_a_targets_converted_plots_is_where_it_is(distance, bearing_
 def test_the_covariance_is_that_of_the_truth_given_the_measurement(distance, bearing_sigma_deg):
     """Where nothing else is known: the truth spread about the measurement, by quadrature."""
     range_sigma, bearing_sigma, bearing = 15.0, np.radians(bearing_sigma_deg), 2.1
-    position, covariance = polar_to_position(np.array([distance]), np.array([bearing]),
-                                             range_sigma, bearing_sigma)
+    position, covariance = polar_to_position(
+        np.array([distance]), np.array([bearing]), range_sigma, bearing_sigma
+    )
     dr, db, weight = noise_grid(range_sigma, bearing_sigma)
     apart = (distance - dr)[:, None] * unit_vector(bearing - db) - position
     expected = (apart * weight[:, None]).T @ apart
@@ -121,7 +137,7 @@ def test_sigmas_may_differ_from_plot_to_plot():
     sigma_r, sigma_b = np.array([5.0, 50.0]), np.array([0.01, 0.1])
     position, covariance = polar_to_position(r, b, sigma_r, sigma_b)
     for i in range(2):
-        one = polar_to_position(r[i:i + 1], b[i:i + 1], float(sigma_r[i]), float(sigma_b[i]))
+        one = polar_to_position(r[i : i + 1], b[i : i + 1], float(sigma_r[i]), float(sigma_b[i]))
         np.testing.assert_allclose(position[i], one[0][0], rtol=1e-14)
         np.testing.assert_allclose(covariance[i], one[1][0], rtol=1e-9)
 
@@ -133,19 +149,24 @@ def test_covariances_are_positive_definite_down_to_the_antenna():
     assert (np.linalg.eigvalsh(covariance)[1:] > 0).all()
 
 
-SHIP = OwnShip(np.array([10.0, 12.0, 16.0]),
-               np.array([[0.0, 0.0], [4.0, 2.0], [4.0, 10.0]]),
-               np.array([[2.0, 1.0], [1.0, 1.0], [-1.0, 3.0]]))
+SHIP = OwnShip(
+    np.array([10.0, 12.0, 16.0]),
+    np.array([[0.0, 0.0], [4.0, 2.0], [4.0, 10.0]]),
+    np.array([[2.0, 1.0], [1.0, 1.0], [-1.0, 3.0]]),
+)
 
 
-@pytest.mark.parametrize(('time', 'position', 'velocity'), [
-    (10.0, (0, 0), (2, 1)),
-    (11.0, (2, 1), (1.5, 1)),
-    (15.0, (4, 8), (-0.5, 2.5)),
-    (16.0, (4, 10), (-1, 3)),
-    (18.0, (2, 16), (-1, 3)),          # holds the last velocity
-    (7.0, (-6, -3), (2, 1)),           # and the first one, backwards
-])
+@pytest.mark.parametrize(
+    ('time', 'position', 'velocity'),
+    [
+        (10.0, (0, 0), (2, 1)),
+        (11.0, (2, 1), (1.5, 1)),
+        (15.0, (4, 8), (-0.5, 2.5)),
+        (16.0, (4, 10), (-1, 3)),
+        (18.0, (2, 16), (-1, 3)),  # holds the last velocity
+        (7.0, (-6, -3), (2, 1)),  # and the first one, backwards
+    ],
+)
 def test_own_ship_moves_straight_between_samples_and_on_beyond_them(time, position, velocity):
     for at in (time, np.array([time]), np.array([[time, time]])):
         found = own_ship_at(SHIP, at)
@@ -165,8 +186,12 @@ def test_one_sample_of_own_ship_is_enough():
 
 def test_every_plot_is_placed_by_own_ship_at_its_own_time():
     time = np.array([10.0, 11.0, 18.0])
-    polar = PolarPlots(time, np.array([100.0, 200.0, 300.0]), np.radians([0.0, 90.0, 180.0]),
-                       np.array([1.0, 2.0, 3.0]))
+    polar = PolarPlots(
+        time,
+        np.array([100.0, 200.0, 300.0]),
+        np.radians([0.0, 90.0, 180.0]),
+        np.array([1.0, 2.0, 3.0]),
+    )
     sigma_b = np.radians(0.1)
     plots = locate(polar, SHIP, 5.0, sigma_b)
     assert plots.origin == pytest.approx(np.array([[0, 0], [2, 1], [2, 16]]))
@@ -176,9 +201,11 @@ def test_every_plot_is_placed_by_own_ship_at_its_own_time():
         np.testing.assert_array_equal(getattr(plots, name), getattr(polar, name))
     # North of the ship the range error lies north, the bearing error east.
     assert plots.covariance[0] == pytest.approx(
-        np.diag([(100 * sigma_b) ** 2 + (5 * sigma_b) ** 2, 25.0]), rel=1e-3)
+        np.diag([(100 * sigma_b) ** 2 + (5 * sigma_b) ** 2, 25.0]), rel=1e-3
+    )
     assert plots.covariance[1] == pytest.approx(
-        np.diag([25.0, (200 * sigma_b) ** 2 + (5 * sigma_b) ** 2]), rel=1e-3)
+        np.diag([25.0, (200 * sigma_b) ** 2 + (5 * sigma_b) ** 2]), rel=1e-3
+    )
 
 
 def test_no_plots_are_placed_nowhere():
@@ -199,8 +226,7 @@ def great_circle(lat1, lon1, lat2, lon2):
 def test_local_distances_agree_with_the_great_circle(origin, offset):
     latitude, longitude = origin[0] + offset[0], origin[1] + offset[1]
     local = local_from_geodetic(latitude, longitude, *origin)
-    assert np.hypot(*local) == pytest.approx(
-        great_circle(*origin, latitude, longitude), rel=2e-3)
+    assert np.hypot(*local) == pytest.approx(great_circle(*origin, latitude, longitude), rel=2e-3)
     assert np.sign(local[0]) == np.sign(offset[1])
     assert np.sign(local[1]) == np.sign(offset[0])
 

@@ -44,14 +44,38 @@ def installed(tmp_path_factory):
     """A prefix into which the package was installed with the commands that colcon uses."""
     folder = tmp_path_factory.mktemp('packaging')
     source = folder / 'source'
-    shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns(
-        '.*', '__pycache__', '*.egg-info', 'build', 'install', 'log', 'test', 'tracks.csv'))
+    shutil.copytree(
+        ROOT,
+        source,
+        ignore=shutil.ignore_patterns(
+            '.*', '__pycache__', '*.egg-info', 'build', 'install', 'log', 'test', 'tracks.csv'
+        ),
+    )
     run = subprocess.run(
-        [sys.executable, '-W', 'ignore', 'setup.py', '-q',
-         'egg_info', '--egg-base', folder, 'build', '--build-base', folder / 'build',
-         'install', '--prefix', folder / 'prefix', '--single-version-externally-managed',
-         '--record', folder / 'record.txt'],
-        cwd=source, capture_output=True, text=True, timeout=100)
+        [
+            sys.executable,
+            '-W',
+            'ignore',
+            'setup.py',
+            '-q',
+            'egg_info',
+            '--egg-base',
+            folder,
+            'build',
+            '--build-base',
+            folder / 'build',
+            'install',
+            '--prefix',
+            folder / 'prefix',
+            '--single-version-externally-managed',
+            '--record',
+            folder / 'record.txt',
+        ],
+        cwd=source,
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
     assert run.returncode == 0, run.stderr
     return folder / 'prefix'
 
@@ -83,8 +107,10 @@ def test_requirements_of_setup_py_and_package_xml_agree(requirements):
     # A requirement that is not in ROSDEP_KEY needs its rosdep key there.
     def keys(names):
         return {ROSDEP_KEY[name] for name in names}
+
     assert keys(requirements['']) == {
-        key for key in manifest('exec_depend') if key.startswith('python3-')}
+        key for key in manifest('exec_depend') if key.startswith('python3-')
+    }
     assert keys(requirements['test']) == manifest('test_depend')
 
 
@@ -101,8 +127,11 @@ def test_every_ros_package_imported_is_in_package_xml():
                 imported.add(node.module.split('.')[0])
             elif isinstance(node, ast.Import):
                 imported |= {alias.name.split('.')[0] for alias in node.names}
-    ros = {name for name in imported
-           if name == 'rclpy' or name.endswith(('_msgs', '_srvs', '_interfaces'))}
+    ros = {
+        name
+        for name in imported
+        if name == 'rclpy' or name.endswith(('_msgs', '_srvs', '_interfaces'))
+    }
     assert ros == {key for key in manifest('exec_depend') if not key.startswith('python3-')}
 
 
@@ -117,13 +146,17 @@ def test_all_configuration_is_installed(installed):
     share = installed / 'share' / 'marine_tracker'
     assert shipped
     assert {file.relative_to(share) for file in share.rglob('*') if file.is_file()} == (
-        shipped | {Path('package.xml')})
+        shipped | {Path('package.xml')}
+    )
 
 
 def test_all_of_the_package_is_installed(installed):
     site = next(installed.rglob('site-packages'))
-    source = {file.relative_to(ROOT) for file in (ROOT / 'marine_tracker').rglob('*')
-              if file.is_file() and '__pycache__' not in file.parts}
+    source = {
+        file.relative_to(ROOT)
+        for file in (ROOT / 'marine_tracker').rglob('*')
+        if file.is_file() and '__pycache__' not in file.parts
+    }
     assert source <= {file.relative_to(site) for file in site.rglob('*')}
     assert not (site / 'test').exists()
 

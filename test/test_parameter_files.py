@@ -12,7 +12,8 @@ CHECKOUT = Path(__file__).resolve().parents[1]
 @pytest.mark.parametrize('name', parameter_files.files())
 def test_the_shipped_file_is_what_the_dataclasses_say(name):
     assert (CHECKOUT / name).read_text() == parameter_files.files()[name], (
-        f'run {parameter_files.COMMAND}')
+        f'run {parameter_files.COMMAND}'
+    )
 
 
 @pytest.mark.parametrize('node', NODES)

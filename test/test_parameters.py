@@ -53,18 +53,28 @@ def test_a_number_beyond_its_limits_is_refused_by_name_value_and_limit(kind, fie
 
 
 def test_the_limits_themselves_are_allowed():
-    TrackerParameters(gate_probability=0.5, max_score=100.0, confirm_hits=2, confirm_scans=2,
-                      min_range_m=0.0, max_range_m=200000.0, range_sigma_m=0.1)
+    TrackerParameters(
+        gate_probability=0.5,
+        max_score=100.0,
+        confirm_hits=2,
+        confirm_scans=2,
+        min_range_m=0.0,
+        max_range_m=200000.0,
+        range_sigma_m=0.1,
+    )
 
 
-@pytest.mark.parametrize(('name', 'value', 'kind'), [
-    ('range_sigma_m', '15', 'float'),
-    ('range_sigma_m', True, 'float'),
-    ('range_sigma_m', None, 'float'),
-    ('confirm_hits', 3.0, 'int'),
-    ('confirm_hits', True, 'int'),
-    ('estimator', 3, 'str'),
-])
+@pytest.mark.parametrize(
+    ('name', 'value', 'kind'),
+    [
+        ('range_sigma_m', '15', 'float'),
+        ('range_sigma_m', True, 'float'),
+        ('range_sigma_m', None, 'float'),
+        ('confirm_hits', 3.0, 'int'),
+        ('confirm_hits', True, 'int'),
+        ('estimator', 3, 'str'),
+    ],
+)
 def test_a_wrong_type_is_refused_by_name(name, value, kind):
     with pytest.raises(ValueError, match=f'{name} is {re.escape(repr(value))}.*{kind}'):
         TrackerParameters(**{name: value})
@@ -97,13 +107,18 @@ def test_the_choices_are_what_the_registry_holds():
     assert set(choices['vessel_class']) == set(VESSEL_CLASSES)
 
 
-@pytest.mark.parametrize(('values', 'names'), [
-    ({'confirm_hits': 6, 'confirm_scans': 5}, ('confirm_hits', '6', 'confirm_scans', '5')),
-    ({'min_range_m': 5000.0, 'max_range_m': 4000.0},
-     ('min_range_m', '5000', 'max_range_m', '4000')),
-    ({'min_range_m': 4000.0, 'max_range_m': 4000.0}, ('min_range_m', 'max_range_m')),
-    ({'extent': 'gp', 'radars': '- {topic: a}'}, ('extent is gp', 'several radars')),
-])
+@pytest.mark.parametrize(
+    ('values', 'names'),
+    [
+        ({'confirm_hits': 6, 'confirm_scans': 5}, ('confirm_hits', '6', 'confirm_scans', '5')),
+        (
+            {'min_range_m': 5000.0, 'max_range_m': 4000.0},
+            ('min_range_m', '5000', 'max_range_m', '4000'),
+        ),
+        ({'min_range_m': 4000.0, 'max_range_m': 4000.0}, ('min_range_m', 'max_range_m')),
+        ({'extent': 'gp', 'radars': '- {topic: a}'}, ('extent is gp', 'several radars')),
+    ],
+)
 def test_parameters_that_contradict_each_other_are_refused(values, names):
     with pytest.raises(ValueError) as error:
         TrackerParameters(**values)
@@ -128,9 +143,9 @@ def test_a_mapping_gives_the_parameters_it_names():
     assert found == TrackerParameters(range_sigma_m=7.5, confirm_hits=4)
 
 
-@pytest.mark.parametrize(('text', 'expected'), [
-    ('', {}), ('# nothing\n', {}), ('a: 1\n', {'a': 1}),
-])
+@pytest.mark.parametrize(
+    ('text', 'expected'), [('', {}), ('# nothing\n', {}), ('a: 1\n', {'a': 1})]
+)
 def test_a_yaml_file_gives_its_mapping(tmp_path, text, expected):
     file = tmp_path / 'some.yaml'
     file.write_text(text)

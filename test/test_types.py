@@ -36,14 +36,17 @@ def same(found, expected):
         np.testing.assert_array_equal(found, expected)
 
 
-@pytest.mark.parametrize(('chosen', 'expected'), [
-    (np.array([2, 0]), (7, 1)),
-    (np.array([False, True, True]), (5, 7)),
-    (slice(1, None), (5, 7)),
-    (np.array([1, 1]), (5, 5)),
-    (np.zeros(0, np.int64), ()),
-    (np.zeros(3, bool), ()),
-])
+@pytest.mark.parametrize(
+    ('chosen', 'expected'),
+    [
+        (np.array([2, 0]), (7, 1)),
+        (np.array([False, True, True]), (5, 7)),
+        (slice(1, None), (5, 7)),
+        (np.array([1, 1]), (5, 5)),
+        (np.zeros(0, np.int64), ()),
+        (np.zeros(3, bool), ()),
+    ],
+)
 def test_take_chooses_rows_of_every_array_at_every_depth(chosen, expected):
     same(take(rows(1, 5, 7), chosen), rows(*expected))
 
@@ -52,10 +55,12 @@ def test_a_field_that_is_not_told_stays_so():
     told = rows(1, 5, 7)
     untold = told._replace(pair=None)
     same_but_pair = (
-        (take(untold, np.array([2, 0])), rows(7, 1)), (take(untold, slice(1, None)), rows(5, 7)),
+        (take(untold, np.array([2, 0])), rows(7, 1)),
+        (take(untold, slice(1, None)), rows(5, 7)),
         (append(untold, untold), rows(1, 5, 7, 1, 5, 7)),
         (where(np.array([True, False, True]), untold, untold), told),
-        (put(untold, np.array([0]), take(untold, np.array([1]))), rows(5, 5, 7)))
+        (put(untold, np.array([0]), take(untold, np.array([1]))), rows(5, 5, 7)),
+    )
     for found, expected in same_but_pair:
         assert found.pair is None
         same(found._replace(pair=expected.pair), expected)

@@ -37,7 +37,7 @@ from .targets import (
 )
 
 EVERYWHERE, ZONES, NOWHERE = WHERE = ('everywhere', 'zones', 'nowhere')
-MAX_CLICKS = 20                     # that may be pending
+MAX_CLICKS = 20  # that may be pending
 
 
 class AcquisitionSettings(NamedTuple):
@@ -97,8 +97,12 @@ class Acquisition(NamedTuple):
 def begin() -> Acquisition:
     """No targets yet."""
     ids, times = np.zeros(0, np.int64), np.zeros(0)
-    return Acquisition(Targets(ids, ids, np.zeros(0, np.int8), times),
-                       Barred(ids, np.zeros(0, bool), times), Clicks(np.zeros((0, 2)), times), 0)
+    return Acquisition(
+        Targets(ids, ids, np.zeros(0, np.int8), times),
+        Barred(ids, np.zeros(0, bool), times),
+        Clicks(np.zeros((0, 2)), times),
+        0,
+    )
 
 
 def acquire(state: Acquisition, position, now: float) -> Acquisition:
@@ -137,17 +141,20 @@ def how_acquired(state: Acquisition, ids) -> NDArray[np.int8]:
     return np.where(row >= 0, np.append(state.targets.acquired, 0)[row], -1).astype(np.int8)
 
 
-def step(state: Acquisition, settings: AcquisitionSettings, situation: Situation,
-         now: float) -> tuple[Acquisition, Events]:
+def step(
+    state: Acquisition, settings: AcquisitionSettings, situation: Situation, now: float
+) -> tuple[Acquisition, Events]:
     """One scan; now s. Afterwards the targets are tracks of the situation that live.
 
     ValueError where the settings do not say where targets are to be acquired.
     """
     if settings.automatic not in WHERE:
-        raise ValueError(f'automatic acquisition is {settings.automatic!r}; it must be one of '
-                         f'{", ".join(WHERE)}')
-    how, since, events = carry_over(state.targets, situation, settings.click_radius,
-                                    settings.brief, now)
+        raise ValueError(
+            f'automatic acquisition is {settings.automatic!r}; it must be one of {", ".join(WHERE)}'
+        )
+    how, since, events = carry_over(
+        state.targets, situation, settings.click_radius, settings.brief, now
+    )
     before = how >= 0
     barred = _bar(state.barred, settings, situation, events, now)
 
@@ -158,8 +165,9 @@ def step(state: Acquisition, settings: AcquisitionSettings, situation: Situation
     if settings.automatic != EVERYWHERE:
         candidate &= situation.guarded & (settings.automatic == ZONES)
     candidate[row_of(situation.id, barred.id)] = False
-    taken, dropped, refused = make_room(settings.capacity, situation, how, candidate,
-                                        clicked[~before[clicked]])
+    taken, dropped, refused = make_room(
+        settings.capacity, situation, how, candidate, clicked[~before[clicked]]
+    )
     how[taken] = AUTOMATIC
     how[np.concatenate([dropped, refused])] = -1
 
@@ -167,16 +175,27 @@ def step(state: Acquisition, settings: AcquisitionSettings, situation: Situation
     begun = np.union1d(rows[~before[rows]], clicked[how[clicked] >= 0])
     targets = Targets(situation.id[rows], situation.number[rows], how[rows], since[rows])
     return Acquisition(
-        targets, take(barred, row_of(targets.id, barred.id) < 0), clicks,
+        targets,
+        take(barred, row_of(targets.id, barred.id) < 0),
+        clicks,
         int(candidate.sum()) - len(taken) + len(dropped),
-    ), join(events, at_tracks(ACQUIRED, situation, begun),
-            at_tracks(DISPLACED, situation, dropped), at_tracks(NO_ROOM, situation, refused),
-            Events(np.full(len(lapsed), NOTHING_THERE, np.int8), np.zeros(len(lapsed), np.int64),
-                   np.zeros(len(lapsed), np.int64), lapsed))
+    ), join(
+        events,
+        at_tracks(ACQUIRED, situation, begun),
+        at_tracks(DISPLACED, situation, dropped),
+        at_tracks(NO_ROOM, situation, refused),
+        Events(
+            np.full(len(lapsed), NOTHING_THERE, np.int8),
+            np.zeros(len(lapsed), np.int64),
+            np.zeros(len(lapsed), np.int64),
+            lapsed,
+        ),
+    )
 
 
-def _bar(barred: Barred, settings: AcquisitionSettings, situation: Situation, events: Events,
-         now: float) -> Barred:
+def _bar(
+    barred: Barred, settings: AcquisitionSettings, situation: Situation, events: Events, now: float
+) -> Barred:
     """Who stays barred, and those that dropped out of the targets in an exclusion zone."""
     row = row_of(situation.id, barred.id)
     here = row >= 0
@@ -191,7 +210,9 @@ def _bar(barred: Barred, settings: AcquisitionSettings, situation: Situation, ev
     return append(stay, Barred(new, np.zeros(len(new), bool), np.full(len(new), now)))
 
 
-def _answer_clicks(clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how, now: float):
+def _answer_clicks(
+    clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how, now: float
+):
     """Clicks that wait on, rows of the tracks clicked, and positions of clicks that lapse.
 
     A click takes the nearest track that is no target yet; where there are only targets, the
@@ -209,8 +230,11 @@ def _answer_clicks(clicks: Clicks, settings: AcquisitionSettings, situation: Sit
             clicked.append(row)
     waiting = np.array(wait, bool)
     lapse = waiting & (now - clicks.since > settings.click_wait)
-    return (take(clicks, waiting & ~lapse), np.array(list(dict.fromkeys(clicked)), np.int64),
-            clicks.position[lapse])
+    return (
+        take(clicks, waiting & ~lapse),
+        np.array(list(dict.fromkeys(clicked)), np.int64),
+        clicks.position[lapse],
+    )
 
 
 def _cancel(state: Acquisition, rows) -> tuple[Acquisition, Events]:
@@ -220,4 +244,5 @@ def _cancel(state: Acquisition, rows) -> tuple[Acquisition, Events]:
     stay[rows] = False
     barred = append(state.barred, Barred(chosen.id, np.ones(count, bool), np.full(count, np.nan)))
     return state._replace(targets=take(state.targets, stay), barred=barred), Events(
-        np.full(count, CANCELLED, np.int8), chosen.id, chosen.number, np.full((count, 2), np.nan))
+        np.full(count, CANCELLED, np.int8), chosen.id, chosen.number, np.full((count, 2), np.nan)
+    )

@@ -9,7 +9,7 @@ from .alerts import Alerts
 from .targets import label
 from .zones import Zones
 
-NO_LONGER = 'no longer set'      # a zone
+NO_LONGER = 'no longer set'  # a zone
 
 
 def text(alerts: Alerts, zones: Zones, radars: Sequence[str] = ('',)) -> list[str]:
@@ -17,17 +17,24 @@ def text(alerts: Alerts, zones: Zones, radars: Sequence[str] = ('',)) -> list[st
 
     radars  their names; '' where there is only one
     """
-    return [_sentence(kind, name, part or NO_LONGER, values)
-            for kind, name, part, values in zip(
-                alerts.kind.tolist(), label(alerts.id, alerts.number),
-                parts(alerts, zones, radars), alerts.values.tolist())]
+    return [
+        _sentence(kind, name, part or NO_LONGER, values)
+        for kind, name, part, values in zip(
+            alerts.kind.tolist(),
+            label(alerts.id, alerts.number),
+            parts(alerts, zones, radars),
+            alerts.values.tolist(),
+        )
+    ]
 
 
 def parts(alerts: Alerts, zones: Zones, radars: Sequence[str] = ('',)) -> list[str]:
     """The zone or the radar that each alert names; '' for none."""
     named = dict(zip(zones.key.tolist(), zones.name))
-    return [radars[zone] if kind == alarms.PLOTS_MISSING else named.get(zone, '')
-            for kind, zone in zip(alerts.kind.tolist(), alerts.zone.tolist())]
+    return [
+        radars[zone] if kind == alarms.PLOTS_MISSING else named.get(zone, '')
+        for kind, zone in zip(alerts.kind.tolist(), alerts.zone.tolist())
+    ]
 
 
 def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
@@ -35,8 +42,10 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
     where = f'{first / NAUTICAL_MILE:.2f} NM, {round(math.degrees(second), 1) % 360:05.1f} deg'
     if kind == alarms.DANGER:
         when = f'in {fourth / 60:.1f} min' if math.isfinite(fourth) else 'at an unknown time'
-        return (f'{name} dangerous: CPA {third / NAUTICAL_MILE:.2f} NM {when}, probability '
-                f'{100 * fifth:.0f} %, then at {where}')
+        return (
+            f'{name} dangerous: CPA {third / NAUTICAL_MILE:.2f} NM {when}, probability '
+            f'{100 * fifth:.0f} %, then at {where}'
+        )
     if kind == alarms.LOST_TARGET:
         return f'{name} lost, last at {where}'
     if kind == alarms.NEW_TARGET:

@@ -29,16 +29,46 @@ from .situation import Situation
 from .targets import LOST_FROM_SIGHT, Events
 from .zones import Zones
 
-NAMES = ('danger', 'lost target', 'new target', 'near capacity', 'capacity', 'heading missing',
-         'position missing', 'plots missing', 'fallback', 'swap risk')
-(DANGER, LOST_TARGET, NEW_TARGET, NEAR_CAPACITY, CAPACITY, HEADING_MISSING,
- POSITION_MISSING, PLOTS_MISSING, FALLBACK, SWAP_RISK) = range(len(NAMES))
-PRIORITY = ('alarm', 'warning', 'warning', 'caution', 'warning', 'warning',
-            'warning', 'warning', 'caution', 'caution')
+NAMES = (
+    'danger',
+    'lost target',
+    'new target',
+    'near capacity',
+    'capacity',
+    'heading missing',
+    'position missing',
+    'plots missing',
+    'fallback',
+    'swap risk',
+)
+(
+    DANGER,
+    LOST_TARGET,
+    NEW_TARGET,
+    NEAR_CAPACITY,
+    CAPACITY,
+    HEADING_MISSING,
+    POSITION_MISSING,
+    PLOTS_MISSING,
+    FALLBACK,
+    SWAP_RISK,
+) = range(len(NAMES))
+PRIORITY = (
+    'alarm',
+    'warning',
+    'warning',
+    'caution',
+    'warning',
+    'warning',
+    'warning',
+    'warning',
+    'caution',
+    'caution',
+)
 CAUTION = np.array([priority == 'caution' for priority in PRIORITY])
 MOMENTARY = np.arange(len(NAMES)) == LOST_TARGET
 NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level that keeps an alert
-APART = 1.44                        # overlap of gates (see swap_risk) that ends a swap risk
+APART = 1.44  # overlap of gates (see swap_risk) that ends a swap risk
 
 
 class AlarmSettings(NamedTuple):
@@ -81,8 +111,16 @@ class Silence(NamedTuple):
     plots: tuple[float, ...]
 
 
-def step(alerts: Alerts, settings: AlarmSettings, situation: Situation, acquisition: Acquisition,
-         events: Events, zones: Zones, tracking: Tracking, now: float) -> tuple[Alerts, Alerts]:
+def step(
+    alerts: Alerts,
+    settings: AlarmSettings,
+    situation: Situation,
+    acquisition: Acquisition,
+    events: Events,
+    zones: Zones,
+    tracking: Tracking,
+    now: float,
+) -> tuple[Alerts, Alerts]:
     """The alerts after a scan, and those that changed; now s.
 
     acquisition and its events are those of the same scan. The sensors have a step of their own.
@@ -96,42 +134,65 @@ def step(alerts: Alerts, settings: AlarmSettings, situation: Situation, acquisit
     swap = np.where(tracking.overlap < 1, ON, np.where(tracking.overlap < APART, KEEP, OFF))
     partner = np.append(situation.number, 0)[tracking.other]
     causes = [
-        (DANGER, 0, _of_tracks(situation, numbered, danger, situation.cpa, situation.tcpa,
-                               situation.probability)),
+        (
+            DANGER,
+            0,
+            _of_tracks(
+                situation, numbered, danger, situation.cpa, situation.tcpa, situation.probability
+            ),
+        ),
         (LOST_TARGET, 0, _of_tracks(situation, lost, np.full(len(situation.id), ON))),
         (NEAR_CAPACITY, 0, _single(count, np.ceil(NEARLY_FULL * capacity), count, capacity)),
         (CAPACITY, 0, _single(count, capacity, count, capacity, acquisition.waiting)),
-        (FALLBACK, 0, _single(fallen, max(settings.fallback_share * confirmed, 1), fallen,
-                              confirmed)),
+        (
+            FALLBACK,
+            0,
+            _single(fallen, max(settings.fallback_share * confirmed, 1), fallen, confirmed),
+        ),
         (SWAP_RISK, 0, _of_tracks(situation, numbered, swap, partner)),
-        *_in_guard_zones(alerts, situation, acquisition, zones)]
+        *_in_guard_zones(alerts, situation, acquisition, zones),
+    ]
     return _advance(alerts, causes, settings, now)
 
 
-def watch(alerts: Alerts, settings: AlarmSettings, silence: Silence,
-          now: float) -> tuple[Alerts, Alerts]:
+def watch(
+    alerts: Alerts, settings: AlarmSettings, silence: Silence, now: float
+) -> tuple[Alerts, Alerts]:
     """The alerts after a look at the sensors, and those that changed: to be called by the clock.
 
     Where plots are missing there is no scan to call `step`. now s, of the same time as scans'.
     """
-    sensors = [(HEADING_MISSING, 0, silence.heading), (POSITION_MISSING, 0, silence.position),
-               *((PLOTS_MISSING, radar, silent) for radar, silent in enumerate(silence.plots))]
-    causes = [(kind, part, _causes(silent > settings.sensor_timeout, silent))
-              for kind, part, silent in sensors]
+    sensors = [
+        (HEADING_MISSING, 0, silence.heading),
+        (POSITION_MISSING, 0, silence.position),
+        *((PLOTS_MISSING, radar, silent) for radar, silent in enumerate(silence.plots)),
+    ]
+    causes = [
+        (kind, part, _causes(silent > settings.sensor_timeout, silent))
+        for kind, part, silent in sensors
+    ]
     return _advance(alerts, causes, settings, now)
 
 
-def acknowledge(alerts: Alerts, now: float, kind: int | None = None,
-                number: int | None = None) -> tuple[Alerts, Alerts]:
+def acknowledge(
+    alerts: Alerts, now: float, kind: int | None = None, number: int | None = None
+) -> tuple[Alerts, Alerts]:
     """The operator has seen one alert, all of a kind, all of a target, or all (alerts.py)."""
     return machine.acknowledge(alerts, now, MOMENTARY, kind, number)
 
 
 def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
     """How each kind behaves."""
-    return tuple(Rule(settings.danger_after if kind == DANGER else 0.0, settings.end_after,
-                      settings.lapse_after, bool(CAUTION[kind]), bool(MOMENTARY[kind]))
-                 for kind in range(len(NAMES)))
+    return tuple(
+        Rule(
+            settings.danger_after if kind == DANGER else 0.0,
+            settings.end_after,
+            settings.lapse_after,
+            bool(CAUTION[kind]),
+            bool(MOMENTARY[kind]),
+        )
+        for kind in range(len(NAMES))
+    )
 
 
 def _advance(alerts, causes, settings, now):
@@ -152,15 +213,21 @@ def _advance(alerts, causes, settings, now):
 def _in_guard_zones(alerts, situation, acquisition, zones):
     """Causes of `new target`, zone by zone; a zone that is no more has none."""
     cancelled = acquisition.barred.id[acquisition.barred.cancelled]
-    rows = ((situation.number > 0) & (situation.status != LOST) & ~situation.excluded
-            & ~np.isin(situation.id, cancelled)).nonzero()[0]
+    rows = (
+        (situation.number > 0)
+        & (situation.status != LOST)
+        & ~situation.excluded
+        & ~np.isin(situation.id, cancelled)
+    ).nonzero()[0]
     guard = zones.guard.nonzero()[0]
     keys = zones.key[guard].tolist()
     gone = set(alerts.zone[alerts.kind == NEW_TARGET].tolist()) - set(keys)
-    return ([(NEW_TARGET, key, _of_tracks(situation, rows, ON * situation.inside[:, zone]))
-             for key, zone in zip(keys, guard)]
-            + [(NEW_TARGET, key, _of_tracks(situation, rows[:0], situation.danger))
-               for key in sorted(gone)])
+    return [
+        (NEW_TARGET, key, _of_tracks(situation, rows, ON * situation.inside[:, zone]))
+        for key, zone in zip(keys, guard)
+    ] + [
+        (NEW_TARGET, key, _of_tracks(situation, rows[:0], situation.danger)) for key in sorted(gone)
+    ]
 
 
 def _of_tracks(situation, rows, level, *told):
@@ -168,8 +235,13 @@ def _of_tracks(situation, rows, level, *told):
     values = np.full((len(rows), VALUES), np.nan)
     for column, value in enumerate((situation.range, situation.bearing, *told)):
         values[:, column] = value[rows]
-    return Causes(situation.id[rows], situation.number[rows], level[rows].astype(np.int8),
-                  situation.position[rows], values)
+    return Causes(
+        situation.id[rows],
+        situation.number[rows],
+        level[rows].astype(np.int8),
+        situation.position[rows],
+        values,
+    )
 
 
 def _single(value, limit, *told):
@@ -179,10 +251,15 @@ def _single(value, limit, *told):
 
 def _causes(there, *told, keep=False):
     values = np.full((1, VALUES), np.nan)
-    values[0, :len(told)] = told
+    values[0, : len(told)] = told
     none = np.zeros(1, np.int64)
-    return Causes(none, none, np.array([ON if there else KEEP if keep else OFF], np.int8),
-                  np.full((1, 2), np.nan), values)
+    return Causes(
+        none,
+        none,
+        np.array([ON if there else KEEP if keep else OFF], np.int8),
+        np.full((1, 2), np.nan),
+        values,
+    )
 
 
 def _join(parts):

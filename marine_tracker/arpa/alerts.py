@@ -24,8 +24,8 @@ from ..types import Array, append, row_of, take
 
 NORMAL, ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED = range(4)
 STATES = ('normal', 'active unacknowledged', 'active acknowledged', 'rectified unacknowledged')
-VALUES = 5                          # numbers that an alert tells
-OFF, KEEP, ON = range(3)            # levels of a cause: gone, not enough to raise, there
+VALUES = 5  # numbers that an alert tells
+OFF, KEEP, ON = range(3)  # levels of a cause: gone, not enough to raise, there
 
 
 class Alerts(NamedTuple):
@@ -88,20 +88,22 @@ class Rule(NamedTuple):
 def begin() -> Alerts:
     """All normal."""
     ids, times, kinds = np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int8)
-    return Alerts(kinds, ids, ids, ids, kinds, times, times, np.zeros((0, 2)),
-                  np.zeros((0, VALUES)))
+    return Alerts(
+        kinds, ids, ids, ids, kinds, times, times, np.zeros((0, 2)), np.zeros((0, VALUES))
+    )
 
 
-def advance(alerts: Alerts, kind: int, zone: int, causes: Causes, rule: Rule,
-            now: float) -> tuple[Alerts, Alerts]:
+def advance(
+    alerts: Alerts, kind: int, zone: int, causes: Causes, rule: Rule, now: float
+) -> tuple[Alerts, Alerts]:
     """The alerts, all of this kind and zone, after a look at their causes; and those changed.
 
     A change to NORMAL is among the changed rows only.
     """
     row = row_of(causes.id, alerts.id)
-    level = np.append(causes.level, OFF)[row]           # -1, gone away: the last
+    level = np.append(causes.level, OFF)[row]  # -1, gone away: the last
     gone = row < 0
-    active = ((alerts.state == ACTIVE_UNACKNOWLEDGED) | (alerts.state == ACTIVE_ACKNOWLEDGED))
+    active = (alerts.state == ACTIVE_UNACKNOWLEDGED) | (alerts.state == ACTIVE_ACKNOWLEDGED)
     calls = np.where(active, (level == OFF) & (not rule.momentary), level == ON)
     holds = calls | (~active & (level == KEEP))
     turn = np.where(calls & np.isnan(alerts.turn), now, np.where(holds, alerts.turn, np.nan))
@@ -110,11 +112,17 @@ def advance(alerts: Alerts, kind: int, zone: int, causes: Causes, rule: Rule,
     raised = ACTIVE_ACKNOWLEDGED if rule.caution else ACTIVE_UNACKNOWLEDGED
     ended = np.where(alerts.state == ACTIVE_UNACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED, NORMAL)
     idle = (alerts.state == RECTIFIED_UNACKNOWLEDGED) | (active & rule.momentary)
-    state = np.where(due, np.where(active, ended, raised), np.where(
-        idle & (now - alerts.since > rule.lapse_after), NORMAL, alerts.state)).astype(np.int8)
+    state = np.where(
+        due,
+        np.where(active, ended, raised),
+        np.where(idle & (now - alerts.since > rule.lapse_after), NORMAL, alerts.state),
+    ).astype(np.int8)
     changed = state != alerts.state
-    told = alerts._replace(state=state, since=np.where(changed, now, alerts.since),
-                           turn=np.where(changed, np.nan, turn))
+    told = alerts._replace(
+        state=state,
+        since=np.where(changed, now, alerts.since),
+        turn=np.where(changed, np.nan, turn),
+    )
     fresh = (changed & ~gone).nonzero()[0]
     if len(fresh):
         position, values = told.position.copy(), told.values.copy()
@@ -124,17 +132,31 @@ def advance(alerts: Alerts, kind: int, zone: int, causes: Causes, rule: Rule,
     new = ((causes.level == ON) & (row_of(alerts.id, causes.id) < 0)).nonzero()[0]
     at_once = rule.raise_after <= 0
     count = len(new)
-    begun = Alerts(np.full(count, kind, np.int8), np.full(count, zone), causes.id[new],
-                   causes.number[new], np.full(count, raised if at_once else NORMAL, np.int8),
-                   np.full(count, now), np.full(count, np.nan if at_once else now),
-                   causes.position[new], causes.values[new])
+    begun = Alerts(
+        np.full(count, kind, np.int8),
+        np.full(count, zone),
+        causes.id[new],
+        causes.number[new],
+        np.full(count, raised if at_once else NORMAL, np.int8),
+        np.full(count, now),
+        np.full(count, np.nan if at_once else now),
+        causes.position[new],
+        causes.values[new],
+    )
     everything = append(told, begun)
-    return (take(everything, _alive(everything)),
-            take(everything, np.append(changed, np.full(count, at_once))))
+    return (
+        take(everything, _alive(everything)),
+        take(everything, np.append(changed, np.full(count, at_once))),
+    )
 
 
-def acknowledge(alerts: Alerts, now: float, momentary: NDArray[np.bool_], kind: int | None = None,
-                number: int | None = None) -> tuple[Alerts, Alerts]:
+def acknowledge(
+    alerts: Alerts,
+    now: float,
+    momentary: NDArray[np.bool_],
+    kind: int | None = None,
+    number: int | None = None,
+) -> tuple[Alerts, Alerts]:
     """The operator has seen the alerts of this kind and target number; None stands for all.
 
     momentary [kinds]: which kinds have no cause that lasts. Returns the alerts and those changed;
@@ -146,26 +168,34 @@ def acknowledge(alerts: Alerts, now: float, momentary: NDArray[np.bool_], kind: 
         if value is not None:
             chosen &= column == value
     if not chosen.any() and (kind is not None or number is not None):
-        what = [f'{name} {value}' for name, value in (('kind', kind), ('target', number))
-                if value is not None]
+        what = [
+            f'{name} {value}'
+            for name, value in (('kind', kind), ('target', number))
+            if value is not None
+        ]
         raise ValueError(f'there is no alert of {" and ".join(what)} to acknowledge')
     active = chosen & (alerts.state == ACTIVE_UNACKNOWLEDGED)
     ends = (chosen & (alerts.state == RECTIFIED_UNACKNOWLEDGED)) | (active & momentary[alerts.kind])
-    return _change(alerts, np.where(ends, NORMAL, np.where(active, ACTIVE_ACKNOWLEDGED,
-                                                           alerts.state)), now)
+    return _change(
+        alerts, np.where(ends, NORMAL, np.where(active, ACTIVE_ACKNOWLEDGED, alerts.state)), now
+    )
 
 
 def dismiss(alerts: Alerts, ids, now: float) -> tuple[Alerts, Alerts]:
     """All alerts of these tracks are normal: the operator has cancelled them. As `acknowledge`."""
     chosen = np.isin(alerts.id, ids) & (alerts.id > 0)
-    return _change(alerts._replace(turn=np.where(chosen, np.nan, alerts.turn)),
-                   np.where(chosen, NORMAL, alerts.state), now)
+    return _change(
+        alerts._replace(turn=np.where(chosen, np.nan, alerts.turn)),
+        np.where(chosen, NORMAL, alerts.state),
+        now,
+    )
 
 
 def _change(alerts: Alerts, state, now: float) -> tuple[Alerts, Alerts]:
     changed = state != alerts.state
-    alerts = alerts._replace(state=state.astype(np.int8),
-                             since=np.where(changed, now, alerts.since))
+    alerts = alerts._replace(
+        state=state.astype(np.int8), since=np.where(changed, now, alerts.since)
+    )
     return take(alerts, _alive(alerts)), take(alerts, changed)
 
 

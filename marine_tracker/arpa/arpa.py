@@ -70,8 +70,8 @@ class Picture(NamedTuple):
     changed: Alerts
 
 
-OWN_AT_REST = 0.25          # m/s, below which own ship makes no way
-BY_CHANCE = 11.8            # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
+OWN_AT_REST = 0.25  # m/s, below which own ship makes no way
+BY_CHANCE = 11.8  # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
 
 
 def makes_way(moving: Motion) -> NDArray[np.bool_]:
@@ -96,11 +96,13 @@ class Arpa:
         self.radars = radars_of(tracker)
         self.limits = situation.Limits(p.cpa_limit_nm * NAUTICAL_MILE, 60 * p.tcpa_limit_min)
         self.zones = zones.parse(p.zones)
-        self.acquisition = acquisition.AcquisitionSettings(p.acquisition, p.max_targets, p.click_radius_m,
-                                                p.click_wait_s)
+        self.acquisition = acquisition.AcquisitionSettings(
+            p.acquisition, p.max_targets, p.click_radius_m, p.click_wait_s
+        )
         self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s)
         self.motion = motion.PRESETS[tracker.vessel_class]._replace(
-            speed_sigma=0.5 * tracker.max_target_speed_mps)
+            speed_sigma=0.5 * tracker.max_target_speed_mps
+        )
         self.current = p.current_drift_kn * KNOT * unit_vector(np.radians(p.current_set_deg))
         self.gate_size = gate_size(tracker.gate_probability)
 
@@ -113,11 +115,17 @@ class Arpa:
         """No targets yet."""
         p = self.parameters
         nothing = OwnShip(np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2)))
-        return ArpaMemory(nothing, motion.begin(len(self.radars)), acquisition.begin(), alerts.begin(),
-                      past_positions.begin(p.past_positions, p.past_interval_s))
+        return ArpaMemory(
+            nothing,
+            motion.begin(len(self.radars)),
+            acquisition.begin(),
+            alerts.begin(),
+            past_positions.begin(p.past_positions, p.past_interval_s),
+        )
 
-    def step(self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen=False
-             ) -> tuple[ArpaMemory, Picture]:
+    def step(
+        self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen=False
+    ) -> tuple[ArpaMemory, Picture]:
         """One antenna revolution; all is reckoned to its end.
 
         heading  rad, own ship's, true; nan where it is not known
@@ -132,15 +140,24 @@ class Arpa:
         plots = locate(scan.plots, scan.own_ship, radar.range_sigma_m, bearing_sigma)
         remembered = motion.step(memory.motion, report, plots, self.motion, scan.radar)
         moving = motion.at(remembered, now)
-        past = past_positions.step(memory.past, tracks.id, tracks.first_time, moving.position,
-                                   moving.velocity, own.position, own.velocity, now)
+        past = past_positions.step(
+            memory.past,
+            tracks.id,
+            tracks.first_time,
+            moving.position,
+            moving.velocity,
+            own.position,
+            own.velocity,
+            now,
+        )
 
         # cpa: how the tracks pass own ship
         at_rest = ~makes_way(moving) & (np.hypot(*own.velocity) < OWN_AT_REST)
         moving, own = sea_stabilised(moving, own, self.current)
         passing = self._approach(moving, own, memory.acquisition, tracks)
-        seen = situation.look(tracks, report.reason, moving.position, passing, at_rest,
-                              self.zones, own, self.limits)
+        seen = situation.look(
+            tracks, report.reason, moving.position, passing, at_rest, self.zones, own, self.limits
+        )
 
         # acquisition: which of them are targets
         before = memory.acquisition.targets
@@ -151,36 +168,67 @@ class Arpa:
         target = acquisition.how_acquired(acquired, tracks.id) >= 0
         fallen = int(np.sum(fallen & target & (tracks.status == CONFIRMED)))
         alive, changed = alarms.step(
-            memory.alerts, self.alarms, seen, acquired, events, self.zones,
-            alarms.Tracking(self.acquisition.capacity, fallen, overlap, other), now)
+            memory.alerts,
+            self.alarms,
+            seen,
+            acquired,
+            events,
+            self.zones,
+            alarms.Tracking(self.acquisition.capacity, fallen, overlap, other),
+            now,
+        )
 
         lost = tracks.id[tracks.status == LOST]
         targets = append(acquired.targets, take(before, np.isin(before.id, lost)))
         targets = take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
         row = row_of(tracks.id, targets.id)
         return ArpaMemory(samples, remembered, acquired, alive, past), Picture(
-            now, own, row, targets, take(moving, row), take(passing, row), past, at_rest[row],
-            seen.danger[row], overlap[row], events, alive, changed)
+            now,
+            own,
+            row,
+            targets,
+            take(moving, row),
+            take(passing, row),
+            past,
+            at_rest[row],
+            seen.danger[row],
+            overlap[row],
+            events,
+            alive,
+            changed,
+        )
 
-    def _approach(self, moving: Motion, own: OwnMotion, acquired: Acquisition, tracks: Tracks
-                  ) -> Approach:
+    def _approach(
+        self, moving: Motion, own: OwnMotion, acquired: Acquisition, tracks: Tracks
+    ) -> Approach:
         """Of the tracks that are or may become targets in this scan; nan for the others."""
         asked = (tracks.number > 0) | np.isin(tracks.id, acquired.targets.id)
         if len(acquired.clicks.since):
             asked[:] = True
         position = np.where(asked[:, None], moving.position, np.nan)
-        return approach(moving._replace(position=position), own, self.limits.cpa,
-                        self.limits.tcpa)
+        return approach(moving._replace(position=position), own, self.limits.cpa, self.limits.tcpa)
 
-    def _swap_risk(self, tracks, remembered: motion.MotionMemory, passing: Approach, own: OwnMotion,
-                   now: float, radar: TrackerParameters):
+    def _swap_risk(
+        self,
+        tracks,
+        remembered: motion.MotionMemory,
+        passing: Approach,
+        own: OwnMotion,
+        now: float,
+        radar: TrackerParameters,
+    ):
         """Overlap [N] of the gates of the radar's next scan and the rows [N] of the others."""
         overlap, other = np.full(len(tracks.id), np.inf), np.full(len(tracks.id), -1)
         rows = ((tracks.number > 0) & (tracks.status != LOST)).nonzero()[0]
         ahead = motion.at(take(remembered, rows), now + radar.scan_period_s)
-        _, noise = polar_to_position(passing.range[rows], passing.bearing[rows],
-                                     radar.range_sigma_m, np.radians(radar.bearing_sigma_deg))
-        overlap[rows], found = swap_risk(ahead.position, ahead.covariance[:, :2, :2] + noise,
-                                         own.position, self.gate_size)
+        _, noise = polar_to_position(
+            passing.range[rows],
+            passing.bearing[rows],
+            radar.range_sigma_m,
+            np.radians(radar.bearing_sigma_deg),
+        )
+        overlap[rows], found = swap_risk(
+            ahead.position, ahead.covariance[:, :2, :2] + noise, own.position, self.gate_size
+        )
         other[rows] = np.where(found >= 0, np.append(rows, -1)[found], -1)
         return overlap, other

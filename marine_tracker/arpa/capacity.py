@@ -29,13 +29,16 @@ def make_room(capacity: int, situation: Situation, how, candidate, clicked):
     yielding = ((how == AUTOMATIC) & safe).nonzero()[0]
     yielding = yielding[np.argsort(-situation.nearest[yielding], kind='stable')]
     over = int((how >= 0).sum()) - capacity
-    dropped, yielding = yielding[:max(over, 0)], yielding[max(over, 0):]
-    refused = clicked[max(len(clicked) - max(over - len(dropped), 0), 0):]
+    dropped, yielding = yielding[: max(over, 0)], yielding[max(over, 0) :]
+    refused = clicked[max(len(clicked) - max(over - len(dropped), 0), 0) :]
     rows = candidate.nonzero()[0]
     rows = rows[np.lexsort((situation.nearest[rows], safe[rows]))]
-    taken, rows = rows[:max(-over, 0)], rows[max(-over, 0):]
+    taken, rows = rows[: max(-over, 0)], rows[max(-over, 0) :]
     pairs = min(len(rows), len(yielding))
     rows, yielding = rows[:pairs], yielding[:pairs]
     better = ~safe[rows] | (situation.nearest[rows] < CLOSER * situation.nearest[yielding])
-    return (np.concatenate([taken, rows[better]]), np.concatenate([dropped, yielding[better]]),
-            refused)
+    return (
+        np.concatenate([taken, rows[better]]),
+        np.concatenate([dropped, yielding[better]]),
+        refused,
+    )

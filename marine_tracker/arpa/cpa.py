@@ -10,8 +10,8 @@ from .directions import polar_sigma
 from .miss_distance import cpa_sigma, danger_probability
 from .motion import Motion
 
-LEAST_SPEED = 0.25          # m/s: of relative motion, below which nothing approaches
-HAIR = 1e-9                 # m^2, m^2/s^2: keeps covariances regular where all is known exactly
+LEAST_SPEED = 0.25  # m/s: of relative motion, below which nothing approaches
+HAIR = 1e-9  # m^2, m^2/s^2: keeps covariances regular where all is known exactly
 
 
 class OwnMotion(NamedTuple):
@@ -114,15 +114,24 @@ def approach(motion: Motion, own: OwnMotion, cpa_limit: float, tcpa_limit: float
     values = np.full((len(Approach._fields), len(position)), np.nan)
     values[-1] = 0.0
     if known.any():
-        values[:, known] = _values(position[known], velocity[known], covariance[known],
-                                   motion.velocity[known], motion.covariance[known, 2:, 2:],
-                                   own.heading, cpa_limit, tcpa_limit)
+        values[:, known] = _values(
+            position[known],
+            velocity[known],
+            covariance[known],
+            motion.velocity[known],
+            motion.covariance[known, 2:, 2:],
+            own.heading,
+            cpa_limit,
+            tcpa_limit,
+        )
     return Approach(*values)
 
 
-def _values(position, velocity, covariance, true_velocity, true_covariance, heading, cpa_limit,
-            tcpa_limit):
+def _values(
+    position, velocity, covariance, true_velocity, true_covariance, heading, cpa_limit, tcpa_limit
+):
     """The fields of Approach, in their order, of targets relative to own ship."""
+
     def polar(vector, covariance):
         length, angle = to_range_bearing(vector)
         length_sigma, angle_sigma = polar_sigma(vector, covariance)
@@ -130,29 +139,42 @@ def _values(position, velocity, covariance, true_velocity, true_covariance, head
 
     def swapped(length, length_sigma, angle, angle_sigma):
         return angle, angle_sigma, length, length_sigma
+
     moving = np.hypot(*velocity.T) >= LEAST_SPEED
     cpa, tcpa = cpa_of(position, velocity)
     bow_range, bow_time = bow_crossing(position, velocity, heading)
     crosses = moving & (bow_range > 0) & (bow_time >= 0) & np.isfinite(bow_range)
 
     def timed(position, velocity):
-        return np.stack([cpa_of(position, velocity)[1],
-                         *bow_crossing(position, velocity, heading)])
+        return np.stack([cpa_of(position, velocity)[1], *bow_crossing(position, velocity, heading)])
+
     tcpa_sigma, bow_range_sigma, bow_time_sigma = spread(
-        timed, position, velocity, covariance, np.stack([tcpa, bow_range, bow_time]))
+        timed, position, velocity, covariance, np.stack([tcpa, bow_range, bow_time])
+    )
 
     def where(mask, value):
         return np.where(mask, value, np.nan)
-    return np.stack([
-        *polar(position, covariance[:, :2, :2]),
-        *swapped(*polar(true_velocity, true_covariance + HAIR * np.eye(2))),
-        *swapped(*polar(velocity, covariance[:, 2:, 2:])),
-        cpa, cpa_sigma(position, velocity, covariance, cpa),
-        where(moving, tcpa), where(moving, tcpa_sigma),
-        where(crosses, bow_range), where(crosses, bow_range_sigma),
-        where(crosses, bow_time), where(crosses, bow_time_sigma),
-        np.where(moving, danger_probability(position, velocity, covariance, cpa_limit,
-                                            tcpa_limit), 0.0)])
+
+    return np.stack(
+        [
+            *polar(position, covariance[:, :2, :2]),
+            *swapped(*polar(true_velocity, true_covariance + HAIR * np.eye(2))),
+            *swapped(*polar(velocity, covariance[:, 2:, 2:])),
+            cpa,
+            cpa_sigma(position, velocity, covariance, cpa),
+            where(moving, tcpa),
+            where(moving, tcpa_sigma),
+            where(crosses, bow_range),
+            where(crosses, bow_range_sigma),
+            where(crosses, bow_time),
+            where(crosses, bow_time_sigma),
+            np.where(
+                moving,
+                danger_probability(position, velocity, covariance, cpa_limit, tcpa_limit),
+                0.0,
+            ),
+        ]
+    )
 
 
 def _points():
@@ -179,7 +201,7 @@ def spread(function, position, velocity, covariance, shown):
     Not finite where what is shown is not.
     """
     factor = np.linalg.cholesky(covariance)
-    off = POINTS @ factor.swapaxes(1, 2)                            # [N, 24, 4]
+    off = POINTS @ factor.swapaxes(1, 2)  # [N, 24, 4]
     found = function(position[:, None] + off[..., :2], velocity[:, None] + off[..., 2:])
     with np.errstate(invalid='ignore', over='ignore'):
         return np.sqrt(np.square(found - shown[..., None]).sum(-1) / 36)

@@ -19,10 +19,10 @@ from ..types import Array, take
 
 NODES = 32
 EVEN = (np.arange(NODES) + 0.5) * 2 / NODES - 1, np.full(NODES, 2 / NODES)  # bells, full turns
-GAUSS = np.polynomial.legendre.leggauss(NODES)              # what ends at an edge
-BENT = 0.1                  # of the deviation along a vector: where the arc of the deviation across
-                            # bends by less, a Jacobian is as good, and cheaper
-WIDE = 5.0                  # deviations beyond which a Gaussian is held to be over
+GAUSS = np.polynomial.legendre.leggauss(NODES)  # what ends at an edge
+BENT = 0.1  # of the deviation along a vector: where the arc of the deviation across
+# bends by less, a Jacobian is as good, and cheaper
+WIDE = 5.0  # deviations beyond which a Gaussian is held to be over
 
 
 class Round(NamedTuple):
@@ -89,8 +89,14 @@ def rounded(vector, covariance) -> Round:
     second = (vector[:, 1] - ne * first) / nn
     length = np.hypot(first, second)
     sine = WIDE / np.maximum(length, WIDE)
-    return Round(ee, ne, nn, length, np.arctan2(second, first),
-                 np.where(length > WIDE, np.arcsin(sine), np.pi))
+    return Round(
+        ee,
+        ne,
+        nn,
+        length,
+        np.arctan2(second, first),
+        np.where(length > WIDE, np.arcsin(sine), np.pi),
+    )
 
 
 def directions(of: Round, low, high, rule) -> Directions:
@@ -129,7 +135,8 @@ def places(position, covariance, of: Round, at: Directions) -> Places:
         rest_ee * n2 - both + rest_nn * e2 + across * across,
         east * at.east + north * at.north,
         rest_ee * e2 + both + rest_nn * n2 + along * along,
-        along)
+        along,
+    )
 
 
 def moments(mean):
@@ -150,10 +157,11 @@ def polar_sigma(vector, covariance):
     east, north = unit.T
     ee, en, nn = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     both = 2 * en * east * north
-    sigmas = np.sqrt([ee * east * east + both + nn * north * north,
-                      ee * north * north - both + nn * east * east])
+    sigmas = np.sqrt(
+        [ee * east * east + both + nn * north * north, ee * north * north - both + nn * east * east]
+    )
     sigmas[1] /= np.maximum(length, 1e-300)
-    trace, product = ee + nn, of.ee * of.nn                         # product: of both deviations
+    trace, product = ee + nn, of.ee * of.nn  # product: of both deviations
     near = np.flatnonzero(trace * np.sqrt(trace) > BENT * length * product)
     sigmas[:, near] = _integrated(length[near], unit[near], take(of, near))
     return sigmas[0], sigmas[1]
@@ -163,14 +171,20 @@ def _integrated(length, unit, of: Round):
     """What `polar_sigma` gives, [2, N], by quadrature over the direction."""
     at = directions(of, -of.arc, of.arc, EVEN)
     zeroth, first, second, third = moments(at.rho)
-    weight = at.rho * zeroth + first                                # E[rho; rho > 0]
+    weight = at.rho * zeroth + first  # E[rho; rho > 0]
     off = at.gain * at.rho - length[:, None]
     # E[(gain rho - length)^2 rho; rho > 0] with rho = its mean + x.
-    square = (off * off * weight + 2 * off * at.gain * (at.rho * first + second)
-              + at.gain * at.gain * (at.rho * second + third))
+    square = (
+        off * off * weight
+        + 2 * off * at.gain * (at.rho * first + second)
+        + at.gain * at.gain * (at.rho * second + third)
+    )
     weight *= at.density
     total = weight.sum(1)
-    turned = np.arctan2(unit[:, 1:] * at.east - unit[:, :1] * at.north,
-                        unit[:, :1] * at.east + unit[:, 1:] * at.north)
-    return np.sqrt([(at.density * square).sum(1) / total,
-                    (weight * turned * turned).sum(1) / total])
+    turned = np.arctan2(
+        unit[:, 1:] * at.east - unit[:, :1] * at.north,
+        unit[:, :1] * at.east + unit[:, 1:] * at.north,
+    )
+    return np.sqrt(
+        [(at.density * square).sum(1) / total, (weight * turned * turned).sum(1) / total]
+    )

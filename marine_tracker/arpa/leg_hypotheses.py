@@ -26,9 +26,9 @@ from ..gaussian import linear_modes
 from ..types import Array
 
 LEGS = 4
-STRAIGHT = 1e-6             # m^2/s^3, density of acceleration on a straight leg: next to none
-AT_FIRST = 0.8              # probability that a new target is on a straight leg
-LEAST_SHOWN = 0.05          # hypotheses less likely are not part of what is shown
+STRAIGHT = 1e-6  # m^2/s^3, density of acceleration on a straight leg: next to none
+AT_FIRST = 0.8  # probability that a new target is on a straight leg
+LEAST_SHOWN = 0.05  # hypotheses less likely are not part of what is shown
 ONE, OTHER = np.triu_indices(LEGS + 1, 1)
 
 
@@ -68,14 +68,15 @@ def begin(position, covariance, time, speed_sigma: float) -> Legs:
     rows = np.zeros((count, 1 + LEGS, 14))
     rows[..., :2] = position[:, None]
     rows[..., [4, 5, 8]] = linear_modes.packed_noise(covariance).T[:, None]
-    rows[..., [11, 13]] = speed_sigma ** 2
+    rows[..., [11, 13]] = speed_sigma**2
     weight = np.zeros((count, 1 + LEGS))
     weight[:, 0], weight[:, 1] = 1 - AT_FIRST, AT_FIRST
     return Legs(rows, weight, np.tile(time[:, None], LEGS))
 
 
-def update(legs: Legs, time, step, position, covariance, stretch, certainty, habits: Habits
-           ) -> tuple[Legs, Array]:
+def update(
+    legs: Legs, time, step, position, covariance, stretch, certainty, habits: Habits
+) -> tuple[Legs, Array]:
     """One plot for each of N tracks at `time` [N] s, `step` [N] s after the last.
 
     position    [N, 2]     m
@@ -87,8 +88,9 @@ def update(legs: Legs, time, step, position, covariance, stretch, certainty, hab
     """
     columns = linear_modes.columns_of(legs.rows)
     _stretch(columns, stretch)
-    columns, weight, begun = _change(columns, legs.weight.T, legs.begun.T, time - step,
-                                     np.abs(step), habits)
+    columns, weight, begun = _change(
+        columns, legs.weight.T, legs.begun.T, time - step, np.abs(step), habits
+    )
     density = np.full(1 + LEGS, STRAIGHT)
     density[0] = habits.noise
     columns = linear_modes.move(linear_modes.bank(density, np.zeros(1 + LEGS), ()), columns, step)
@@ -100,9 +102,14 @@ def update(legs: Legs, time, step, position, covariance, stretch, certainty, hab
     score = -0.5 * (np.log(determinant) + (certainty + 2) * np.log1p(distance / certainty))
     weight = linear_modes.reweigh(weight, score)
     likely = np.where(weight > LEAST_SHOWN, weight, 0.0)
-    return (Legs(linear_modes.rows_of(columns), np.ascontiguousarray(weight.T),
-                 np.ascontiguousarray(begun.T)),
-            linear_modes.combine(columns, likely / likely.sum(0)).T)
+    return (
+        Legs(
+            linear_modes.rows_of(columns),
+            np.ascontiguousarray(weight.T),
+            np.ascontiguousarray(begun.T),
+        ),
+        linear_modes.combine(columns, likely / likely.sum(0)).T,
+    )
 
 
 def _change(columns, weight, begun, now, step, habits: Habits):
@@ -117,8 +124,11 @@ def _change(columns, weight, begun, now, step, habits: Habits):
     legs = np.concatenate([columns[:, 1:], columns[:, :1]], 1)
     chance = np.concatenate([(1 - turn) * weight[1:], settle * weight[:1]])
     legs, chance, begun = _merge(legs, chance, np.concatenate([begun, now[None]]))
-    return (np.concatenate([manoeuvre[:, None], legs], 1), np.concatenate([total[None], chance]),
-            begun)
+    return (
+        np.concatenate([manoeuvre[:, None], legs], 1),
+        np.concatenate([total[None], chance]),
+        begun,
+    )
 
 
 def _merge(legs, weight, begun):
@@ -142,10 +152,11 @@ def _merge(legs, weight, begun):
     share = share[pair, track]
     shares = np.stack([share, 1 - share])
     legs[:, one, track] = linear_modes.combine(
-        np.stack([legs[:, one, track], legs[:, other, track]], 1), shares)
+        np.stack([legs[:, one, track], legs[:, other, track]], 1), shares
+    )
     begun[one, track] = share * begun[one, track] + (1 - share) * begun[other, track]
     weight[one, track] = both[pair, track]
-    for values in (legs, weight, begun):            # the last one takes the place that is free
+    for values in (legs, weight, begun):  # the last one takes the place that is free
         values[..., other, track] = values[..., LEGS, track]
     return legs[:, :LEGS], weight[:LEGS], begun[:LEGS]
 

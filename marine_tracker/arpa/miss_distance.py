@@ -27,8 +27,8 @@ def cpa_sigma(position, velocity, covariance, cpa):
     place = places(position, covariance, of, at)
     miss, sigma = place.miss, np.sqrt(place.miss_variance)
     over, bell, _, _ = moments(miss / sigma)
-    folded = miss * (2 * over - 1) + 2 * sigma * bell               # E |miss distance|
-    square = (miss - cpa[:, None]) ** 2 + sigma ** 2 - 2 * cpa[:, None] * (folded - miss)
+    folded = miss * (2 * over - 1) + 2 * sigma * bell  # E |miss distance|
+    square = (miss - cpa[:, None]) ** 2 + sigma**2 - 2 * cpa[:, None] * (folded - miss)
     over, bell, _, _ = moments(at.rho)
     weight = at.density * (at.rho * over + bell)
     return np.sqrt(np.maximum((weight * square).sum(1) / weight.sum(1), 0.0))
@@ -53,8 +53,8 @@ def danger_probability(position, velocity, covariance, cpa_limit: float, tcpa_li
     along_sigma = np.sqrt(place.along_variance)
     left = -place.along / along_sigma
     ahead, bell, _, _ = moments(left)
-    shift = -bell / np.maximum(ahead, 1e-100)                       # of along, in its deviations
-    kept = np.maximum(1 + shift * (left - shift), 0.0)              # of its variance
+    shift = -bell / np.maximum(ahead, 1e-100)  # of along, in its deviations
+    kept = np.maximum(1 + shift * (left - shift), 0.0)  # of its variance
     with_rho = place.with_rho / along_sigma
     along = place.along + shift * along_sigma
     rho = at.rho + shift * with_rho
@@ -80,7 +80,7 @@ def _dangerous(of, position, covariance, cpa_limit):
     half = np.where(wide < 1, np.arcsin(np.minimum(wide, 1.0)), 0.5 * np.pi + blur)
     everywhere = half >= np.pi
     towards = np.arctan2(*-position.T)
-    edges = np.stack([towards + half, towards, towards - half])     # counter-clockwise, as z turns
+    edges = np.stack([towards + half, towards, towards - half])  # counter-clockwise, as z turns
     first = np.sin(edges) / of.ee
     turn = np.arctan2((np.cos(edges) - of.ne * first) / of.nn, first) - of.angle
     middle = wrap_angle(turn[1])
@@ -89,8 +89,14 @@ def _dangerous(of, position, covariance, cpa_limit):
     # What lies beyond the arc of z is left out, but for arcs that meet twice.
     beyond = (high > 2 * np.pi - of.arc) | (low < of.arc - 2 * np.pi) | everywhere
     limited = of.arc < np.pi
-    low = np.where(limited, np.where(beyond, -of.arc, np.maximum(low, -of.arc)),
-                   np.where(everywhere, -np.pi, low))
-    high = np.where(limited, np.where(beyond, of.arc, np.minimum(high, of.arc)),
-                    np.where(everywhere, np.pi, high))
-    return low, np.maximum(low, high)                               # nothing in common: nothing
+    low = np.where(
+        limited,
+        np.where(beyond, -of.arc, np.maximum(low, -of.arc)),
+        np.where(everywhere, -np.pi, low),
+    )
+    high = np.where(
+        limited,
+        np.where(beyond, of.arc, np.minimum(high, of.arc)),
+        np.where(everywhere, np.pi, high),
+    )
+    return low, np.maximum(low, high)  # nothing in common: nothing

@@ -18,7 +18,7 @@ from . import leg_hypotheses, plot_noise
 
 STEADY, MANOEUVRING = 0, 1
 MEMORY_NAMES = ('steady', 'manoeuvring')
-SURE = 0.5                  # m/s: a steady target's velocity is known as well as this
+SURE = 0.5  # m/s: a steady target's velocity is known as well as this
 
 
 class MotionSettings(NamedTuple):
@@ -40,8 +40,9 @@ class MotionSettings(NamedTuple):
 
 PRESETS = {
     'ship': MotionSettings(),
-    'small_craft': MotionSettings(GLINT_SIGMA['small_craft'],
-                            habits=leg_hypotheses.Habits(600.0, 10.0, 4.0)),
+    'small_craft': MotionSettings(
+        GLINT_SIGMA['small_craft'], habits=leg_hypotheses.Habits(600.0, 10.0, 4.0)
+    ),
 }
 
 
@@ -100,8 +101,9 @@ def begin(radars: int = 1) -> MotionMemory:
     return _blank(np.zeros(0, np.int64), radars)
 
 
-def step(memory: MotionMemory, report: Report, plots: Plots, settings: MotionSettings, radar: int = 0
-         ) -> MotionMemory:
+def step(
+    memory: MotionMemory, report: Report, plots: Plots, settings: MotionSettings, radar: int = 0
+) -> MotionMemory:
     """The memory after one scan of the radar; its rows are those of `report.tracks`.
 
     plots  the scan's plots as `geometry.locate` gives them, to which `report.plot` refers
@@ -123,24 +125,42 @@ def at(memory: MotionMemory, time) -> Motion:
     """The motion of every row at `time`, s: [N] or one for all. `types.take` chooses rows first."""
     bank = linear_modes.straight(memory.noise[None])
     mean, covariance = linear_modes.unpack(
-        linear_modes.move(bank, memory.shown.T[:, None], time - memory.time)[:, 0].T)
+        linear_modes.move(bank, memory.shown.T[:, None], time - memory.time)[:, 0].T
+    )
     position, velocity = mean[:, :2].copy(), mean[:, 2:].copy()
     position[memory.stationary] = memory.shown[memory.stationary, :2]
     velocity[memory.stationary] = 0.0
-    known = np.trace(covariance[:, 2:, 2:], axis1=1, axis2=2) < SURE ** 2
-    return Motion(position, velocity, covariance, memory.memory, memory.since,
-                  (memory.memory == STEADY) & known, memory.stationary)
+    known = np.trace(covariance[:, 2:, 2:], axis1=1, axis2=2) < SURE**2
+    return Motion(
+        position,
+        velocity,
+        covariance,
+        memory.memory,
+        memory.since,
+        (memory.memory == STEADY) & known,
+        memory.stationary,
+    )
 
 
 def _blank(id_, radars: int) -> MotionMemory:
     """Rows of tracks that had no plot yet."""
     count = len(id_)
     nothing = np.full(count, np.nan)
-    return MotionMemory(id_, nothing, nothing, (plot_noise.begin(count),) * radars,
-                  leg_hypotheses.begin(np.full((count, 2), np.nan), np.full((count, 2, 2), np.nan),
-                             nothing, 1.0),
-                  np.full((count, 14), np.nan), nothing, np.full(count, STEADY), nothing, nothing,
-                  np.zeros(count, bool))
+    return MotionMemory(
+        id_,
+        nothing,
+        nothing,
+        (plot_noise.begin(count),) * radars,
+        leg_hypotheses.begin(
+            np.full((count, 2), np.nan), np.full((count, 2, 2), np.nan), nothing, 1.0
+        ),
+        np.full((count, 14), np.nan),
+        nothing,
+        np.full(count, STEADY),
+        nothing,
+        nothing,
+        np.zeros(count, bool),
+    )
 
 
 def _follow(memory: MotionMemory, id_) -> MotionMemory:
@@ -152,23 +172,40 @@ def _follow(memory: MotionMemory, id_) -> MotionMemory:
     return put(blank, known, take(memory, memory.id.searchsorted(id_[known])))
 
 
-def _first_plots(memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int) -> MotionMemory:
+def _first_plots(
+    memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int
+) -> MotionMemory:
     """The rows [K] begin with one plot each."""
     count = len(rows)
     if not count:
         return memory
     scatters = [plot_noise.begin(count)] * len(memory.scatter)
-    scatters[radar], covariance, _ = plot_noise.observe(scatters[radar], plots,
-                                                        settings.glint_sigma)
+    scatters[radar], covariance, _ = plot_noise.observe(
+        scatters[radar], plots, settings.glint_sigma
+    )
     hypotheses = leg_hypotheses.begin(plots.position, covariance, plots.time, settings.speed_sigma)
-    return put(memory, rows, MotionMemory(
-        memory.id[rows], plots.time, plots.time, tuple(scatters), hypotheses,
-        hypotheses.rows[:, 0],
-        np.full(count, settings.habits.noise), np.full(count, STEADY), plots.time,
-        np.full(count, np.nan), np.zeros(count, bool)))
+    return put(
+        memory,
+        rows,
+        MotionMemory(
+            memory.id[rows],
+            plots.time,
+            plots.time,
+            tuple(scatters),
+            hypotheses,
+            hypotheses.rows[:, 0],
+            np.full(count, settings.habits.noise),
+            np.full(count, STEADY),
+            plots.time,
+            np.full(count, np.nan),
+            np.zeros(count, bool),
+        ),
+    )
 
 
-def _next_plots(memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int) -> MotionMemory:
+def _next_plots(
+    memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int
+) -> MotionMemory:
     """The rows [K] take one more plot each."""
     if not len(rows):
         return memory
@@ -176,16 +213,34 @@ def _next_plots(memory: MotionMemory, rows, plots: Plots, settings: MotionSettin
     scatters = list(before.scatter)
     scatter, covariance, stretch = plot_noise.observe(scatters[radar], plots, settings.glint_sigma)
     scatters[radar] = scatter
-    if len(scatters) > 1:           # a fit to the plots of several radars scales with none of them
+    if len(scatters) > 1:  # a fit to the plots of several radars scales with none of them
         stretch = np.broadcast_to(np.eye(2), stretch.shape)
     hypotheses, shown = leg_hypotheses.update(
-        before.legs, plots.time, plots.time - before.time, plots.position, covariance, stretch,
-        plot_noise.FREEDOM * scatter.plots, settings.habits)
+        before.legs,
+        plots.time,
+        plots.time - before.time,
+        plots.position,
+        covariance,
+        stretch,
+        plot_noise.FREEDOM * scatter.plots,
+        settings.habits,
+    )
     noise = hypotheses.weight[:, 0] * settings.habits.noise
-    return put(memory, rows, MotionMemory(
-        before.id, before.first, plots.time, tuple(scatters), hypotheses, shown, noise,
-        *_manoeuvre(before, hypotheses, plots.time, 2 * settings.habits.manoeuvre),
-        *_rest(before, shown, plots.time, settings)))
+    return put(
+        memory,
+        rows,
+        MotionMemory(
+            before.id,
+            before.first,
+            plots.time,
+            tuple(scatters),
+            hypotheses,
+            shown,
+            noise,
+            *_manoeuvre(before, hypotheses, plots.time, 2 * settings.habits.manoeuvre),
+            *_rest(before, shown, plots.time, settings),
+        ),
+    )
 
 
 def _manoeuvre(before: MotionMemory, hypotheses: leg_hypotheses.Legs, time, lasting: float):

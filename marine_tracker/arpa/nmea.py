@@ -23,12 +23,12 @@ from .nmea_fields import (
 
 LOST, ACQUIRING, TRACKING = 'L', 'Q', 'T'
 AUTOMATIC, MANUAL, REPORTED = 'A', 'M', 'R'
-GROUND, WATER = 'P', 'W'            # references of OSD: position fixes; a log through the water
+GROUND, WATER = 'P', 'W'  # references of OSD: position fixes; a log through the water
 NORTH_UP, HEAD_UP, COURSE_UP = 'N', 'H', 'C'
-LENGTH = 82                         # IEC 61162-1: characters of a sentence, $ and CR LF included
-NAME = 20                           # OpenCPN: characters of a target's name
-NUMBERS = range(1, 100)             # target numbers of two digits; 00 is left to "none"
-NEAREST = 0.001                     # NM; OpenCPN takes a range of 0 for a target switched off
+LENGTH = 82  # IEC 61162-1: characters of a sentence, $ and CR LF included
+NAME = 20  # OpenCPN: characters of a target's name
+NUMBERS = range(1, 100)  # target numbers of two digits; 00 is left to "none"
+NEAREST = 0.001  # NM; OpenCPN takes a range of 0 for a target switched off
 
 
 class Targets(NamedTuple):
@@ -74,13 +74,17 @@ class OwnShipData(NamedTuple):
 def as_acquired(targets: Targets) -> Targets:
     """The same, and those being acquired without speed, course and TCPA: so radars send them."""
     acquiring = targets.status == ACQUIRING
-    return targets._replace(**{
-        name: np.where(acquiring, np.nan, getattr(targets, name))
-        for name in ('speed', 'course', 'tcpa')})
+    return targets._replace(
+        **{
+            name: np.where(acquiring, np.nan, getattr(targets, name))
+            for name in ('speed', 'course', 'tcpa')
+        }
+    )
 
 
-def ttm(targets: Targets, time: float, talker: str = 'RA', decimals: int = 3,
-        reference: int = 0) -> list[str]:
+def ttm(
+    targets: Targets, time: float, talker: str = 'RA', decimals: int = 3, reference: int = 0
+) -> list[str]:
     """TTM, tracked target message: 15 fields always, one sentence a target.
 
     time       s of UTC since 1970; nan for an empty field
@@ -95,20 +99,39 @@ def ttm(targets: Targets, time: float, talker: str = 'RA', decimals: int = 3,
     """
     _check(targets)
     clock = hours(time)
-    least = max(NEAREST, 10.0 ** -decimals)
+    least = max(NEAREST, 10.0**-decimals)
     said = []
     for number, status, acquired, name, *figures in zip(*(a.tolist() for a in _units(targets))):
         distance, bearing, speed, course, cpa, tcpa = figures
-        fields = [f'{number:02d}', figure(max(distance, least), MILES, decimals),
-                  degrees(bearing), 'T', figure(speed, KNOTS, 2), degrees(course), 'T',
-                  figure(cpa, MILES, decimals), figure(tcpa, MINUTES, 1, -MINUTES), 'N', '',
-                  status, 'R' if number == reference else '', clock, acquired]
+        fields = [
+            f'{number:02d}',
+            figure(max(distance, least), MILES, decimals),
+            degrees(bearing),
+            'T',
+            figure(speed, KNOTS, 2),
+            degrees(course),
+            'T',
+            figure(cpa, MILES, decimals),
+            figure(tcpa, MINUTES, 1, -MINUTES),
+            'N',
+            '',
+            status,
+            'R' if number == reference else '',
+            clock,
+            acquired,
+        ]
         said.append(_named(talker, 'TTM', fields, 10, name))
     return said
 
 
-def tll(targets: Targets, latitude: Array, longitude: Array, time: float,
-        talker: str = 'RA', reference: int = 0) -> list[str]:
+def tll(
+    targets: Targets,
+    latitude: Array,
+    longitude: Array,
+    time: float,
+    talker: str = 'RA',
+    reference: int = 0,
+) -> list[str]:
     """TLL, target latitude and longitude: [N] degrees for the N targets; arguments as for `ttm`.
 
     Those without a position on the globe are left out.
@@ -116,12 +139,22 @@ def tll(targets: Targets, latitude: Array, longitude: Array, time: float,
     _check(targets)
     clock, said = hours(time), []
     for number, status, name, north, east in zip(
-            targets.number.tolist(), targets.status.tolist(), targets.name.tolist(),
-            np.asarray(latitude).tolist(), np.asarray(longitude).tolist()):
+        targets.number.tolist(),
+        targets.status.tolist(),
+        targets.name.tolist(),
+        np.asarray(latitude).tolist(),
+        np.asarray(longitude).tolist(),
+    ):
         place = position(north, east)
         if place[0]:
-            fields = [f'{number:02d}', *place, '', clock, status,
-                      'R' if number == reference else '']
+            fields = [
+                f'{number:02d}',
+                *place,
+                '',
+                clock,
+                status,
+                'R' if number == reference else '',
+            ]
             said.append(_named(talker, 'TLL', fields, 5, name))
     return said
 
@@ -130,19 +163,37 @@ def osd(own: OwnShipData, talker: str = 'RA') -> str:
     """OSD, own ship data: heading, course and speed with their reference; set and drift empty."""
     heading = degrees(own.heading)
     speed, course = figure(own.speed / KNOT, KNOTS, 2), degrees(own.course)
-    return sentence(talker, 'OSD', (
-        heading, 'A' if heading else 'V', course, own.reference if course else '', speed,
-        own.reference if speed else '', '', '', 'N'))
+    return sentence(
+        talker,
+        'OSD',
+        (
+            heading,
+            'A' if heading else 'V',
+            course,
+            own.reference if course else '',
+            speed,
+            own.reference if speed else '',
+            '',
+            '',
+            'N',
+        ),
+    )
 
 
-def rsd(range_scale: float, rotation: str = NORTH_UP, cursor: tuple[float, float] | None = None,
-        markers: Sequence[tuple[float, float]] = (), talker: str = 'RA') -> str:
+def rsd(
+    range_scale: float,
+    rotation: str = NORTH_UP,
+    cursor: tuple[float, float] | None = None,
+    markers: Sequence[tuple[float, float]] = (),
+    talker: str = 'RA',
+) -> str:
     """RSD, radar system data.
 
     range_scale  m; rotation NORTH_UP, HEAD_UP or COURSE_UP
     cursor       range m and bearing rad from own ship
     markers      up to two, each the range m of a VRM and the bearing rad of an EBL
     """
+
     def pair(range_, bearing):
         return figure(range_ / NAUTICAL_MILE, MILES, 3), degrees(bearing)
 
@@ -150,19 +201,43 @@ def rsd(range_scale: float, rotation: str = NORTH_UP, cursor: tuple[float, float
         raise ValueError(f'{len(markers)} pairs of VRM and EBL; RSD takes 2 at most')
     none = (np.nan, np.nan)
     first, second = (*markers, none, none)[:2]
-    return sentence(talker, 'RSD', (
-        '', '', *pair(*first), '', '', *pair(*second), *pair(*(cursor or none)),
-        pair(range_scale, 0.0)[0], 'N', rotation))
+    return sentence(
+        talker,
+        'RSD',
+        (
+            '',
+            '',
+            *pair(*first),
+            '',
+            '',
+            *pair(*second),
+            *pair(*(cursor or none)),
+            pair(range_scale, 0.0)[0],
+            'N',
+            rotation,
+        ),
+    )
 
 
 def rmc(own: OwnShipData, time: float, talker: str = 'II') -> str:
     """RMC, own ship's position, course and speed over ground; void (V) without a position."""
     place = position(own.latitude, own.longitude)
     valid = bool(place[0])
-    return sentence(talker, 'RMC', (
-        hours(time), 'A' if valid else 'V', *place, figure(own.speed / KNOT, KNOTS, 2),
-        degrees(own.course), moment(time, '%d%m%y'), '', '',
-        'A' if valid else 'N'))
+    return sentence(
+        talker,
+        'RMC',
+        (
+            hours(time),
+            'A' if valid else 'V',
+            *place,
+            figure(own.speed / KNOT, KNOTS, 2),
+            degrees(own.course),
+            moment(time, '%d%m%y'),
+            '',
+            '',
+            'A' if valid else 'N',
+        ),
+    )
 
 
 def hdt(own: OwnShipData, talker: str = 'II') -> str:
@@ -174,24 +249,37 @@ def _units(targets: Targets):
     """The columns of the targets that can be told, in NM, rad, knots and minutes."""
     miles, bearing = targets.range / NAUTICAL_MILE, targets.bearing
     told = (miles >= 0) & (miles < MILES) & (np.abs(bearing) <= ANGLE)
-    return [column[told] for column in (
-        targets.number, targets.status, targets.acquired, targets.name, miles, bearing,
-        targets.speed / KNOT, targets.course, targets.cpa / NAUTICAL_MILE,
-        targets.tcpa / 60)]
+    return [
+        column[told]
+        for column in (
+            targets.number,
+            targets.status,
+            targets.acquired,
+            targets.name,
+            miles,
+            bearing,
+            targets.speed / KNOT,
+            targets.course,
+            targets.cpa / NAUTICAL_MILE,
+            targets.tcpa / 60,
+        )
+    ]
 
 
 def _named(talker: str, kind: str, fields: list[str], at: int, name: str) -> str:
     """The sentence with the name, cut to fit, as its field `at`."""
-    room = LENGTH - len(sentence(talker, kind, fields)) - 2             # CR LF
+    room = LENGTH - len(sentence(talker, kind, fields)) - 2  # CR LF
     plain = ''.join(c for c in name if ' ' <= c <= '~' and c not in '$!*,\\^~').strip()
-    fields[at] = plain[:min(room, NAME)].strip()
+    fields[at] = plain[: min(room, NAME)].strip()
     return sentence(talker, kind, fields)
 
 
 def _check(targets: Targets) -> None:
     for name, known, allowed in (
-            ('number', NUMBERS, '1 to 99'), ('status', (LOST, ACQUIRING, TRACKING), 'L, Q, T'),
-            ('acquired', (AUTOMATIC, MANUAL, REPORTED, ''), 'A, M, R')):
+        ('number', NUMBERS, '1 to 99'),
+        ('status', (LOST, ACQUIRING, TRACKING), 'L, Q, T'),
+        ('acquired', (AUTOMATIC, MANUAL, REPORTED, ''), 'A, M, R'),
+    ):
         for value in getattr(targets, name).tolist():
             if value not in known:
                 raise ValueError(f'{name} of a target is {value!r}; it must be {allowed}')

@@ -10,19 +10,33 @@ from datetime import UTC, datetime, timedelta
 
 import pynmea2
 
-MILES, KNOTS, MINUTES = 999.999, 999.99, 999.9      # greatest figures that a field takes
-ANGLE = 4 * math.pi                 # rad; more is no bearing
+MILES, KNOTS, MINUTES = 999.999, 999.99, 999.9  # greatest figures that a field takes
+ANGLE = 4 * math.pi  # rad; more is no bearing
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-END_OF_TIME = 253_402_300_799.0     # s: the year 9999 ends
+END_OF_TIME = 253_402_300_799.0  # s: the year 9999 ends
 
 
 class RSD(pynmea2.TalkerSentence):
     """Radar system data, which pynmea2 lacks; it knows it once this module is imported."""
 
-    fields = tuple((name.replace('_', ' '), name) for name in (
-        'origin_1_range', 'origin_1_bearing', 'vrm_1', 'ebl_1', 'origin_2_range',
-        'origin_2_bearing', 'vrm_2', 'ebl_2', 'cursor_range', 'cursor_bearing', 'range_scale',
-        'range_units', 'rotation'))
+    fields = tuple(
+        (name.replace('_', ' '), name)
+        for name in (
+            'origin_1_range',
+            'origin_1_bearing',
+            'vrm_1',
+            'ebl_1',
+            'origin_2_range',
+            'origin_2_bearing',
+            'vrm_2',
+            'ebl_2',
+            'cursor_range',
+            'cursor_bearing',
+            'range_scale',
+            'range_units',
+            'rotation',
+        )
+    )
 
 
 def sentence(talker: str, kind: str, fields: Iterable[str]) -> str:
@@ -55,9 +69,11 @@ def position(latitude: float, longitude: float) -> tuple[str, str, str, str]:
     longitude = (longitude + 180) % 360 - 180
     parts = []
     for angle, width, signs in ((latitude, 2, 'NS'), (longitude, 3, 'EW')):
-        whole, minutes = divmod(round(abs(angle) * 600_000), 600_000)   # of 1/10000 minute
-        parts += [f'{whole:0{width}d}{minutes // 10000:02d}.{minutes % 10000:04d}',
-                  signs[angle < 0]]
+        whole, minutes = divmod(round(abs(angle) * 600_000), 600_000)  # of 1/10000 minute
+        parts += [
+            f'{whole:0{width}d}{minutes // 10000:02d}.{minutes % 10000:04d}',
+            signs[angle < 0],
+        ]
     return parts[0], parts[1], parts[2], parts[3]
 
 

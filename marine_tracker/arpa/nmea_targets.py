@@ -59,9 +59,18 @@ def slots(held: dict[int, int], numbers: Sequence[int]) -> dict[int, int]:
     for number in numbers:
         if number in kept:
             continue
-        free = (number if number in NUMBERS and number not in taken
-                else next((slot for slot in (NUMBERS if number > 0 else reversed(NUMBERS))
-                           if slot not in taken), None))
+        free = (
+            number
+            if number in NUMBERS and number not in taken
+            else next(
+                (
+                    slot
+                    for slot in (NUMBERS if number > 0 else reversed(NUMBERS))
+                    if slot not in taken
+                ),
+                None,
+            )
+        )
         if free is None:
             break
         kept[number] = free
@@ -89,5 +98,7 @@ def word(told: Told, targets: Targets) -> tuple[Told, Word]:
     alive = every.status != LOST
     every = every._replace(number=np.array([chosen[n] for n in numbers.tolist()], np.int64))
     waiting = int(known.sum() + missing.sum()) - len(numbers)
-    return (Told({n: chosen[n] for n in numbers[alive].tolist()}, numbers[alive],
-                 take(every, alive)), Word(numbers, every, waiting))
+    return (
+        Told({n: chosen[n] for n in numbers[alive].tolist()}, numbers[alive], take(every, alive)),
+        Word(numbers, every, waiting),
+    )

@@ -7,8 +7,8 @@ from ..types import Array, OwnShip, append, take
 from .cpa import OwnMotion
 from .motion import Motion
 
-WINDOW = 10.0               # s of samples that own ship's velocity is smoothed over
-LEAST_SIGMA = 0.01          # m/s, of own velocity: few samples may agree by chance
+WINDOW = 10.0  # s of samples that own ship's velocity is smoothed over
+LEAST_SIGMA = 0.01  # m/s, of own velocity: few samples may agree by chance
 
 
 def lately(before: OwnShip, now: OwnShip, end: float) -> OwnShip:
@@ -16,8 +16,7 @@ def lately(before: OwnShip, now: OwnShip, end: float) -> OwnShip:
     return append(take(before, (before.time > end - WINDOW) & (before.time < now.time[0])), now)
 
 
-def own_motion(samples: OwnShip, time: float, heading: float, window: float = WINDOW
-               ) -> OwnMotion:
+def own_motion(samples: OwnShip, time: float, heading: float, window: float = WINDOW) -> OwnMotion:
     """Own ship over ground at `time`, s, from the samples of the `window` s before.
 
     Velocity is a straight-line fit in time, so a steady turn does not lag; its covariance is that
@@ -29,7 +28,7 @@ def own_motion(samples: OwnShip, time: float, heading: float, window: float = WI
     position, velocity = own_ship_at(samples, time)
     near = (samples.time > time - window) & (samples.time <= time)
     covariance = np.zeros((4, 4))
-    covariance[2:, 2:] = LEAST_SIGMA ** 2 * np.eye(2)
+    covariance[2:, 2:] = LEAST_SIGMA**2 * np.eye(2)
     if near.sum() >= 4:
         ahead = samples.time[near] - time
         design = np.stack([np.ones_like(ahead), ahead], 1)
@@ -47,8 +46,10 @@ def sea_stabilised(motion: Motion, own: OwnMotion, drift: Array) -> tuple[Motion
     What is relative (CPA, TCPA, bow crossing) stays; courses and speeds are then those of the
     ships' way through the water, from which aspect and the rules of the road are judged.
     """
-    return (motion._replace(velocity=motion.velocity - drift),
-            own._replace(velocity=own.velocity - drift))
+    return (
+        motion._replace(velocity=motion.velocity - drift),
+        own._replace(velocity=own.velocity - drift),
+    )
 
 
 def vectors(motion: Motion, own: OwnMotion, duration: float, relative: bool) -> Array:

@@ -9,7 +9,7 @@ from ..types import Array
 from .cpa import OwnMotion
 
 MAX_SPEED = 100 * KNOT
-STRETCHES = 32          # of the path while course and speed change, and again while one still does
+STRETCHES = 32  # of the path while course and speed change, and again while one still does
 
 
 class TrialManoeuvre(NamedTuple):
@@ -46,8 +46,11 @@ class Path(NamedTuple):
 
 def check(trial: TrialManoeuvre) -> None:
     """ValueError for the first value that no manoeuvre can have."""
-    for name, unit, low, high in (('course', 'rad', -np.inf, np.inf),
-                                  ('speed', 'm/s', 0.0, MAX_SPEED), ('delay', 's', 0.0, 3600.0)):
+    for name, unit, low, high in (
+        ('course', 'rad', -np.inf, np.inf),
+        ('speed', 'm/s', 0.0, MAX_SPEED),
+        ('delay', 's', 0.0, 3600.0),
+    ):
         value = getattr(trial, name)
         if not (np.isfinite(value) and low <= value <= high):
             limits = f'between {low:g} and {high:g} {unit}' if np.isfinite(low) else 'finite'
@@ -74,16 +77,23 @@ def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
     """
     check(trial)
     if not (np.isfinite(own.position).all() and np.isfinite(own.velocity).all()):
-        raise ValueError(f'own ship is at {own.position} m with {own.velocity} m/s; a trial needs '
-                         'both')
+        raise ValueError(
+            f'own ship is at {own.position} m with {own.velocity} m/s; a trial needs both'
+        )
     speed, course = to_range_bearing(own.velocity)
     course = course if speed > 0 else own.heading
     turn, gain = wrap_angle(courses - course), np.broadcast_to(trial.speed - speed, courses.shape)
     turning, gaining = np.abs(turn) / trial.turn_rate, np.abs(gain) / trial.acceleration
     first, last = np.minimum(turning, gaining), np.maximum(turning, gaining)
     steps = np.arange(1, STRETCHES + 1) / STRETCHES
-    after = np.concatenate([np.zeros((len(courses), 1)), first[:, None] * steps,
-                            first[:, None] + (last - first)[:, None] * steps], 1)
+    after = np.concatenate(
+        [
+            np.zeros((len(courses), 1)),
+            first[:, None] * steps,
+            first[:, None] + (last - first)[:, None] * steps,
+        ],
+        1,
+    )
     step = np.diff(after)
 
     def velocity_at(after_delay):
@@ -96,8 +106,11 @@ def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
     begins = own.position + trial.delay * own.velocity
     position = begins + np.concatenate([np.zeros_like(moved[:, :1]), moved.cumsum(1)], 1)
     now = np.broadcast_to(own.position, (len(courses), 1, 2))
-    return Path(np.concatenate([np.zeros((len(courses), 1)), trial.delay + after], 1),
-                np.concatenate([now, position], 1), trial.speed * unit_vector(courses))
+    return Path(
+        np.concatenate([np.zeros((len(courses), 1)), trial.delay + after], 1),
+        np.concatenate([now, position], 1),
+        trial.speed * unit_vector(courses),
+    )
 
 
 def _share(time, duration):

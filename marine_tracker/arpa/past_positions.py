@@ -33,15 +33,18 @@ def begin(count: int, interval: float) -> PastPositions:
     if count < 1:
         raise ValueError(f'the number of past positions is {count}; it must be at least 1')
     if not 0 < interval < np.inf:
-        raise ValueError(f'the interval of past positions is {interval:g} s; it must be finite '
-                         'and above 0')
+        raise ValueError(
+            f'the interval of past positions is {interval:g} s; it must be finite and above 0'
+        )
     unknown = np.full((count, 2), np.nan)
-    return PastPositions(interval, unknown[:, 0], unknown, np.zeros(0, np.int64),
-                         np.zeros((0, count, 2)))
+    return PastPositions(
+        interval, unknown[:, 0], unknown, np.zeros(0, np.int64), np.zeros((0, count, 2))
+    )
 
 
-def step(past: PastPositions, id, first_time, position, velocity, own_position, own_velocity,
-         now: float) -> PastPositions:
+def step(
+    past: PastPositions, id, first_time, position, velocity, own_position, own_velocity, now: float
+) -> PastPositions:
     """Follow the tracks id [N] to `now` s; the rows of the result are theirs.
 
     first_time [N] s, of the tracks' first plots; position [N, 2] m and velocity [N, 2] m/s of the

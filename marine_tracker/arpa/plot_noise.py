@@ -14,12 +14,12 @@ import numpy as np
 from ..geometry import unit_vector
 from ..types import Array, Plots
 
-BEGIN, MOST = 10.0, 60.0    # plots that the configured noise counts for; and that are remembered
-SHARE = 0.03                # of the configured noise that always stays
-CLIP = 3.0                  # deviations as known so far: a scatter beyond counts as this, as it
-                            # may be a wrong plot
-FREEDOM = 0.25              # degrees of freedom a plot: differences share plots, so each tells less
-LONGEST = 3.0               # a gap longer than so many times the one before tells nothing
+BEGIN, MOST = 10.0, 60.0  # plots that the configured noise counts for; and that are remembered
+SHARE = 0.03  # of the configured noise that always stays
+CLIP = 3.0  # deviations as known so far: a scatter beyond counts as this, as it
+# may be a wrong plot
+FREEDOM = 0.25  # degrees of freedom a plot: differences share plots, so each tells less
+LONGEST = 3.0  # a gap longer than so many times the one before tells nothing
 
 
 class Scatter(NamedTuple):
@@ -40,8 +40,12 @@ class Scatter(NamedTuple):
 
 def begin(count: int) -> Scatter:
     """Nothing seen yet."""
-    return Scatter(np.full((count, 2, 2), np.nan), np.full((count, 2), np.nan),
-                   np.tile(np.eye(2), (count, 1, 1)), np.full(count, BEGIN))
+    return Scatter(
+        np.full((count, 2, 2), np.nan),
+        np.full((count, 2), np.nan),
+        np.tile(np.eye(2), (count, 1, 1)),
+        np.full(count, BEGIN),
+    )
 
 
 def observe(scatter: Scatter, plots: Plots, glint_sigma: float) -> tuple[Scatter, Array, Array]:
@@ -51,8 +55,8 @@ def observe(scatter: Scatter, plots: Plots, glint_sigma: float) -> tuple[Scatter
     glint_sigma  m, of the point that echoes, each axis; adds to the plots' own covariance
     """
     along = unit_vector(plots.bearing)
-    axes = np.stack([along, np.stack([along[:, 1], -along[:, 0]], -1)], 1)   # along, across
-    noise = plots.covariance + glint_sigma ** 2 * np.eye(2)
+    axes = np.stack([along, np.stack([along[:, 1], -along[:, 0]], -1)], 1)  # along, across
+    noise = plots.covariance + glint_sigma**2 * np.eye(2)
     sigma = np.sqrt(((axes @ noise) * axes).sum(2))
 
     last, before = scatter.position[:, 0], scatter.position[:, 1]
@@ -60,22 +64,30 @@ def observe(scatter: Scatter, plots: Plots, glint_sigma: float) -> tuple[Scatter
     tells = (earlier > 0) & (step >= 0) & (step <= LONGEST * earlier)
     ahead = np.where(tells, step / np.where(tells, earlier, 1.0), 1.0)[:, None]
     bend = plots.position - last - ahead * (last - before)
-    noises = np.sqrt(1 + (1 + ahead) ** 2 + ahead ** 2)             # of three plots in it
+    noises = np.sqrt(1 + (1 + ahead) ** 2 + ahead**2)  # of three plots in it
     seen = (axes @ bend[..., None])[..., 0] / (sigma * noises)
     most = CLIP * np.sqrt(scatter.ratio[:, [0, 1], [0, 1]])
     seen = np.clip(seen, -most, most)
     count = np.minimum(scatter.plots + 1, MOST)
     found = (1 - SHARE) * seen[:, :, None] * seen[:, None, :] + SHARE * np.eye(2)
-    ratio = np.where(tells[:, None, None],
-                     scatter.ratio + (found - scatter.ratio) / count[:, None, None],
-                     scatter.ratio)
+    ratio = np.where(
+        tells[:, None, None],
+        scatter.ratio + (found - scatter.ratio) / count[:, None, None],
+        scatter.ratio,
+    )
     root, inverse = _root(ratio), np.linalg.inv(_root(scatter.ratio))
-    scaled = axes.swapaxes(1, 2) * sigma[:, None]                   # from units of sigma to m
+    scaled = axes.swapaxes(1, 2) * sigma[:, None]  # from units of sigma to m
     stretch = scaled @ root @ inverse @ (axes / sigma[..., None])
-    return (Scatter(np.stack([plots.position, last], 1),
-                    np.stack([plots.time, scatter.time[:, 0]], 1), ratio,
-                    np.where(tells, count, scatter.plots)),
-            scaled @ ratio @ scaled.swapaxes(1, 2), stretch)
+    return (
+        Scatter(
+            np.stack([plots.position, last], 1),
+            np.stack([plots.time, scatter.time[:, 0]], 1),
+            ratio,
+            np.where(tells, count, scatter.plots),
+        ),
+        scaled @ ratio @ scaled.swapaxes(1, 2),
+        stretch,
+    )
 
 
 def _root(matrix):

@@ -22,8 +22,14 @@ def context(namespace: uuid.UUID, number: int) -> str:
     return f'vessels.urn:mrn:signalk:uuid:{uuid.uuid5(namespace, str(number))}'
 
 
-def deltas(targets: Targets, numbers: Sequence[int], latitude: Array, longitude: Array,
-           time: float, namespace: uuid.UUID) -> list[str]:
+def deltas(
+    targets: Targets,
+    numbers: Sequence[int],
+    latitude: Array,
+    longitude: Array,
+    time: float,
+    namespace: uuid.UUID,
+) -> list[str]:
     """One delta a target, JSON without line ends.
 
     targets              N of them
@@ -39,23 +45,36 @@ def deltas(targets: Targets, numbers: Sequence[int], latitude: Array, longitude:
     stamp = stamp.replace('+00:00', 'Z')
     said = []
     for number, status, name, north, east, *figures in zip(
-            numbers, targets.status.tolist(), targets.name.tolist(),
-            np.asarray(latitude).tolist(), np.asarray(longitude).tolist(),
-            *(column.tolist() for column in targets[-4:])):
+        numbers,
+        targets.status.tolist(),
+        targets.name.tolist(),
+        np.asarray(latitude).tolist(),
+        np.asarray(longitude).tolist(),
+        *(column.tolist() for column in targets[-4:]),
+    ):
         speed, course, cpa, tcpa = figures
         values = {
             'navigation.position': _known(latitude=north, longitude=east)
-            if abs(north) <= 90 else None,
+            if abs(north) <= 90
+            else None,
             'navigation.courseOverGroundTrue': _number(course % (2 * np.pi)),
             'navigation.speedOverGround': _number(speed),
-            'navigation.closestApproach': _known(distance=cpa, timeTo=tcpa)}
+            'navigation.closestApproach': _known(distance=cpa, timeTo=tcpa),
+        }
         lost = status == LOST
         told = [{'path': '', 'value': {'name': name}}] + [
-            {'path': path, 'value': None if lost else value} for path, value in values.items()
-            if lost or value is not None]
-        said.append(json.dumps({
-            'context': context(namespace, number),
-            'updates': [{'source': SOURCE, 'timestamp': stamp, 'values': told}]}))
+            {'path': path, 'value': None if lost else value}
+            for path, value in values.items()
+            if lost or value is not None
+        ]
+        said.append(
+            json.dumps(
+                {
+                    'context': context(namespace, number),
+                    'updates': [{'source': SOURCE, 'timestamp': stamp, 'values': told}],
+                }
+            )
+        )
     return said
 
 

@@ -11,8 +11,8 @@ from .cpa import Approach, OwnMotion
 from .zones import Zones, inside
 
 SAFE, NEARLY, DANGEROUS = range(3)
-WIDER = 1.1                         # the limits that a danger must leave to be over, of the limits
-LIKELY, UNLIKELY = 0.5, 0.25        # probabilities of danger that raise it, and that let it end
+WIDER = 1.1  # the limits that a danger must leave to be over, of the limits
+LIKELY, UNLIKELY = 0.5, 0.25  # probabilities of danger that raise it, and that let it end
 
 
 class Limits(NamedTuple):
@@ -54,8 +54,16 @@ class Situation(NamedTuple):
     excluded: NDArray[np.bool_]
 
 
-def look(tracks: Tracks, reason, position, approach: Approach, at_rest, zones: Zones,
-         own: OwnMotion, limits: Limits) -> Situation:
+def look(
+    tracks: Tracks,
+    reason,
+    position,
+    approach: Approach,
+    at_rest,
+    zones: Zones,
+    own: OwnMotion,
+    limits: Limits,
+) -> Situation:
     """The situation of the N tracks of a tracker's report, which has their `reason` [N] too.
 
     position [N, 2] m and approach (N rows) are theirs, now; at_rest [N]: neither the target nor
@@ -64,11 +72,22 @@ def look(tracks: Tracks, reason, position, approach: Approach, at_rest, zones: Z
     mask = inside(zones, position, own.position, own.heading)
     excluded = np.any(mask & ~zones.guard, axis=1)
     return Situation(
-        tracks.id, tracks.number, tracks.status, reason, position,
-        approach.range, approach.bearing, approach.cpa, approach.tcpa,
-        approach.danger_probability, nearest(approach, limits.tcpa),
-        danger(approach, at_rest, limits), mask,
-        np.any(mask & zones.guard, axis=1) & ~excluded, excluded)
+        tracks.id,
+        tracks.number,
+        tracks.status,
+        reason,
+        position,
+        approach.range,
+        approach.bearing,
+        approach.cpa,
+        approach.tcpa,
+        approach.danger_probability,
+        nearest(approach, limits.tcpa),
+        danger(approach, at_rest, limits),
+        mask,
+        np.any(mask & zones.guard, axis=1) & ~excluded,
+        excluded,
+    )
 
 
 def nearest(approach: Approach, within: float) -> Array:
@@ -91,10 +110,18 @@ def danger(approach: Approach, at_rest, limits: Limits) -> NDArray[np.int8]:
     SAFE: the rest, and those at rest while own ship is at rest: they meet by noise only. A
     target whose TCPA is unknown (nan) is judged by the probability.
     """
+
     def within(share):
-        return ((approach.cpa < share * limits.cpa) & (approach.tcpa >= 0)
-                & (approach.tcpa < share * limits.tcpa))
+        return (
+            (approach.cpa < share * limits.cpa)
+            & (approach.tcpa >= 0)
+            & (approach.tcpa < share * limits.tcpa)
+        )
+
     probability = approach.danger_probability
-    level = np.where(within(1.0) | (probability >= LIKELY), DANGEROUS,
-                     np.where(within(WIDER) | (probability >= UNLIKELY), NEARLY, SAFE))
+    level = np.where(
+        within(1.0) | (probability >= LIKELY),
+        DANGEROUS,
+        np.where(within(WIDER) | (probability >= UNLIKELY), NEARLY, SAFE),
+    )
     return np.where(at_rest, SAFE, level).astype(np.int8)

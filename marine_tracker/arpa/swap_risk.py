@@ -5,8 +5,8 @@ import numpy as np
 from ..geometry import to_range_bearing
 from ..tracking.gate import window_pairs
 
-MIXTURES = 0.5 - 0.49 * np.cos(np.linspace(0, np.pi, 15))[:, None]     # denser at the ends
-EASE = 1.25             # gates so many times larger are looked at too
+MIXTURES = 0.5 - 0.49 * np.cos(np.linspace(0, np.pi, 15))[:, None]  # denser at the ends
+EASE = 1.25  # gates so many times larger are looked at too
 
 
 def swap_risk(position, covariance, origin, size: float):
@@ -30,8 +30,9 @@ def swap_risk(position, covariance, origin, size: float):
     reach = np.sqrt(size * (0.5 * (a + d) + np.hypot(0.5 * (a - d), b)))
     # Of each pair the track with the longer reach finds the other, which is within twice that.
     far = 2 * EASE * reach
-    half_width = np.where(far < distance, np.arcsin(np.minimum(far / np.maximum(distance, 1e-9),
-                                                               1.0)), np.pi)
+    half_width = np.where(
+        far < distance, np.arcsin(np.minimum(far / np.maximum(distance, 1e-9), 1.0)), np.pi
+    )
     one, two = window_pairs(distance - far, distance + far, bearing, half_width, distance, bearing)
     apart = position[one] - position[two]
     close = np.hypot(*apart.T) < EASE * (reach[one] + reach[two])
@@ -42,6 +43,7 @@ def swap_risk(position, covariance, origin, size: float):
 
     def mixed(part):
         return (1 - MIXTURES) * part[one] + MIXTURES * part[two]
+
     a, b, d = mixed(a), mixed(b), mixed(d)
     form = (d * x * x - 2 * b * x * y + a * y * y) / (a * d - b * b)
     value = (MIXTURES * (1 - MIXTURES) * form).max(0) / size
@@ -50,4 +52,3 @@ def swap_risk(position, covariance, origin, size: float):
     first = order[np.unique(one[order], return_index=True)[1]]
     overlap[one[first]], other[one[first]] = value[first], two[first]
     return overlap, other
-

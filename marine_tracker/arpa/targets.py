@@ -10,12 +10,35 @@ from ..types import Array, row_of, take
 from .situation import Situation
 
 AUTOMATIC, MANUAL = range(2)
-LETTERS = ('A', 'M')                # as TTM has them
-EVENTS = ('acquired', 'lost', 'lost at once', 'left by range', 'merged into another track',
-          'never confirmed', 'entered an exclusion zone', 'gave way to a nearer target',
-          'cancelled', 'no track there', 'no room', 'track gone')
-(ACQUIRED, LOST_FROM_SIGHT, LOST_AT_ONCE, LEFT, MERGED_AWAY, UNCONFIRMED, EXCLUDED, DISPLACED,
- CANCELLED, NOTHING_THERE, NO_ROOM, GONE) = range(len(EVENTS))
+LETTERS = ('A', 'M')  # as TTM has them
+EVENTS = (
+    'acquired',
+    'lost',
+    'lost at once',
+    'left by range',
+    'merged into another track',
+    'never confirmed',
+    'entered an exclusion zone',
+    'gave way to a nearer target',
+    'cancelled',
+    'no track there',
+    'no room',
+    'track gone',
+)
+(
+    ACQUIRED,
+    LOST_FROM_SIGHT,
+    LOST_AT_ONCE,
+    LEFT,
+    MERGED_AWAY,
+    UNCONFIRMED,
+    EXCLUDED,
+    DISPLACED,
+    CANCELLED,
+    NOTHING_THERE,
+    NO_ROOM,
+    GONE,
+) = range(len(EVENTS))
 
 
 class Targets(NamedTuple):
@@ -58,12 +81,14 @@ def carry_over(targets: Targets, situation: Situation, radius: float, brief: flo
     how[row], since[row] = held.acquired, held.since
     target, over = how >= 0, situation.status == LOST
     # The first that holds is the reason: a target lost in an exclusion zone raises no alarm.
-    ends = {MERGED_AWAY: over & (situation.reason == MERGED),
-            UNCONFIRMED: over & (situation.number == 0),
-            EXCLUDED: situation.excluded & (over | (how == AUTOMATIC)),
-            LEFT: over & (situation.reason == OUT_OF_RANGE),
-            LOST_AT_ONCE: over & (how == AUTOMATIC) & (now - since < brief),
-            LOST_FROM_SIGHT: over}
+    ends = {
+        MERGED_AWAY: over & (situation.reason == MERGED),
+        UNCONFIRMED: over & (situation.number == 0),
+        EXCLUDED: situation.excluded & (over | (how == AUTOMATIC)),
+        LEFT: over & (situation.reason == OUT_OF_RANGE),
+        LOST_AT_ONCE: over & (how == AUTOMATIC) & (now - since < brief),
+        LOST_FROM_SIGHT: over,
+    }
     kind = np.select(list(ends.values()), list(ends), -1)
     heirs = _heirs(situation, target & (kind == MERGED_AWAY), radius)
     for merged, heir in heirs:
@@ -71,9 +96,19 @@ def carry_over(targets: Targets, situation: Situation, radius: float, brief: flo
         since[heir] = min(since[heir], since[merged])
     how[kind >= 0] = -1
     events = [at_tracks(end, situation, (target & (kind == end)).nonzero()[0]) for end in ends]
-    return how, since, join(*events, Events(
-        np.full(len(gone.id), GONE, np.int8), gone.id, gone.number,
-        np.full((len(gone.id), 2), np.nan)))
+    return (
+        how,
+        since,
+        join(
+            *events,
+            Events(
+                np.full(len(gone.id), GONE, np.int8),
+                gone.id,
+                gone.number,
+                np.full((len(gone.id), 2), np.nan),
+            ),
+        ),
+    )
 
 
 def _heirs(situation: Situation, merged, radius: float) -> list[tuple[int, int]]:
@@ -102,8 +137,12 @@ def nearest_track(situation: Situation, position, fit, radius: float) -> int:
 
 def at_tracks(kind: int, situation: Situation, rows) -> Events:
     """The same event of some tracks."""
-    return Events(np.full(len(rows), kind, np.int8), situation.id[rows], situation.number[rows],
-                  situation.position[rows])
+    return Events(
+        np.full(len(rows), kind, np.int8),
+        situation.id[rows],
+        situation.number[rows],
+        situation.position[rows],
+    )
 
 
 def join(*events: Events) -> Events:

@@ -16,7 +16,7 @@ from .miss_distance import danger_probability
 from .motion import Motion
 from .own_path import Path, TrialManoeuvre, paths
 
-AT_ONCE = 100_000       # distances reckoned at a time: what a cache holds
+AT_ONCE = 100_000  # distances reckoned at a time: what a cache holds
 COURSES = np.radians(np.arange(360.0))
 
 
@@ -56,8 +56,9 @@ class SafeCourses(NamedTuple):
     sectors: Array
 
 
-def trial_approach(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, cpa_limit: float,
-                   tcpa_limit: float) -> TrialApproach:
+def trial_approach(
+    motion: Motion, own: OwnMotion, trial: TrialManoeuvre, cpa_limit: float, tcpa_limit: float
+) -> TrialApproach:
     """CPA, TCPA and danger of the N targets under the trial; limits in m and s (inf for none).
 
     ValueError names the trial's value, or limit, that cannot be.
@@ -66,8 +67,14 @@ def trial_approach(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, cpa_li
     return TrialApproach(*(values[0] for values in every))
 
 
-def safe_courses(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, cpa_limit: float,
-                 tcpa_limit: float = np.inf, risk: float = 0.05) -> SafeCourses:
+def safe_courses(
+    motion: Motion,
+    own: OwnMotion,
+    trial: TrialManoeuvre,
+    cpa_limit: float,
+    tcpa_limit: float = np.inf,
+    risk: float = 0.05,
+) -> SafeCourses:
     """Which courses, all else as in the trial, keep the probability of danger below the risk.
 
     Targets of unknown motion are left out. The dangers of several targets count as independent.
@@ -87,8 +94,14 @@ def safe_courses(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, cpa_limi
     return SafeCourses(COURSES, probability, cpa, nearest, safe, _sectors(safe))
 
 
-def _approaches(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, courses: Array, cpa_limit: float,
-                tcpa_limit: float) -> TrialApproach:
+def _approaches(
+    motion: Motion,
+    own: OwnMotion,
+    trial: TrialManoeuvre,
+    courses: Array,
+    cpa_limit: float,
+    tcpa_limit: float,
+) -> TrialApproach:
     """[C, N] of each course and target."""
     for name, limit, unit in (('CPA', cpa_limit, 'm'), ('TCPA', tcpa_limit, 's')):
         if not limit > 0:
@@ -96,8 +109,16 @@ def _approaches(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, courses: 
     path = paths(own, trial, courses)
     known = np.flatnonzero(np.isfinite(motion.position).all(1))
     count = max(AT_ONCE // (path.time.shape[1] * max(len(known), 1)), 1)
-    parts = [_nearest(take(motion, known), own, Path(*(part[k:k + count] for part in path)),
-                      cpa_limit, tcpa_limit) for k in range(0, len(courses), count)]
+    parts = [
+        _nearest(
+            take(motion, known),
+            own,
+            Path(*(part[k : k + count] for part in path)),
+            cpa_limit,
+            tcpa_limit,
+        )
+        for k in range(0, len(courses), count)
+    ]
     every = []
     for unknown, columns in zip((np.nan, np.nan, 0.0), zip(*parts)):
         values = np.full((len(courses), len(motion.position)), unknown)
@@ -106,37 +127,39 @@ def _approaches(motion: Motion, own: OwnMotion, trial: TrialManoeuvre, courses: 
     return TrialApproach(*every)
 
 
-def _nearest(motion: Motion, own: OwnMotion, path: Path, cpa_limit: float,
-             tcpa_limit: float) -> TrialApproach:
+def _nearest(
+    motion: Motion, own: OwnMotion, path: Path, cpa_limit: float, tcpa_limit: float
+) -> TrialApproach:
     """[C, N]: the nearest point of each of C paths to each target."""
     shape = len(path.time), len(motion.position)
     # East and north lead, [2, C, N, K]: sums of whole arrays cost a third of sums along the last.
-    time = path.time[:, None]                                           # [C, 1, K]
+    time = path.time[:, None]  # [C, 1, K]
     position, velocity = motion.position.T[..., None], motion.velocity.T[..., None]
-    offset = position[:, None] + time * velocity[:, None] - path.position.transpose(2, 0, 1)[
-        :, :, None]
-    length = np.diff(path.time, append=np.inf)[:, None]                 # [C, 1, K]
+    offset = (
+        position[:, None] + time * velocity[:, None] - path.position.transpose(2, 0, 1)[:, :, None]
+    )
+    length = np.diff(path.time, append=np.inf)[:, None]  # [C, 1, K]
     relative = np.zeros_like(offset)
-    np.divide(np.diff(offset), length[..., :-1], out=relative[..., :-1],
-              where=length[..., :-1] > 0)
+    np.divide(np.diff(offset), length[..., :-1], out=relative[..., :-1], where=length[..., :-1] > 0)
     relative[..., -1] = velocity.transpose(0, 2, 1) - path.velocity.T[..., None]
     squared = _dot(relative, relative)
-    into = np.divide(-_dot(offset, relative), squared, out=np.zeros_like(squared),
-                     where=squared > 0)
+    into = np.divide(
+        -_dot(offset, relative), squared, out=np.zeros_like(squared), where=squared > 0
+    )
     into = np.minimum(np.maximum(into, 0), length)
     reached = offset + into * relative
-    best = np.where(length > 0, _dot(reached, reached), np.inf).argmin(-1)          # [C, N]
-    c, n = np.ogrid[:shape[0], :shape[1]]
+    best = np.where(length > 0, _dot(reached, reached), np.inf).argmin(-1)  # [C, N]
+    c, n = np.ogrid[: shape[0], : shape[1]]
 
     def at(moment, values):
         """[C, N, 2] of values [2, C, N, K] at the moments [C, N]."""
         return values[:, c, n, moment].transpose(1, 2, 0)
+
     there, moving = at(best, reached), at(best, relative)
     tcpa = path.time[c, best] + into[c, n, best]
     # Nearest now: the target only goes away, and the past tells when it was nearer.
     gone = tcpa == 0
-    moving = np.where(gone[..., None], at((length > 0).argmax(-1), relative),
-                      _abeam(moving, there))
+    moving = np.where(gone[..., None], at((length > 0).argmax(-1), relative), _abeam(moving, there))
     before = np.where(gone[..., None], at(0, offset), there - tcpa[..., None] * moving)
     cpa, past = cpa_of(before, moving)
     tcpa = np.where(gone, past, tcpa)
@@ -145,8 +168,9 @@ def _nearest(motion: Motion, own: OwnMotion, path: Path, cpa_limit: float,
     covariance = motion.covariance + own.covariance + HAIR * np.eye(4)
     c, n = np.nonzero(moves & _may_meet(before, moving, covariance, cpa_limit))
     danger = np.zeros(shape)
-    danger[c, n] = danger_probability(before[c, n], moving[c, n], covariance[n], cpa_limit,
-                                      tcpa_limit)
+    danger[c, n] = danger_probability(
+        before[c, n], moving[c, n], covariance[n], cpa_limit, tcpa_limit
+    )
     return TrialApproach(cpa, np.where(moves, tcpa, np.nan), danger)
 
 
@@ -165,9 +189,11 @@ def _may_meet(position, velocity, covariance, cpa_limit):
     distance, from_own = to_range_bearing(position)
     length, course = to_range_bearing(velocity)
     off = np.abs(wrap_angle(from_own + np.pi - course))
-    return off <= (np.arcsin(np.minimum((cpa_limit + place) / np.maximum(distance, 1e-9), 1))
-                   + np.arcsin(np.minimum(speed / np.maximum(length, 1e-9), 1))
-                   + np.where((cpa_limit + place >= distance) | (speed >= length), np.pi, 0))
+    return off <= (
+        np.arcsin(np.minimum((cpa_limit + place) / np.maximum(distance, 1e-9), 1))
+        + np.arcsin(np.minimum(speed / np.maximum(length, 1e-9), 1))
+        + np.where((cpa_limit + place >= distance) | (speed >= length), np.pi, 0)
+    )
 
 
 def _abeam(moving, there):
@@ -177,7 +203,7 @@ def _abeam(moving, there):
     track that has it for its closest approach stands for the path, and for its errors.
     """
     speed, distance = (np.hypot(v[..., 0], v[..., 1])[..., None] for v in (moving, there))
-    speed = np.maximum(speed, LEAST_SPEED)                  # it came there, to stay
+    speed = np.maximum(speed, LEAST_SPEED)  # it came there, to stay
     across = np.stack([there[..., 1], -there[..., 0]], -1) / np.maximum(distance, 1e-9)
     side = np.where((moving * across).sum(-1, keepdims=True) < 0, -1.0, 1.0)
     return np.where(distance > 1.0, side * speed * across, moving)
@@ -190,5 +216,5 @@ def _sectors(safe) -> Array:
     first = np.flatnonzero(safe & ~np.roll(safe, 1))
     last = np.flatnonzero(safe & ~np.roll(safe, -1))
     if len(first) and last[0] < first[0]:
-        last = np.roll(last, -1)                                        # the run through north
+        last = np.roll(last, -1)  # the run through north
     return np.stack([COURSES[first], COURSES[last]], -1)

@@ -74,22 +74,36 @@ def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
     active = (alerts.kind == alarms.DANGER) & np.isin(
-        alerts.state, (ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED))
+        alerts.state, (ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED)
+    )
     return View(
-        label(targets.id, tracks.number), targets.id, tracks.number, tracks.status,
-        report.reason[picture.row], targets.acquired, picture.motion, picture.approach,
-        picture.at_rest, np.isin(targets.id, alerts.id[active]), picture.overlap < 1,
+        label(targets.id, tracks.number),
+        targets.id,
+        tracks.number,
+        tracks.status,
+        report.reason[picture.row],
+        targets.acquired,
+        picture.motion,
+        picture.approach,
+        picture.at_rest,
+        np.isin(targets.id, alerts.id[active]),
+        picture.overlap < 1,
         lifecycle.hits(tracks.history, lifecycle.TEN),
-        lifecycle.misses_in_a_row(tracks.history), picture.time - tracks.first_time,
-        ACCOUNTS[estimator](tracks.state) if estimator in ACCOUNTS
-        else no_account(len(tracks.id)),
-        None if shapes is None else _hulls(picture, take(shapes, picture.row)))
+        lifecycle.misses_in_a_row(tracks.history),
+        picture.time - tracks.first_time,
+        ACCOUNTS[estimator](tracks.state) if estimator in ACCOUNTS else no_account(len(tracks.id)),
+        None if shapes is None else _hulls(picture, take(shapes, picture.row)),
+    )
 
 
 def _hulls(picture: Picture, shapes: Shapes) -> HullView:
     motion, own = picture.motion, picture.own
-    return HullView(shapes, hull_clearance(shapes.outline, motion.position - own.position,
-                                           motion.velocity - own.velocity))
+    return HullView(
+        shapes,
+        hull_clearance(
+            shapes.outline, motion.position - own.position, motion.velocity - own.velocity
+        ),
+    )
 
 
 class Standing(NamedTuple):
@@ -117,8 +131,10 @@ def standing(report: Report, estimator: str) -> Standing:
     fallen = np.bincount(account.reason[confirmed], minlength=len(account.reasons))[1:]
     return Standing(
         {name: count for name, count in zip(account.states, states.tolist()) if name},
-        int(fallen.sum()), account.reasons[1 + int(fallen.argmax())] if fallen.any() else '',
-        account.reason > 0)
+        int(fallen.sum()),
+        account.reasons[1 + int(fallen.argmax())] if fallen.any() else '',
+        account.reason > 0,
+    )
 
 
 def no_account(count: int) -> Account:

@@ -14,14 +14,16 @@ from ..types import Array
 KEYS = ('name', 'kind', 'range_nm', 'range_m', 'bearing_deg', 'corners_nm', 'corners_m', 'fixed_to')
 UNITS = {'nm': NAUTICAL_MILE, 'm': 1.0}
 MAX_CORNERS = 1000
-FARTHEST = 200 * NAUTICAL_MILE      # m, limit of ranges and corners
+FARTHEST = 200 * NAUTICAL_MILE  # m, limit of ranges and corners
 
 
 def name_of(item: Any, index: int, taken: list[str]) -> str:
     """The zone's name, which none before it has; its keys are known ones."""
     if not isinstance(item, dict):
-        raise ValueError(f'zone {index + 1} is {shown(item)}; it must be a mapping with name, '
-                         'kind and range_nm or corners_m')
+        raise ValueError(
+            f'zone {index + 1} is {shown(item)}; it must be a mapping with name, '
+            'kind and range_nm or corners_m'
+        )
     name = item.get('name', '')
     if not isinstance(name, str) or not name.strip():
         raise ValueError(f'zone {index + 1} has no name')
@@ -30,8 +32,9 @@ def name_of(item: Any, index: int, taken: list[str]) -> str:
         raise ValueError(f'two zones have the name {name}')
     for key in item:
         if key not in KEYS:
-            raise ValueError(f'zone {name}: {shown(key)} is not known; it may be one of '
-                             f'{", ".join(KEYS)}')
+            raise ValueError(
+                f'zone {name}: {shown(key)} is not known; it may be one of {", ".join(KEYS)}'
+            )
     return name
 
 
@@ -39,8 +42,9 @@ def choice_of(name: str, item: dict, key: str, choices: tuple[str, ...], default
     """One of the stated words."""
     value = item.get(key, default)
     if value not in choices:
-        raise ValueError(f'zone {name}: {key} is {shown(value)}; it must be one of '
-                         f'{", ".join(choices)}')
+        raise ValueError(
+            f'zone {name}: {key} is {shown(value)}; it must be one of {", ".join(choices)}'
+        )
     return value
 
 
@@ -48,8 +52,10 @@ def outline_of(name: str, item: dict) -> str:
     """The key that holds the outline."""
     given = [key for key in item if key.startswith(('range', 'corners'))]
     if len(given) != 1:
-        raise ValueError(f'zone {name} has {" and ".join(given) or "no outline"}; it must have one '
-                         'of range_nm, range_m, corners_nm, corners_m')
+        raise ValueError(
+            f'zone {name} has {" and ".join(given) or "no outline"}; it must have one '
+            'of range_nm, range_m, corners_nm, corners_m'
+        )
     wrong = 'fixed_to' if given[0].startswith('range') else 'bearing_deg'
     if wrong in item:
         raise ValueError(f'zone {name}: {wrong} does not go with {given[0]}')
@@ -61,15 +67,18 @@ def sector_of(name: str, item: dict, key: str):
     unit = UNITS[key.removeprefix('range_')]
     near, far = unit * two_numbers(name, key, item[key], 0.0, FARTHEST / unit)
     if not near < far:
-        raise ValueError(f'zone {name}: {key} is {shown(item[key])}; the first must be below the '
-                         'second')
+        raise ValueError(
+            f'zone {name}: {key} is {shown(item[key])}; the first must be below the second'
+        )
     if 'bearing_deg' not in item:
         return near, far, 0.0, math.inf
     start, end = two_numbers(name, 'bearing_deg', item['bearing_deg'], -360.0, 360.0)
     width = (end - start) % 360.0
     if not width:
-        raise ValueError(f'zone {name}: bearing_deg is {shown(item["bearing_deg"])}, from a '
-                         'bearing to itself; leave it out for a full ring')
+        raise ValueError(
+            f'zone {name}: bearing_deg is {shown(item["bearing_deg"])}, from a '
+            'bearing to itself; leave it out for a full ring'
+        )
     return near, far, math.radians(start), math.radians(width)
 
 
@@ -77,15 +86,22 @@ def corners_of(name: str, item: dict, key: str) -> Array:
     """The polygon's corners [V, 2] m."""
     values = item[key]
     if not isinstance(values, list) or not 3 <= len(values) <= MAX_CORNERS:
-        raise ValueError(f'zone {name}: {key} is {shown(values)}; it must be a list of 3 to '
-                         f'{MAX_CORNERS} corners')
+        raise ValueError(
+            f'zone {name}: {key} is {shown(values)}; it must be a list of 3 to '
+            f'{MAX_CORNERS} corners'
+        )
     unit = UNITS[key.removeprefix('corners_')]
     limit = FARTHEST / unit
-    corners = unit * np.array([two_numbers(name, f'{key}[{index}]', pair, -limit, limit)
-                               for index, pair in enumerate(values)])
+    corners = unit * np.array(
+        [
+            two_numbers(name, f'{key}[{index}]', pair, -limit, limit)
+            for index, pair in enumerate(values)
+        ]
+    )
     if _crosses_itself(corners):
-        raise ValueError(f'zone {name}: the sides of {key} cross each other, '
-                         'have no length or enclose nothing')
+        raise ValueError(
+            f'zone {name}: the sides of {key} cross each other, have no length or enclose nothing'
+        )
     return corners
 
 
@@ -96,8 +112,10 @@ def two_numbers(name: str, key: str, values: Any, low: float, high: float) -> Ar
     except (TypeError, ValueError):
         numbers = []
     if len(numbers) != 2 or not all(low <= number <= high for number in numbers):
-        raise ValueError(f'zone {name}: {key} is {shown(values)}; it must be two numbers between '
-                         f'{low:g} and {high:g}')
+        raise ValueError(
+            f'zone {name}: {key} is {shown(values)}; it must be two numbers between '
+            f'{low:g} and {high:g}'
+        )
     return np.array(numbers)
 
 
@@ -111,6 +129,7 @@ def _crosses_itself(corners: Array) -> bool:
         """Sign [V, V]: on which side of side i point j lies."""
         to = point[None] - start[:, None]
         return np.sign(side[:, None, 0] * to[..., 1] - side[:, None, 1] * to[..., 0])
+
     begin, end = beside(start), beside(np.roll(start, -1, 0))
     parts = begin * end < 0
     (x, y), (next_x, next_y) = corners.T, np.roll(corners, -1, 0).T

@@ -32,6 +32,9 @@ def outlines(zones: Zones, guard: bool, own_position, heading: float) -> Array:
         if zones.guard[polygon.zone] != guard or not (polygon.ground or np.isfinite(heading)):
             continue
         sides = np.stack([polygon.start, polygon.end], 1)
-        parts.append(sides if polygon.ground else
-                     own_position + sides[..., :1] * starboard + sides[..., 1:] * ahead)
+        parts.append(
+            sides
+            if polygon.ground
+            else own_position + sides[..., :1] * starboard + sides[..., 1:] * ahead
+        )
     return np.concatenate(parts)

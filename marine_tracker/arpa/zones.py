@@ -25,7 +25,7 @@ from ..types import Array
 from . import zone_fields
 
 MAX_ZONES = 100
-HAIR = 1e-9         # rad
+HAIR = 1e-9  # rad
 
 
 class Sectors(NamedTuple):
@@ -88,8 +88,10 @@ def parse(text: str) -> Zones:
         raise ValueError(f'zones are not YAML: {error}') from error
     items = items or []
     if not isinstance(items, list):
-        raise ValueError(f'zones are {zone_fields.shown(items)}; they must be a list of '
-                         'mappings, each with name, kind and range_nm or corners_m')
+        raise ValueError(
+            f'zones are {zone_fields.shown(items)}; they must be a list of '
+            'mappings, each with name, kind and range_nm or corners_m'
+        )
     if len(items) > MAX_ZONES:
         raise ValueError(f'there are {len(items)} zones; there may be {MAX_ZONES}')
     names: list[str] = []
@@ -104,15 +106,22 @@ def parse(text: str) -> Zones:
             shape = zone_fields.sector_of(name, item, outline)
             sectors.append((index, *shape))
         else:
-            ground = zone_fields.choice_of(name, item, 'fixed_to', ('ship', 'ground'),
-                                        'ship') == 'ground'
+            ground = (
+                zone_fields.choice_of(name, item, 'fixed_to', ('ship', 'ground'), 'ship')
+                == 'ground'
+            )
             corners = zone_fields.corners_of(name, item, outline)
             shape = (ground, corners.tolist())
             polygons.append(_polygon(index, ground, corners))
         key[index] = _key(name, guard[index], shape)
     zone, near, far, start, width = np.array(sectors, float).reshape(-1, 5).T
-    return Zones(tuple(names), guard, key,
-                 Sectors(zone.astype(np.int64), near, far, start, width), tuple(polygons))
+    return Zones(
+        tuple(names),
+        guard,
+        key,
+        Sectors(zone.astype(np.int64), near, far, start, width),
+        tuple(polygons),
+    )
 
 
 def inside(zones: Zones, position, own_position, heading: float) -> NDArray[np.bool_]:
@@ -131,8 +140,9 @@ def inside(zones: Zones, position, own_position, heading: float) -> NDArray[np.b
         turned = wrap_bearing(bearing[:, None] - heading - sectors.start)
         # HAIR: a bearing on the first side may come out a rounding error short of a whole turn.
         within = ring | (turned <= sectors.width + HAIR) | (turned >= 2 * np.pi - HAIR)
-        mask[:, sectors.zone] = (within & (distance[:, None] >= sectors.near)
-                                 & (distance[:, None] <= sectors.far))
+        mask[:, sectors.zone] = (
+            within & (distance[:, None] >= sectors.near) & (distance[:, None] <= sectors.far)
+        )
     on_ship = distance[:, None] * unit_vector(bearing - heading)
     for polygon in zones.polygons:
         mask[:, polygon.zone] = _within(polygon, position if polygon.ground else on_ship)
@@ -142,8 +152,9 @@ def inside(zones: Zones, position, own_position, heading: float) -> NDArray[np.b
 def _polygon(zone: int, ground: bool, corners: Array) -> Polygon:
     following = np.roll(corners, -1, 0)
     down = (corners[:, 1] > following[:, 1])[:, None]
-    return Polygon(zone, ground, np.where(down, following, corners),
-                   np.where(down, corners, following))
+    return Polygon(
+        zone, ground, np.where(down, following, corners), np.where(down, corners, following)
+    )
 
 
 def _within(polygon: Polygon, position) -> NDArray[np.bool_]:

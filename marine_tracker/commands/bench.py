@@ -15,21 +15,32 @@ HELP = 'measure the cost of a scan, beside Stone Soup'
 PLAIN, ALL = 'cs_kalman', 'all'
 # Ratios to reach with cs_kalman, by number of targets.
 DEMANDED = {200: 300.0, 1000: 400.0}
-MOST_TARGETS = 1000             # with which the two limits below hold
-MOST_ESTIMATOR_MS = 40.0        # for extrapolation and update by any estimator
-MOST_RATIO = 10.0               # of a scan's cost to that with cs_kalman
+MOST_TARGETS = 1000  # with which the two limits below hold
+MOST_ESTIMATOR_MS = 40.0  # for extrapolation and update by any estimator
+MOST_RATIO = 10.0  # of a scan's cost to that with cs_kalman
 
 
 def add_arguments(parser) -> None:
     """The command line of `bench`."""
-    parser.add_argument('--tracks', type=int, default=200, metavar='N',
-                        help='targets, each with a track (default 200)')
-    parser.add_argument('--clutter', type=int, default=50, metavar='N',
-                        help='false plots a scan (default 50)')
-    parser.add_argument('--estimator', choices=[*sorted(ESTIMATORS), ALL], default=PLAIN,
-                        help=f'filter of this tracker, or all of them (default {PLAIN})')
-    parser.add_argument('--scans', type=int, default=10, metavar='N',
-                        help='scans measured (default 10)')
+    parser.add_argument(
+        '--tracks',
+        type=int,
+        default=200,
+        metavar='N',
+        help='targets, each with a track (default 200)',
+    )
+    parser.add_argument(
+        '--clutter', type=int, default=50, metavar='N', help='false plots a scan (default 50)'
+    )
+    parser.add_argument(
+        '--estimator',
+        choices=[*sorted(ESTIMATORS), ALL],
+        default=PLAIN,
+        help=f'filter of this tracker, or all of them (default {PLAIN})',
+    )
+    parser.add_argument(
+        '--scans', type=int, default=10, metavar='N', help='scans measured (default 10)'
+    )
     parser.add_argument('--alone', action='store_true', help='leave Stone Soup out')
     parser.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
     report.add_arguments(parser)
@@ -42,47 +53,86 @@ def run(args) -> int:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
     keep_freed_memory()
     names = list(ESTIMATORS) if args.estimator == ALL else [args.estimator]
-    results = benchmark.benchmark(args.tracks, args.clutter, list(dict.fromkeys([PLAIN, *names])),
-                                  args.scans, args.seed, args.alone)
+    results = benchmark.benchmark(
+        args.tracks,
+        args.clutter,
+        list(dict.fromkeys([PLAIN, *names])),
+        args.scans,
+        args.seed,
+        args.alone,
+    )
     theirs = results.pop(benchmark.STONE_SOUP, None)
     figures = [figure for name in results for figure in _figures(name, results, args.tracks)]
     if theirs:
-        figures += [report.Figure(f'{benchmark.STONE_SOUP}: CPU time of a scan',
-                                  1e3 * theirs.cpu_s, 'ms'), *_found(benchmark.STONE_SOUP, theirs)]
-        figures += [_over_stone_soup(name, theirs.cpu_s / ours.cpu_s, args)
-                    for name, ours in results.items()]
-    title = (f'{args.tracks} targets, {args.clutter} false plots a scan, {args.estimator}, '
-             f'{args.scans} scans, seed {args.seed}')
-    return report.publish(title, figures, args.json, {
-        'tracks': args.tracks, 'clutter': args.clutter, 'estimator': args.estimator,
-        'scans': args.scans, 'seed': args.seed})
+        figures += [
+            report.Figure(f'{benchmark.STONE_SOUP}: CPU time of a scan', 1e3 * theirs.cpu_s, 'ms'),
+            *_found(benchmark.STONE_SOUP, theirs),
+        ]
+        figures += [
+            _over_stone_soup(name, theirs.cpu_s / ours.cpu_s, args)
+            for name, ours in results.items()
+        ]
+    title = (
+        f'{args.tracks} targets, {args.clutter} false plots a scan, {args.estimator}, '
+        f'{args.scans} scans, seed {args.seed}'
+    )
+    return report.publish(
+        title,
+        figures,
+        args.json,
+        {
+            'tracks': args.tracks,
+            'clutter': args.clutter,
+            'estimator': args.estimator,
+            'scans': args.scans,
+            'seed': args.seed,
+        },
+    )
 
 
 def _figures(name: str, results: dict[str, benchmark.Result], targets: int):
     """Of this tracker with one estimator."""
     result, plain = results[name], results[PLAIN]
     bound = targets == MOST_TARGETS
-    figures = [report.Figure(f'{name}: CPU time of a scan', 1e3 * result.cpu_s, 'ms'),
-               _bounded(f'{name}: of that, extrapolation and update', 1e3 * result.estimator_s,
-                        MOST_ESTIMATOR_MS, bound, 'ms')]
+    figures = [
+        report.Figure(f'{name}: CPU time of a scan', 1e3 * result.cpu_s, 'ms'),
+        _bounded(
+            f'{name}: of that, extrapolation and update',
+            1e3 * result.estimator_s,
+            MOST_ESTIMATOR_MS,
+            bound,
+            'ms',
+        ),
+    ]
     if name != PLAIN:
-        figures.append(_bounded(f'{name}: ratio of a scan', result.cpu_s / plain.cpu_s, MOST_RATIO,
-                                bound, '', PLAIN))
+        figures.append(
+            _bounded(
+                f'{name}: ratio of a scan', result.cpu_s / plain.cpu_s, MOST_RATIO, bound, '', PLAIN
+            )
+        )
     return [*figures, *_found(name, result)]
 
 
 def _bounded(name, value, limit, bound, unit, against=None):
-    return (report.at_most(name, value, limit, unit, against) if bound
-            else report.Figure(name, value, unit, None, None, against))
+    return (
+        report.at_most(name, value, limit, unit, against)
+        if bound
+        else report.Figure(name, value, unit, None, None, against)
+    )
 
 
 def _found(name: str, result: benchmark.Result):
-    return [report.Figure(f'{name}: targets kept', 100 * result.kept, '%'),
-            report.Figure(f'{name}: position RMSE', result.rmse, 'm')]
+    return [
+        report.Figure(f'{name}: targets kept', 100 * result.kept, '%'),
+        report.Figure(f'{name}: position RMSE', result.rmse, 'm'),
+    ]
 
 
 def _over_stone_soup(name, ratio, args) -> report.Figure:
     demanded = DEMANDED.get(args.tracks) if name == PLAIN and args.clutter == 50 else None
     title = f'{name}: times less than Stone Soup'
-    return (report.Figure(title, ratio, '', None, None, benchmark.STONE_SOUP) if demanded is None
-            else report.at_least(title, ratio, demanded, '', benchmark.STONE_SOUP))
+    return (
+        report.Figure(title, ratio, '', None, None, benchmark.STONE_SOUP)
+        if demanded is None
+        else report.at_least(title, ratio, demanded, '', benchmark.STONE_SOUP)
+    )

@@ -27,17 +27,25 @@ from ..processes import end_with_parent
 
 HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
 
-COLUMNS = (('target', 'name'), ('status', 'status'), ('range NM', 'range_nm'),
-           ('bearing', 'bearing_deg'), ('course', 'course_deg'), ('speed kn', 'speed_kn'),
-           ('CPA NM', 'cpa_nm'), ('TCPA min', 'tcpa_min'), ('hits in 10', 'hits_in_10'),
-           ('estimator', 'estimator'))
-SIZES = (('length m', 'length_m'), ('heading', 'heading_deg'))      # with extents, before the last
+COLUMNS = (
+    ('target', 'name'),
+    ('status', 'status'),
+    ('range NM', 'range_nm'),
+    ('bearing', 'bearing_deg'),
+    ('course', 'course_deg'),
+    ('speed kn', 'speed_kn'),
+    ('CPA NM', 'cpa_nm'),
+    ('TCPA min', 'tcpa_min'),
+    ('hits in 10', 'hits_in_10'),
+    ('estimator', 'estimator'),
+)
+SIZES = (('length m', 'length_m'), ('heading', 'heading_deg'))  # with extents, before the last
 TO_THE_LEFT = ('name', 'status', 'estimator')
 STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
 DANGEROUS = 'bold red'
-MOST_ALARMS = 8             # that are listed below the table on a terminal
-PLAIN_EVERY_S = 2.0         # between two tables where there is no terminal
-STOP_S = 5.0                # for a process to end by itself after SIGINT, then after SIGTERM
+MOST_ALARMS = 8  # that are listed below the table on a terminal
+PLAIN_EVERY_S = 2.0  # between two tables where there is no terminal
+STOP_S = 5.0  # for a process to end by itself after SIGINT, then after SIGTERM
 
 
 class Child(NamedTuple):
@@ -51,25 +59,38 @@ class Child(NamedTuple):
 def add_arguments(parser) -> None:
     """Options of the command."""
     source = parser.add_mutually_exclusive_group()
-    source.add_argument('--scenario', default='encounters', metavar='NAME',
-                        help='a shipped scenario or a scenario file (default: %(default)s)')
+    source.add_argument(
+        '--scenario',
+        default='encounters',
+        metavar='NAME',
+        help='a shipped scenario or a scenario file (default: %(default)s)',
+    )
     source.add_argument('--recording', metavar='FOLDER', help='a recorded folder instead')
-    parser.add_argument('--rate', type=float, default=1.0, metavar='F',
-                        help='simulated seconds in a second (default: 1)')
+    parser.add_argument(
+        '--rate',
+        type=float,
+        default=1.0,
+        metavar='F',
+        help='simulated seconds in a second (default: 1)',
+    )
     parser.add_argument('--estimator', choices=sorted(ESTIMATORS), help='filter of the tracker')
-    parser.add_argument('--extent', choices=EXTENTS,
-                        help='whether the tracker takes cells that touch as one target')
+    parser.add_argument(
+        '--extent', choices=EXTENTS, help='whether the tracker takes cells that touch as one target'
+    )
     parser.add_argument('--seed', type=int, default=1, help='seed of the simulator (default: 1)')
     parser.add_argument('--duration', type=float, metavar='S', help='end after so many seconds')
-    parser.add_argument('--domain', type=int, metavar='ID',
-                        help='ROS domain (default: one that is free)')
+    parser.add_argument(
+        '--domain', type=int, metavar='ID', help='ROS domain (default: one that is free)'
+    )
 
 
 def run(args) -> int:
     """0 after a stop that was asked for, 1 when a process died or ROS is missing."""
     stop = threading.Event()
-    before = {number: signal.signal(number, lambda *_: stop.set())
-              for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    before = {
+        number: signal.signal(number, lambda *_: stop.set())
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    }
     try:
         return _demo(args, stop)
     finally:
@@ -83,16 +104,21 @@ def _demo(args, stop: threading.Event) -> int:
         from ..nodes import domain
         from ..nodes.targets_listener import TargetsListener
     except ModuleNotFoundError as error:
-        print(f'marine_tracker demo needs ROS 2 ({error}): '
-              "pip install 'marine_tracker[ros]', or source a ROS 2 Jazzy", file=sys.stderr)
+        print(
+            f'marine_tracker demo needs ROS 2 ({error}): '
+            "pip install 'marine_tracker[ros]', or source a ROS 2 Jazzy",
+            file=sys.stderr,
+        )
         return 1
     with contextlib.ExitStack() as context:
         number = args.domain
         if number is None:
             number = context.enter_context(domain.free_domain())
         domain.set_local(os.environ, number)
-        children = [context.enter_context(_child('tracker', tracker_parameters)),
-                    context.enter_context(_child(source, source_parameters))]
+        children = [
+            context.enter_context(_child('tracker', tracker_parameters)),
+            context.enter_context(_child(source, source_parameters)),
+        ]
         listener = TargetsListener()
         context.callback(listener.close)
         title = Path(args.recording).name if args.recording else args.scenario
@@ -104,16 +130,21 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
     source: str
     if args.recording:
         from ..recording import csv_folder
+
         source = 'recording_player'
         given = {'folder': os.path.abspath(args.recording), 'rate': args.rate}
         from_mapping(RecordingPlayerParameters, given)
         for_tracker = dict(csv_folder.read(args.recording).tracker_parameters)
     else:
         from ..simulation import scenario
+
         source = 'radar_simulator'
         name = args.scenario
-        given = {'scenario': os.path.abspath(name) if os.path.isfile(name) else name,
-                 'rate': args.rate, 'seed': args.seed}
+        given = {
+            'scenario': os.path.abspath(name) if os.path.isfile(name) else name,
+            'rate': args.rate,
+            'seed': args.seed,
+        }
         from_mapping(RadarSimulatorParameters, given)
         for_tracker = dict(scenario.load(name).tracker_parameters())
     if args.estimator:
@@ -121,7 +152,7 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
     if args.extent:
         for_tracker['extent'] = args.extent
     checked = from_mapping(TrackerParameters, for_tracker)
-    for_tracker = {name: getattr(checked, name) for name in for_tracker}     # ints become floats
+    for_tracker = {name: getattr(checked, name) for name in for_tracker}  # ints become floats
     if args.rate != 1:
         for_tracker['use_sim_time'] = True
     return source, given, for_tracker
@@ -138,8 +169,14 @@ def _child(name: str, parameters: dict[str, Any]) -> Iterator[Child]:
     with tempfile.TemporaryFile() as log:
         # A session of its own: Ctrl-C reaches this command alone, which then ends its children.
         process = subprocess.Popen(
-            arguments, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
-            env={**os.environ, 'PYTHONPATH': search}, preexec_fn=end_with_parent)
+            arguments,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+            start_new_session=True,
+            env={**os.environ, 'PYTHONPATH': search},
+            preexec_fn=end_with_parent,
+        )
         try:
             yield Child(name, process, log)
         finally:
@@ -181,8 +218,13 @@ def _drain(listener, show, title: str) -> None:
 def _tell_why(child: Child) -> None:
     child.log.seek(0)
     said = child.log.read().decode(errors='replace').strip().splitlines()[-10:]
-    print(f'marine_tracker demo: {child.name} ended with code {child.process.returncode}'
-          + (', saying' if said else ''), *said, sep='\n  ', file=sys.stderr)
+    print(
+        f'marine_tracker demo: {child.name} ended with code {child.process.returncode}'
+        + (', saying' if said else ''),
+        *said,
+        sep='\n  ',
+        file=sys.stderr,
+    )
 
 
 @contextlib.contextmanager
@@ -193,6 +235,7 @@ def _display():
         return
     from rich.console import Console
     from rich.live import Live
+
     console = Console()
     with Live(console=console, auto_refresh=False) as live:
         last: list[Any] = []
@@ -201,6 +244,7 @@ def _display():
             if last[:1] != [(picture, title)]:
                 live.update(_rich_table(picture, title, console.height), refresh=True)
                 last[:] = [(picture, title)]
+
         yield show
 
 
@@ -214,11 +258,16 @@ def _plain():
             return
         last.update(scans=picture.scans, at=now)
         columns = _columns(picture)
-        lines = [f'{_clock(picture)}  {title}  {_facts(picture)}',
-                 '  '.join(f'{head:>10}' for head, _ in columns)]
-        lines += ['  '.join([*(f'{target[key]:>10}' for _, key in columns), target['danger']])
-                  for target in picture.targets]
+        lines = [
+            f'{_clock(picture)}  {title}  {_facts(picture)}',
+            '  '.join(f'{head:>10}' for head, _ in columns),
+        ]
+        lines += [
+            '  '.join([*(f'{target[key]:>10}' for _, key in columns), target['danger']])
+            for target in picture.targets
+        ]
         print('\n'.join([*lines, *picture.alarms]), flush=True)
+
     return show
 
 
@@ -232,24 +281,45 @@ def _rich_table(picture, title: str, height: int):
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
     from rich.text import Text
+
     below = picture.alarms[:MOST_ALARMS]
     if len(picture.alarms) > MOST_ALARMS:
         below += (f'and {len(picture.alarms) - MOST_ALARMS} more alarms',)
-    caption = Text('\n').join([*(Text(line, DANGEROUS) for line in below), Text(_facts(picture)),
-                               *map(Text, picture.warnings), Text('Ctrl-C ends')])
-    table = Table(title=f'{title}   {_clock(picture)}', title_justify='left', caption=caption,
-                  caption_justify='left', box=SIMPLE_HEAD, padding=0)
+    caption = Text('\n').join(
+        [
+            *(Text(line, DANGEROUS) for line in below),
+            Text(_facts(picture)),
+            *map(Text, picture.warnings),
+            Text('Ctrl-C ends'),
+        ]
+    )
+    table = Table(
+        title=f'{title}   {_clock(picture)}',
+        title_justify='left',
+        caption=caption,
+        caption_justify='left',
+        box=SIMPLE_HEAD,
+        padding=0,
+    )
     columns = _columns(picture)
     for head, key in columns:
-        table.add_column(head, justify='left' if key in TO_THE_LEFT else 'right',
-                         min_width=8 if key == 'status' else None)         # TRACKING in full
+        table.add_column(
+            head,
+            justify='left' if key in TO_THE_LEFT else 'right',
+            min_width=8 if key == 'status' else None,
+        )  # TRACKING in full
     room = max(height - 8 - len(below) - len(picture.warnings), 1)
     # Where not all find room, the dangerous ones do.
-    shown = picture.targets if len(picture.targets) <= room else sorted(
-        picture.targets, key=lambda target: not target['danger'])[:room]
+    shown = (
+        picture.targets
+        if len(picture.targets) <= room
+        else sorted(picture.targets, key=lambda target: not target['danger'])[:room]
+    )
     for target in shown:
-        table.add_row(*(target[key] for _, key in columns),
-                      style=DANGEROUS if target['danger'] else STYLES.get(target['status']))
+        table.add_row(
+            *(target[key] for _, key in columns),
+            style=DANGEROUS if target['danger'] else STYLES.get(target['status']),
+        )
     if len(picture.targets) > room:
         table.add_row(f'and {len(picture.targets) - room} more')
     return table
@@ -263,5 +333,7 @@ def _facts(picture) -> str:
     if not picture.scans:
         return 'waiting for the first revolution'
     count = len(picture.targets)
-    return (f'{count} target{"" if count == 1 else "s"}, {picture.plots} plots a scan, '
-            f'own ship {picture.own_ship}')
+    return (
+        f'{count} target{"" if count == 1 else "s"}, {picture.plots} plots a scan, '
+        f'own ship {picture.own_ship}'
+    )

@@ -20,23 +20,45 @@ from .. import config
 HELP = 'say what is installed, what is missing and what to do'
 
 PYTHON = (3, 11)
-START_S = 20.0      # for a middleware to start and stop, on a slow machine
+START_S = 20.0  # for a middleware to start and stop, on a slow machine
 # Names to import, and the packages they come in.
-REQUIRED = {'numpy': 'numpy', 'scipy': 'scipy', 'pywt': 'PyWavelets', 'yaml': 'PyYAML',
-            'rich': 'rich', 'pynmea2': 'pynmea2'}
-OPTIONAL = {'matplotlib': ('matplotlib', 'to draw plots'),
-            'stonesoup': ('stonesoup', 'bench compares with it')}
+REQUIRED = {
+    'numpy': 'numpy',
+    'scipy': 'scipy',
+    'pywt': 'PyWavelets',
+    'yaml': 'PyYAML',
+    'rich': 'rich',
+    'pynmea2': 'pynmea2',
+}
+OPTIONAL = {
+    'matplotlib': ('matplotlib', 'to draw plots'),
+    'stonesoup': ('stonesoup', 'bench compares with it'),
+}
 SHIPPED = ('tracker.yaml', 'scenarios', 'fastdds_local.xml')
 PROFILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
-MESSAGES = ('builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs', 'nav_msgs', 'rosgraph_msgs',
-            'sensor_msgs', 'std_msgs', 'std_srvs', 'visualization_msgs')
-INSTALL_ROS = ("in the source folder: pip install '.[ros]'; or where ROS 2 is installed: source "
-               '/opt/ros/jazzy/setup.bash (only demo and the nodes need it)')
+MESSAGES = (
+    'builtin_interfaces',
+    'diagnostic_msgs',
+    'geometry_msgs',
+    'nav_msgs',
+    'rosgraph_msgs',
+    'sensor_msgs',
+    'std_msgs',
+    'std_srvs',
+    'visualization_msgs',
+)
+INSTALL_ROS = (
+    "in the source folder: pip install '.[ros]'; or where ROS 2 is installed: source "
+    '/opt/ros/jazzy/setup.bash (only demo and the nodes need it)'
+)
 # Who to start where nobody publishes a topic, by the end of its name; plots may be on any other.
 PLOTS = 'plots', 'start radar_simulator, recording_player or a radar driver'
 STARTERS = {
-    'own_ship/odometry': ('own ship', 'start what publishes own ship (radar_simulator and '
-                          'recording_player do), or the tracker takes it to be at rest'),
+    'own_ship/odometry': (
+        'own ship',
+        'start what publishes own ship (radar_simulator and '
+        'recording_player do), or the tracker takes it to be at rest',
+    ),
     'tracks': ('tracker', 'start tracker'),
 }
 
@@ -58,11 +80,17 @@ class Check(NamedTuple):
 
 def add_arguments(parser) -> None:
     """The command line of `doctor`."""
-    parser.add_argument('--listen', type=float, default=3.0, metavar='S',
-                        help='how long to listen on the ROS graph, s; 0 for not (default: 3)')
+    parser.add_argument(
+        '--listen',
+        type=float,
+        default=3.0,
+        metavar='S',
+        help='how long to listen on the ROS graph, s; 0 for not (default: 3)',
+    )
     parser.add_argument('--namespace', default='/', help='of the radar to look for (default: /)')
-    parser.add_argument('--json', metavar='FILE',
-                        help='write the checks as JSON instead; - for standard output')
+    parser.add_argument(
+        '--json', metavar='FILE', help='write the checks as JSON instead; - for standard output'
+    )
 
 
 def run(args) -> int:
@@ -100,13 +128,20 @@ def examine(listen: float, namespace: str = '/') -> Iterator[Check]:
         yield _module(module, package, f'pip install {package} ({use})', required=False)
     yield _configuration()
     yield from _environment()
-    here = find_spec('rclpy') is not None       # not imported: a broken one may end the process
-    yield Check('rclpy', here, _version('ros-jazzy-rclpy') if here else 'not installed',
-                '' if here else INSTALL_ROS)
+    here = find_spec('rclpy') is not None  # not imported: a broken one may end the process
+    yield Check(
+        'rclpy',
+        here,
+        _version('ros-jazzy-rclpy') if here else 'not installed',
+        '' if here else INSTALL_ROS,
+    )
     missing = [name for name in MESSAGES if find_spec(name) is None]
-    yield Check('ROS message packages', not missing,
-                f'missing {", ".join(missing)}' if missing else f'all {len(MESSAGES)}',
-                INSTALL_ROS if missing else '')
+    yield Check(
+        'ROS message packages',
+        not missing,
+        f'missing {", ".join(missing)}' if missing else f'all {len(MESSAGES)}',
+        INSTALL_ROS if missing else '',
+    )
     if here and not missing and listen > 0:
         yield from _graph(listen, namespace)
 
@@ -115,8 +150,13 @@ def _python() -> Check:
     found = '.'.join(map(str, sys.version_info[:3]))
     ok = sys.version_info >= PYTHON
     wanted = '.'.join(map(str, PYTHON))
-    return Check('Python', ok, f'{found}, {sys.executable}',
-                 '' if ok else f'install Python {wanted} or later', True)
+    return Check(
+        'Python',
+        ok,
+        f'{found}, {sys.executable}',
+        '' if ok else f'install Python {wanted} or later',
+        True,
+    )
 
 
 def _module(module: str, package: str, advice: str, *, required: bool) -> Check:
@@ -124,7 +164,7 @@ def _module(module: str, package: str, advice: str, *, required: bool) -> Check:
         return Check(package, False, 'not installed', advice, required)
     try:
         importlib.import_module(module)
-    except Exception as error:      # a broken installation raises whatever it likes
+    except Exception as error:  # a broken installation raises whatever it likes
         return Check(package, False, f'cannot be imported: {_words(error)}', advice, required)
     return Check(package, True, _version(package), '', required)
 
@@ -132,7 +172,7 @@ def _module(module: str, package: str, advice: str, *, required: bool) -> Check:
 def _version(package: str) -> str:
     try:
         return metadata.version(package)
-    except metadata.PackageNotFoundError:       # not put there by pip
+    except metadata.PackageNotFoundError:  # not put there by pip
         return 'installed'
 
 
@@ -152,14 +192,24 @@ def _environment() -> Iterator[Check]:
     profile = os.environ.get(PROFILE)
     if profile:
         there = os.path.isfile(profile)
-        yield Check('Fast DDS profile', there, profile if there else f'{profile} does not exist',
-                    '' if there else f'correct or unset {PROFILE}')
+        yield Check(
+            'Fast DDS profile',
+            there,
+            profile if there else f'{profile} does not exist',
+            '' if there else f'correct or unset {PROFILE}',
+        )
     else:
-        yield Check('Fast DDS profile', True, f'{PROFILE} is not set: nodes started by hand may '
-                    'take 3 s to find each other (demo sets it)')
-    for name, otherwise in (('ROS_DISTRO', 'not set: no ROS set-up file was sourced'),
-                            ('AMENT_PREFIX_PATH', f'not set: {sys.prefix} is used'),
-                            ('ROS_DOMAIN_ID', 'not set: domain 0 is used')):
+        yield Check(
+            'Fast DDS profile',
+            True,
+            f'{PROFILE} is not set: nodes started by hand may '
+            'take 3 s to find each other (demo sets it)',
+        )
+    for name, otherwise in (
+        ('ROS_DISTRO', 'not set: no ROS set-up file was sourced'),
+        ('AMENT_PREFIX_PATH', f'not set: {sys.prefix} is used'),
+        ('ROS_DOMAIN_ID', 'not set: domain 0 is used'),
+    ):
         yield Check(name, True, os.environ.get(name) or otherwise)
 
 
@@ -167,24 +217,42 @@ def _graph(listen: float, namespace: str) -> Iterator[Check]:
     """The middleware, and whether plots, own ship and tracks are published."""
     try:
         listener = subprocess.run(
-            [sys.executable, '-m', f'{__package__.rpartition(".")[0]}.nodes.graph', str(listen),
-             namespace], capture_output=True, text=True, timeout=listen + START_S)
+            [
+                sys.executable,
+                '-m',
+                f'{__package__.rpartition(".")[0]}.nodes.graph',
+                str(listen),
+                namespace,
+            ],
+            capture_output=True,
+            text=True,
+            timeout=listen + START_S,
+        )
         seen = json.loads(listener.stdout)
     except subprocess.TimeoutExpired:
         seen, why = None, f'no answer in {listen + START_S:g} s'
     except json.JSONDecodeError:
         seen, why = None, _last_line(listener.stderr) or f'exit code {listener.returncode}'
     if seen is None:
-        yield Check('ROS middleware', False, f'does not start: {why}',
-                    f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
-                    f"({os.environ.get('RMW_IMPLEMENTATION') or 'not set'}) and ROS_DOMAIN_ID")
+        yield Check(
+            'ROS middleware',
+            False,
+            f'does not start: {why}',
+            f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
+            f'({os.environ.get("RMW_IMPLEMENTATION") or "not set"}) and ROS_DOMAIN_ID',
+        )
         return
     yield Check('ROS middleware', True, seen['middleware'])
-    yield Check('nodes running', bool(seen['nodes']), ', '.join(seen['nodes']) or 'none',
-                '' if seen['nodes'] else 'try: marine_tracker demo')
+    yield Check(
+        'nodes running',
+        bool(seen['nodes']),
+        ', '.join(seen['nodes']) or 'none',
+        '' if seen['nodes'] else 'try: marine_tracker demo',
+    )
     for topic, (publishers, subscribers) in seen['topics'].items():
-        what, start = next((about for name, about in STARTERS.items()
-                            if topic.endswith(f'/{name}')), PLOTS)
+        what, start = next(
+            (about for name, about in STARTERS.items() if topic.endswith(f'/{name}')), PLOTS
+        )
         if publishers:
             yield Check(topic, True, f'{publishers} publish, {subscribers} listen')
         else:

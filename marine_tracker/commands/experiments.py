@@ -15,14 +15,21 @@ def add_arguments(parser) -> None:
     names = parser.add_subparsers(title='experiments', metavar='NAME', required=True)
     for name, experiment in EXPERIMENTS.items():
         sub = names.add_parser(name, help=experiment.HELP, description=experiment.__doc__)
-        sub.add_argument('--runs', type=int, default=experiment.RUNS, metavar='N',
-                         help=f'Monte Carlo runs (default {experiment.RUNS})')
+        sub.add_argument(
+            '--runs',
+            type=int,
+            default=experiment.RUNS,
+            metavar='N',
+            help=f'Monte Carlo runs (default {experiment.RUNS})',
+        )
         sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
         for option, about in _options(experiment).items():
             sub.add_argument(f'--{option}', **about)
-        sub.add_argument('--pictures', metavar='FOLDER',
-                         help='also draw its pictures, if it has any, into this folder '
-                              '(needs matplotlib)')
+        sub.add_argument(
+            '--pictures',
+            metavar='FOLDER',
+            help='also draw its pictures, if it has any, into this folder (needs matplotlib)',
+        )
         report.add_arguments(sub)
         sub.set_defaults(experiment=name)
 
@@ -45,5 +52,10 @@ def run(args) -> int:
         for file in draw(args.pictures, found.pictures):
             print(f'drawn: {file}', file=sys.stderr)
     title = f'{args.experiment}: {args.runs} runs, seed {args.seed}'
-    return report.publish(title, found.figures, args.json, {
-        'experiment': args.experiment, 'runs': args.runs, 'seed': args.seed}, found.claims)
+    return report.publish(
+        title,
+        found.figures,
+        args.json,
+        {'experiment': args.experiment, 'runs': args.runs, 'seed': args.seed},
+        found.claims,
+    )

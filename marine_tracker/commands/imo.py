@@ -32,20 +32,32 @@ ALL = ('gwnn', 'cs_kalman', 'imm')
 
 def add_arguments(parser) -> None:
     """The command line of `imo`."""
-    parser.add_argument('--runs', type=int, default=1000, metavar='N',
-                        help='Monte Carlo runs (default 1000)')
-    parser.add_argument('--estimator', choices=[*sorted(ESTIMATORS), 'all'],
-                        default=TrackerParameters().estimator,
-                        help=f'filter of the tracker, or all of {", ".join(ALL)} on the same plots '
-                             '(default %(default)s)')
-    parser.add_argument('--part', choices=PARTS, action='append',
-                        help='do this part only; may be given again')
-    parser.add_argument('--html', metavar='DIR',
-                        help='also write the report as a page with pictures (needs matplotlib)')
+    parser.add_argument(
+        '--runs', type=int, default=1000, metavar='N', help='Monte Carlo runs (default 1000)'
+    )
+    parser.add_argument(
+        '--estimator',
+        choices=[*sorted(ESTIMATORS), 'all'],
+        default=TrackerParameters().estimator,
+        help=f'filter of the tracker, or all of {", ".join(ALL)} on the same plots '
+        '(default %(default)s)',
+    )
+    parser.add_argument(
+        '--part', choices=PARTS, action='append', help='do this part only; may be given again'
+    )
+    parser.add_argument(
+        '--html',
+        metavar='DIR',
+        help='also write the report as a page with pictures (needs matplotlib)',
+    )
     parser.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
-    parser.add_argument('--processes', type=int, default=os.cpu_count() or 1, metavar='N',
-                        help='processes at once; they change nothing but the time '
-                             '(default %(default)s)')
+    parser.add_argument(
+        '--processes',
+        type=int,
+        default=os.cpu_count() or 1,
+        metavar='N',
+        help='processes at once; they change nothing but the time (default %(default)s)',
+    )
     report.add_arguments(parser)
 
 
@@ -57,12 +69,16 @@ def run(args) -> int:
     estimators = ALL if args.estimator == 'all' else (args.estimator,)
     parts = [part for part in PARTS if part in (args.part or PARTS)]
     results = measure(estimators, parts, args.runs, args.seed, args.processes)
-    title = (f'IMO test conditions, {", ".join(estimators)}: {args.runs} runs, seed {args.seed}')
+    title = f'IMO test conditions, {", ".join(estimators)}: {args.runs} runs, seed {args.seed}'
     if args.html:
         written = page.write(args.html, results, title, args.seed)
         print(f'written: {written}', file=sys.stderr)
-    return report.publish(title, figures.figures(results), args.json, {
-        'estimators': estimators, 'parts': parts, 'runs': args.runs, 'seed': args.seed})
+    return report.publish(
+        title,
+        figures.figures(results),
+        args.json,
+        {'estimators': estimators, 'parts': parts, 'runs': args.runs, 'seed': args.seed},
+    )
 
 
 def measure(estimators, parts, runs, seed, processes) -> figures.Results:
@@ -72,26 +88,36 @@ def measure(estimators, parts, runs, seed, processes) -> figures.Results:
         keys = [(minutes, number) for minutes in MINUTES for number in A823[minutes]]
         with progress_bar('accuracy') as progress:
             outcomes = accuracy.run(
-                [a823_trial(number, 60.0 * minutes) for minutes, number in keys], estimators, runs,
-                seed, progress, processes)
+                [a823_trial(number, 60.0 * minutes) for minutes, number in keys],
+                estimators,
+                runs,
+                seed,
+                progress,
+                processes,
+            )
         found = found._replace(steady=dict(zip(keys, outcomes)))
     if 'manoeuvres' in parts:
         numbers = list(A823[3])
         trials = [trial for number in numbers for trial in manoeuvres.own_turns(number)]
         with progress_bar('own ship turns') as progress:
-            outcomes = accuracy.run(trials, estimators, -(-runs // 4), seed + 1, progress,
-                                           processes)
+            outcomes = accuracy.run(
+                trials, estimators, -(-runs // 4), seed + 1, progress, processes
+            )
         with progress_bar('targets turn') as progress:
             turns = manoeuvres.target_turns(estimators, runs, seed, progress, processes)
-        found = found._replace(turns=turns, own_turns={
-            number: Outcome(one.truth, np.concatenate([one.found, other.found]))
-            for number, one, other in zip(numbers, outcomes[::2], outcomes[1::2])})
+        found = found._replace(
+            turns=turns,
+            own_turns={
+                number: Outcome(one.truth, np.concatenate([one.found, other.found]))
+                for number, one, other in zip(numbers, outcomes[::2], outcomes[1::2])
+            },
+        )
     if 'encounters' in parts:
         with progress_bar('encounters') as progress:
-            found = found._replace(encounters=encounters.run(
-                estimators, -(-runs // 100), seed, progress, processes))
+            found = found._replace(
+                encounters=encounters.run(estimators, -(-runs // 100), seed, progress, processes)
+            )
     if 'loss' in parts:
         with progress_bar('loss') as progress:
-            found = found._replace(kept=loss.run(estimators, runs, seed, progress,
-                                                         processes))
+            found = found._replace(kept=loss.run(estimators, runs, seed, progress, processes))
     return found

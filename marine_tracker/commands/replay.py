@@ -47,11 +47,19 @@ class Summary(NamedTuple):
 
 def add_arguments(parser) -> None:
     """The command line of `replay`."""
-    parser.add_argument('source', metavar='SOURCE', nargs='+',
-                        help='folder of a recording, name of a shipped scenario, or scenario file; '
-                             'several of one scene, each by a radar of its own, are fused')
-    parser.add_argument('--out', metavar='TRACKS.csv', required=True,
-                        help='track file to write: one row a track and scan; - for standard output')
+    parser.add_argument(
+        'source',
+        metavar='SOURCE',
+        nargs='+',
+        help='folder of a recording, name of a shipped scenario, or scenario file; '
+        'several of one scene, each by a radar of its own, are fused',
+    )
+    parser.add_argument(
+        '--out',
+        metavar='TRACKS.csv',
+        required=True,
+        help='track file to write: one row a track and scan; - for standard output',
+    )
     parser.add_argument('--seed', type=int, default=1, help='seed of a scenario (default: 1)')
     tracker_options.add_arguments(parser)
 
@@ -69,11 +77,16 @@ def run(args) -> int:
     else:
         with open(args.out, 'w', newline='') as file:
             summary = write_tracks(tracker, scans, file)
-    print(f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '
-          f'{summary.cpu_ms:.2f} ms CPU a scan', file=sys.stderr if args.out == '-' else sys.stdout)
+    print(
+        f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '
+        f'{summary.cpu_ms:.2f} ms CPU a scan',
+        file=sys.stderr if args.out == '-' else sys.stdout,
+    )
     if tracker.parameters.estimator in WANT_DOPPLER and not summary.doppler:
-        print('warning: the plots tell no radial speeds, which '
-              f'{tracker.parameters.estimator} wants', file=sys.stderr)
+        print(
+            f'warning: the plots tell no radial speeds, which {tracker.parameters.estimator} wants',
+            file=sys.stderr,
+        )
     return 0
 
 
@@ -101,9 +114,11 @@ def fuse(names: Sequence[str], seed: int = 1) -> Source:
         return sources[0]
     radars = [f'radar_{k}' for k in range(1, len(sources) + 1)]
     totals = [source.total for source in sources if source.total is not None]
-    return Source(enumerate(merged(*((scan for _, scan in source.scans) for source in sources))),
-                  sum(totals) if len(totals) == len(sources) else None,
-                  fused([source.tracker_parameters for source in sources], radars))
+    return Source(
+        enumerate(merged(*((scan for _, scan in source.scans) for source in sources))),
+        sum(totals) if len(totals) == len(sources) else None,
+        fused([source.tracker_parameters for source in sources], radars),
+    )
 
 
 def write_tracks(tracker: Tracker, scans: Iterable[tuple[int, Scan]], file) -> Summary:
@@ -120,21 +135,30 @@ def write_tracks(tracker: Tracker, scans: Iterable[tuple[int, Scan]], file) -> S
         cpu += time.process_time() - began
         tracks = report.tracks
         track_file.write_scan(
-            file, number, estimate, tracks.id, names[tracks.status], report.predicted, report.plot,
-            scan.own_ship, tracker.parameters.estimator)
+            file,
+            number,
+            estimate,
+            tracks.id,
+            names[tracks.status],
+            report.predicted,
+            report.plot,
+            scan.own_ship,
+            tracker.parameters.estimator,
+        )
         confirmed.update(tracks.id[tracks.status == CONFIRMED].tolist())
         count += 1
         doppler |= scan.plots.radial_speed is not None
     return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1), doppler)
 
 
-def _with_progress(scans: Iterable[tuple[int, Scan]], total: int | None
-                   ) -> Iterator[tuple[int, Scan]]:
+def _with_progress(
+    scans: Iterable[tuple[int, Scan]], total: int | None
+) -> Iterator[tuple[int, Scan]]:
     """The same scans, with a progress bar where a person watches."""
     if not sys.stderr.isatty():
         yield from scans
         return
     from rich.console import Console
     from rich.progress import track
-    yield from track(scans, 'tracking', total=total, console=Console(stderr=True),
-                     transient=True)
+
+    yield from track(scans, 'tracking', total=total, console=Console(stderr=True), transient=True)

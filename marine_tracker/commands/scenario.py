@@ -44,8 +44,14 @@ def _list(args):
     rows = []
     for name in scenario.shipped():
         loaded = scenario.load(name)
-        rows.append((name, f'{len(loaded.fleet.names)}', f'{loaded.duration / 60:g} min',
-                     loaded.description))
+        rows.append(
+            (
+                name,
+                f'{len(loaded.fleet.names)}',
+                f'{loaded.duration / 60:g} min',
+                loaded.description,
+            )
+        )
     _print_table(('scenario', 'targets', 'duration', ''), rows, '<><<')
     return 0
 
@@ -69,10 +75,14 @@ def _show(args):
     for line in _conditions(loaded):
         print(f'  {line}')
     print()
-    _print_table(('no', 'target', 'range NM', 'bearing', 'course', 'speed kn', 'closest NM',
-                  'at min'), _target_rows(loaded), '><>>>>>>')
+    _print_table(
+        ('no', 'target', 'range NM', 'bearing', 'course', 'speed kn', 'closest NM', 'at min'),
+        _target_rows(loaded),
+        '><>>>>>>',
+    )
     if args.plot:
         from .scenario_chart import draw
+
         draw(loaded, args.plot)
         print(f'\ndrawn: {args.plot}')
     return 0
@@ -82,9 +92,13 @@ def _write(args):
     loaded = scenario.load(args.scenario)
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
-    csv_folder.write(args.folder, f'{loaded.name}, seed {args.seed}',
-                     radar.simulate(loaded, args.seed), loaded.tracker_parameters(),
-                     _notes(loaded))
+    csv_folder.write(
+        args.folder,
+        f'{loaded.name}, seed {args.seed}',
+        radar.simulate(loaded, args.seed),
+        loaded.tracker_parameters(),
+        _notes(loaded),
+    )
     print(f'{loaded.name}: {loaded.scans} scans written to {args.folder}')
     return 0
 
@@ -103,19 +117,29 @@ def _conditions(loaded):
     about, false = loaded.radar, loaded.clutter
     own = loaded.own_ship_at(0.0)
     yield f'{loaded.duration / 60:g} min, {loaded.scans} scans at {about.rotation:g} rpm'
-    yield (f'own ship: course {_course(own.velocity[0])}, '
-           f'{np.hypot(*own.velocity[0]) / KNOT:.1f} kn')
-    yield (f'radar: {about.blind_range:.0f} m to {about.max_range / NAUTICAL_MILE:g} NM; detection '
-           f'{about.pd_near:g} near, {about.pd_far:g} far; resolves {about.range_resolution:g} m, '
-           f'{np.degrees(about.beam_width):g} deg')
+    yield (
+        f'own ship: course {_course(own.velocity[0])}, {np.hypot(*own.velocity[0]) / KNOT:.1f} kn'
+    )
+    yield (
+        f'radar: {about.blind_range:.0f} m to {about.max_range / NAUTICAL_MILE:g} NM; detection '
+        f'{about.pd_near:g} near, {about.pd_far:g} far; resolves {about.range_resolution:g} m, '
+        f'{np.degrees(about.beam_width):g} deg'
+    )
     if about.sensor_errors == 'imo':
         yield 'errors: all sensor errors of the IMO test conditions'
     else:
-        yield (f'noise: {about.range_sigma:g} m, {np.degrees(about.bearing_sigma):g} deg; bias '
-               f'{about.range_bias:g} m, {np.degrees(about.bearing_bias):g} deg')
-    yield (f'false plots a scan: {false.uniform:g} everywhere'
-           + (f', {false.sea:g} near own ship ({false.sea_scale / NAUTICAL_MILE:.2g} NM)'
-              if false.sea else ''))
+        yield (
+            f'noise: {about.range_sigma:g} m, {np.degrees(about.bearing_sigma):g} deg; bias '
+            f'{about.range_bias:g} m, {np.degrees(about.bearing_bias):g} deg'
+        )
+    yield (
+        f'false plots a scan: {false.uniform:g} everywhere'
+        + (
+            f', {false.sea:g} near own ship ({false.sea_scale / NAUTICAL_MILE:.2g} NM)'
+            if false.sea
+            else ''
+        )
+    )
     if loaded.in_cells:
         hulls = np.isfinite(loaded.fleet.hulls.beam).sum()
         yield f'seen as cells: {hulls} hulls, {len(loaded.shores)} shores'
@@ -136,13 +160,20 @@ def _target_rows(loaded):
             first[target[row]] = time
             velocity = take(truth, row).velocity
             rows[target[row]] = (
-                f'{truth.target[row]}', loaded.fleet.names[target[row]],
-                f'{distance[row] / NAUTICAL_MILE:.2f}', f'{np.degrees(bearing[row]):05.1f}',
-                _course(velocity), f'{np.hypot(*velocity) / KNOT:.1f}')
+                f'{truth.target[row]}',
+                loaded.fleet.names[target[row]],
+                f'{distance[row] / NAUTICAL_MILE:.2f}',
+                f'{np.degrees(bearing[row]):05.1f}',
+                _course(velocity),
+                f'{np.hypot(*velocity) / KNOT:.1f}',
+            )
         nearer = distance < closest[target]
         closest[target[nearer]], when[target[nearer]] = distance[nearer], time
-    return [(*row, f'{near / NAUTICAL_MILE:.2f}', f'{time / 60:.1f}')
-            for row, near, time in zip(rows, closest, when) if row]
+    return [
+        (*row, f'{near / NAUTICAL_MILE:.2f}', f'{time / 60:.1f}')
+        for row, near, time in zip(rows, closest, when)
+        if row
+    ]
 
 
 def _course(velocity):
@@ -153,5 +184,8 @@ def _course(velocity):
 def _print_table(head, rows, align):
     width = [max(len(row[k]) for row in [head, *rows]) for k in range(len(head))]
     for row in [head, *rows]:
-        print('  '.join(f'{cell:{side}{size}}' for cell, side, size in zip(row, align, width)
-                        ).rstrip())
+        print(
+            '  '.join(
+                f'{cell:{side}{size}}' for cell, side, size in zip(row, align, width)
+            ).rstrip()
+        )

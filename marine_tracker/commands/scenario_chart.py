@@ -26,27 +26,45 @@ def draw(loaded, file):
         ways[truth.target - 1, step] = truth.position / NAUTICAL_MILE
 
     figure = Figure(figsize=(9, 9), layout='constrained')
-    axes = figure.add_subplot(aspect='equal', xlabel='east, NM', ylabel='north, NM',
-                              title=f'{loaded.name} ({loaded.duration / 60:g} min)')
+    axes = figure.add_subplot(
+        aspect='equal',
+        xlabel='east, NM',
+        ylabel='north, NM',
+        title=f'{loaded.name} ({loaded.duration / 60:g} min)',
+    )
     reach = loaded.radar.max_range / NAUTICAL_MILE
     around = np.linspace(0, 2 * np.pi, 361)
     for centre, style in ((own[0], '-'), (own[-1], ':')):
-        axes.plot(centre[0] + reach * np.sin(around), centre[1] + reach * np.cos(around), style,
-                  color='0.8', linewidth=1)
+        axes.plot(
+            centre[0] + reach * np.sin(around),
+            centre[1] + reach * np.cos(around),
+            style,
+            color='0.8',
+            linewidth=1,
+        )
     for number, way in enumerate(ways, 1):
         known = np.flatnonzero(~np.isnan(way[:, 0]))
         if not len(known):
             continue
-        line, = axes.plot(*way.T, linewidth=1.2)
+        (line,) = axes.plot(*way.T, linewidth=1.2)
         axes.plot(*way[known[0]], 'o', color=line.get_color(), markersize=4)
-        axes.annotate(f'{number}', way[known[0]], xytext=(4, 4), textcoords='offset points',
-                      annotation_clip=True, fontsize=7, color=line.get_color())
+        axes.annotate(
+            f'{number}',
+            way[known[0]],
+            xytext=(4, 4),
+            textcoords='offset points',
+            annotation_clip=True,
+            fontsize=7,
+            color=line.get_color(),
+        )
     for shore in loaded.shores:
         axes.plot(*(shore.corners.T / NAUTICAL_MILE), color='0.45', linewidth=2)
     axes.plot(*own.T, color='black', linewidth=2)
     axes.plot(*own[0], 'o', color='black', markersize=7, fillstyle='none')
     low, high = (edge(own[[0, -1]], axis=0) for edge in (np.min, np.max))
-    axes.set(xlim=(low[0] - 1.03 * reach, high[0] + 1.03 * reach),
-             ylim=(low[1] - 1.03 * reach, high[1] + 1.03 * reach))
+    axes.set(
+        xlim=(low[0] - 1.03 * reach, high[0] + 1.03 * reach),
+        ylim=(low[1] - 1.03 * reach, high[1] + 1.03 * reach),
+    )
     axes.grid(color='0.92')
     figure.savefig(file, dpi=110)

@@ -23,33 +23,66 @@ def add_arguments(parser) -> None:
     """The command line of `score`."""
     parser.add_argument('folder', metavar='FOLDER', help='recording with truth.csv')
     parser.add_argument('tracks', metavar='TRACKS.csv', nargs='+', help='track file to score')
-    parser.add_argument('--cutoff', type=float, metavar='M',
-                        help='a track farther from a target is not on it, m (default: '
-                             f'notes.json, else {metrics.CUTOFF:g})')
-    parser.add_argument('--bias-deg', type=float, metavar='DEG',
-                        help='bearing bias of the tracks, deg (default: notes.json, else 0)')
-    parser.add_argument('--lag-s', type=float, metavar='S',
-                        help='how late plots are, s (default: notes.json, else 0)')
-    parser.add_argument('--ais', metavar='FILE', type=Path,
-                        help='score against the AIS reports in this CSV file: columns '
-                             + ', '.join(ais.COLUMNS))
-    parser.add_argument('--ais-start-s', type=float, metavar='S',
-                        help="the AIS file's time at the recording's time 0 (default: notes.json, "
-                             'else 0)')
-    parser.add_argument('--ais-max-gap-s', type=float, metavar='S', default=ais_score.MAX_GAP,
-                        help='between reports farther apart a vessel is not known (default '
-                             '%(default)g)')
-    parser.add_argument('--origin-deg', type=float, nargs=2, metavar=('LAT', 'LON'),
-                        help="of the frame's zero (default: notes.json)")
+    parser.add_argument(
+        '--cutoff',
+        type=float,
+        metavar='M',
+        help='a track farther from a target is not on it, m (default: '
+        f'notes.json, else {metrics.CUTOFF:g})',
+    )
+    parser.add_argument(
+        '--bias-deg',
+        type=float,
+        metavar='DEG',
+        help='bearing bias of the tracks, deg (default: notes.json, else 0)',
+    )
+    parser.add_argument(
+        '--lag-s',
+        type=float,
+        metavar='S',
+        help='how late plots are, s (default: notes.json, else 0)',
+    )
+    parser.add_argument(
+        '--ais',
+        metavar='FILE',
+        type=Path,
+        help='score against the AIS reports in this CSV file: columns ' + ', '.join(ais.COLUMNS),
+    )
+    parser.add_argument(
+        '--ais-start-s',
+        type=float,
+        metavar='S',
+        help="the AIS file's time at the recording's time 0 (default: notes.json, else 0)",
+    )
+    parser.add_argument(
+        '--ais-max-gap-s',
+        type=float,
+        metavar='S',
+        default=ais_score.MAX_GAP,
+        help='between reports farther apart a vessel is not known (default %(default)g)',
+    )
+    parser.add_argument(
+        '--origin-deg',
+        type=float,
+        nargs=2,
+        metavar=('LAT', 'LON'),
+        help="of the frame's zero (default: notes.json)",
+    )
     report.add_arguments(parser)
-    lines = [f'  {name:27s} {text}{f", {unit}" if unit else ""}'
-             for name, (unit, text) in metrics.FIGURES.items()]
+    lines = [
+        f'  {name:27s} {text}{f", {unit}" if unit else ""}'
+        for name, (unit, text) in metrics.FIGURES.items()
+    ]
     lines += ['', 'and for each target N:']
-    lines += [f'  target_N_{name:18s} {text}{f", {unit}" if unit else ""}'
-              for name, (unit, text) in metrics.TARGET_FIGURES.items()]
+    lines += [
+        f'  target_N_{name:18s} {text}{f", {unit}" if unit else ""}'
+        for name, (unit, text) in metrics.TARGET_FIGURES.items()
+    ]
     lines += ['', 'with --ais instead:']
-    lines += [f'  {name:27s} {text}{f", {unit}" if unit else ""}'
-              for name, (unit, text) in ais_score.FIGURES.items()]
+    lines += [
+        f'  {name:27s} {text}{f", {unit}" if unit else ""}'
+        for name, (unit, text) in ais_score.FIGURES.items()
+    ]
     parser.epilog = 'figures:\n' + '\n'.join(lines)
 
 
@@ -60,25 +93,47 @@ def run(args) -> int:
         return _against_ais(args, recording)
     if len(args.tracks) > 1:
         raise ValueError(f'{len(args.tracks)} track files are given; without --ais it must be one')
-    score = metrics.score(recording, track_file.read(args.tracks[0]), args.cutoff, args.bias_deg,
-                          args.lag_s)
-    figures = [report.Figure(name, value, metrics.FIGURES[name][0])
-               for name, value in score.figures.items()]
-    figures += [report.Figure(f'target_{target}_{name}', value, metrics.TARGET_FIGURES[name][0])
-                for target, values in score.targets.items() for name, value in values.items()]
+    score = metrics.score(
+        recording, track_file.read(args.tracks[0]), args.cutoff, args.bias_deg, args.lag_s
+    )
+    figures = [
+        report.Figure(name, value, metrics.FIGURES[name][0])
+        for name, value in score.figures.items()
+    ]
+    figures += [
+        report.Figure(f'target_{target}_{name}', value, metrics.TARGET_FIGURES[name][0])
+        for target, values in score.targets.items()
+        for name, value in values.items()
+    ]
     title = f'{args.tracks[0]} on {recording.name}'
     if score.counts_strangers:
         title += ' (false tracks include those on vessels and landmarks without truth)'
-    return report.publish(title, figures, args.json, {
-        'recording': recording.name, 'false_counts_uncooperative': score.counts_strangers})
+    return report.publish(
+        title,
+        figures,
+        args.json,
+        {'recording': recording.name, 'false_counts_uncooperative': score.counts_strangers},
+    )
 
 
 def _against_ais(args, recording) -> int:
     found = ais_score.score(
-        recording, [track_file.read(file) for file in args.tracks], args.ais, args.origin_deg,
-        args.ais_start_s, args.cutoff, args.ais_max_gap_s)
-    figures = [report.Figure(name, value, ais_score.FIGURES[name][0], against='AIS')
-               for name, value in found.items()]
+        recording,
+        [track_file.read(file) for file in args.tracks],
+        args.ais,
+        args.origin_deg,
+        args.ais_start_s,
+        args.cutoff,
+        args.ais_max_gap_s,
+    )
+    figures = [
+        report.Figure(name, value, ais_score.FIGURES[name][0], against='AIS')
+        for name, value in found.items()
+    ]
     what = args.tracks[0] if len(args.tracks) == 1 else f'{len(args.tracks)} track files'
-    return report.publish(f'{what} on {recording.name}', figures, args.json, {
-        'recording': recording.name, 'ais': str(args.ais)})
+    return report.publish(
+        f'{what} on {recording.name}',
+        figures,
+        args.json,
+        {'recording': recording.name, 'ais': str(args.ais)},
+    )

@@ -8,12 +8,21 @@ from ..parameters import TrackerParameters, from_mapping, read_yaml_mapping
 
 def add_arguments(parser) -> None:
     """--estimator, --parameters and --set."""
-    parser.add_argument('--estimator', choices=sorted(ESTIMATORS),
-                        help='filter to use (default: the shipped one)')
-    parser.add_argument('--parameters', metavar='FILE.yaml',
-                        help="tracker parameters, as `name: value` lines or as a node's YAML")
-    parser.add_argument('--set', metavar='NAME=VALUE', action='append', default=[],
-                        help='one tracker parameter; may be given again')
+    parser.add_argument(
+        '--estimator', choices=sorted(ESTIMATORS), help='filter to use (default: the shipped one)'
+    )
+    parser.add_argument(
+        '--parameters',
+        metavar='FILE.yaml',
+        help="tracker parameters, as `name: value` lines or as a node's YAML",
+    )
+    parser.add_argument(
+        '--set',
+        metavar='NAME=VALUE',
+        action='append',
+        default=[],
+        help='one tracker parameter; may be given again',
+    )
 
 
 def parameters(args, from_source: dict) -> TrackerParameters:
@@ -37,12 +46,16 @@ def parameters(args, from_source: dict) -> TrackerParameters:
 def _read(path) -> dict:
     """A flat mapping, or what `ros__parameters` holds for the tracker in a node's YAML."""
     values = read_yaml_mapping(path)
-    of_nodes = {name: node['ros__parameters'] for name, node in values.items()
-                if isinstance(node, dict) and 'ros__parameters' in node}
+    of_nodes = {
+        name: node['ros__parameters']
+        for name, node in values.items()
+        if isinstance(node, dict) and 'ros__parameters' in node
+    }
     if not of_nodes:
         return values
     mine = [name for name in of_nodes if name.strip('/*').split('/')[-1] in ('', 'tracker')]
     if not mine:
-        raise ValueError(f'{path} has no parameters of the tracker; it has those of '
-                         f'{", ".join(of_nodes)}')
+        raise ValueError(
+            f'{path} has no parameters of the tracker; it has those of {", ".join(of_nodes)}'
+        )
     return {key: value for name in mine for key, value in (of_nodes[name] or {}).items()}

@@ -29,46 +29,82 @@ It learns what share of the other filter's process noise the estimating one is t
 of samples: no tracks are drawn, some seconds suffice. The shipped weights are those of seed 1. A
 .json file beside the weights tells how they came about.
 """
-STAGES = {'tracks': 'making tracks', 'fusion': 'training to weigh the filters',
-          'spread': 'training to know the error'}
+STAGES = {
+    'tracks': 'making tracks',
+    'fusion': 'training to weigh the filters',
+    'spread': 'training to know the error',
+}
 
 
 def add_arguments(parser) -> None:
     """The command line of `train`."""
     names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
     _add_gwnn(names.add_parser('gwnn', help='the wavelet network of `gwnn`', description=GWNN))
-    _add_rough(names.add_parser('rough_nn', help='the networks of `cs_rough_nn` and `cs_bp_nn`',
-                                description=ROUGH))
+    _add_rough(
+        names.add_parser(
+            'rough_nn', help='the networks of `cs_rough_nn` and `cs_bp_nn`', description=ROUGH
+        )
+    )
 
 
 def _add_rough(sub) -> None:
-    sub.add_argument('--network', choices=tuple(rough_weights.NEURONS), default='rough',
-                     help='the rough network, or the plain one (default %(default)s)')
+    sub.add_argument(
+        '--network',
+        choices=tuple(rough_weights.NEURONS),
+        default='rough',
+        help='the rough network, or the plain one (default %(default)s)',
+    )
     sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
-    sub.add_argument('--out', metavar='FILE',
-                     help='where the weights go (default cs_NETWORK_nn.npz)')
+    sub.add_argument(
+        '--out', metavar='FILE', help='where the weights go (default cs_NETWORK_nn.npz)'
+    )
     report.add_arguments(sub)
     sub.set_defaults(train=_train_rough)
 
 
 def _add_gwnn(sub) -> None:
-    sub.add_argument('--vessel-class', choices=VESSEL_CLASSES, default='ship',
-                     help='whose filters are weighed, and whose motion (default %(default)s)')
-    sub.add_argument('--kinds', metavar='FILE', type=Path,
-                     help='how the vessels move, instead of as the class does')
-    sub.add_argument('--scenario', metavar='NAME|FILE',
-                     help='whose radar it is for, and whose targets to learn besides')
+    sub.add_argument(
+        '--vessel-class',
+        choices=VESSEL_CLASSES,
+        default='ship',
+        help='whose filters are weighed, and whose motion (default %(default)s)',
+    )
+    sub.add_argument(
+        '--kinds',
+        metavar='FILE',
+        type=Path,
+        help='how the vessels move, instead of as the class does',
+    )
+    sub.add_argument(
+        '--scenario',
+        metavar='NAME|FILE',
+        help='whose radar it is for, and whose targets to learn besides',
+    )
     sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
-    sub.add_argument('--out', default='gwnn.npz', metavar='FILE',
-                     help='where the weights go (default gwnn.npz)')
-    sub.add_argument('--tracks', type=int, default=gwnn_training.CHUNKS * gwnn_samples.CHUNK,
-                     metavar='N', help='tracks to learn from, rounded up to full lots of '
-                     f'{gwnn_samples.CHUNK} (default %(default)s)')
-    sub.add_argument('--steps', type=int, default=gwnn_training.STEPS, metavar='N',
-                     help='steps of the training (default %(default)s)')
-    sub.add_argument('--units', choices=(wavelet_network.WAVELET, wavelet_network.TANH),
-                     default=wavelet_network.WAVELET,
-                     help='hidden units; plain ones are for comparison (default %(default)s)')
+    sub.add_argument(
+        '--out', default='gwnn.npz', metavar='FILE', help='where the weights go (default gwnn.npz)'
+    )
+    sub.add_argument(
+        '--tracks',
+        type=int,
+        default=gwnn_training.CHUNKS * gwnn_samples.CHUNK,
+        metavar='N',
+        help='tracks to learn from, rounded up to full lots of '
+        f'{gwnn_samples.CHUNK} (default %(default)s)',
+    )
+    sub.add_argument(
+        '--steps',
+        type=int,
+        default=gwnn_training.STEPS,
+        metavar='N',
+        help='steps of the training (default %(default)s)',
+    )
+    sub.add_argument(
+        '--units',
+        choices=(wavelet_network.WAVELET, wavelet_network.TANH),
+        default=wavelet_network.WAVELET,
+        help='hidden units; plain ones are for comparison (default %(default)s)',
+    )
     report.add_arguments(sub)
     sub.set_defaults(train=_train_gwnn)
 
@@ -100,10 +136,16 @@ def _train_rough(args) -> int:
         weights = rough_training.train(args.network, args.seed, show)
     manifest = rough_weights.save(out, weights)
     _describe(out, manifest)
-    figures = [report.Figure('RMS error of the share O on the samples', manifest['rms_error']),
-               report.Figure('samples', manifest['samples'])]
-    return report.publish(f'{out}: {args.network} network {manifest["layout"]}, seed {args.seed}',
-                          figures, args.json, manifest)
+    figures = [
+        report.Figure('RMS error of the share O on the samples', manifest['rms_error']),
+        report.Figure('samples', manifest['samples']),
+    ]
+    return report.publish(
+        f'{out}: {args.network} network {manifest["layout"]}, seed {args.seed}',
+        figures,
+        args.json,
+        manifest,
+    )
 
 
 def _train_gwnn(args) -> int:
@@ -115,21 +157,33 @@ def _train_gwnn(args) -> int:
     keep_freed_memory()
     checkpoint = out.with_name(out.name + '.part')
     with progress_bar(STAGES['tracks']) as show:
-        weights = gwnn_training.run(plan, checkpoint, lambda stage, done, whole: show(
-            done, whole, STAGES[stage]))
+        weights = gwnn_training.run(
+            plan, checkpoint, lambda stage, done, whole: show(done, whole, STAGES[stage])
+        )
     manifest = gwnn_weights.save(out, weights)
     _describe(out, manifest)
     checkpoint.unlink(missing_ok=True)
-    figures = [report.Figure(f'{cell}: position ratio', ratio, '', None, None, "the bank's IMM")
-               for cell, ratio in manifest['ratios'].items()]
-    return report.publish(f'{out}: {args.vessel_class}, {manifest["tracks"]} tracks, '
-                          f'{args.steps} steps, seed {args.seed}', figures, args.json, manifest)
+    figures = [
+        report.Figure(f'{cell}: position ratio', ratio, '', None, None, "the bank's IMM")
+        for cell, ratio in manifest['ratios'].items()
+    ]
+    return report.publish(
+        f'{out}: {args.vessel_class}, {manifest["tracks"]} tracks, '
+        f'{args.steps} steps, seed {args.seed}',
+        figures,
+        args.json,
+        manifest,
+    )
 
 
 def _plan(args) -> gwnn_training.Plan:
     plan = gwnn_training.plan(
-        args.vessel_class, args.seed, chunks=-(-args.tracks // gwnn_samples.CHUNK),
-        steps=args.steps, layout=gwnn_fusion.LAYOUT._replace(units=args.units))
+        args.vessel_class,
+        args.seed,
+        chunks=-(-args.tracks // gwnn_samples.CHUNK),
+        steps=args.steps,
+        layout=gwnn_fusion.LAYOUT._replace(units=args.units),
+    )
     waters = plan.waters
     if args.kinds is not None:
         waters = waters._replace(kinds=custom_traffic.read_kinds(args.kinds))

@@ -15,12 +15,15 @@ from .progress_bar import progress_bar
 
 HELP = 'search the best settings of a filter'
 TRACKS = 280
-FRESH = 10                      # times the tracks of the search
+FRESH = 10  # times the tracks of the search
 # What is tuned, and with how many evaluations by default.
-FILTERS = {'imm': ('the four-mode IMM that `gwnn` is compared with', 600),
-           'cv_cv': ('an IMM of two straight modes', 400),
-           'cv': ('one straight mode', 50), 'cs': ('CS-Kalman', 150)}
-CLEAR = 0.995                   # ratio of errors that settings better than the shipped ones have
+FILTERS = {
+    'imm': ('the four-mode IMM that `gwnn` is compared with', 600),
+    'cv_cv': ('an IMM of two straight modes', 400),
+    'cv': ('one straight mode', 50),
+    'cs': ('CS-Kalman', 150),
+}
+CLEAR = 0.995  # ratio of errors that settings better than the shipped ones have
 
 
 def add_arguments(parser) -> None:
@@ -33,16 +36,35 @@ def add_arguments(parser) -> None:
 
 
 def _add_arguments(sub, targets, evaluations):
-    sub.add_argument('--for', dest='target', choices=list(targets),
-                     default='training', help='what it is to be best at: every kind of motion and '
-                     'phase alike, or manoeuvres only (default %(default)s)')
-    sub.add_argument('--vessel-class', choices=VESSEL_CLASSES, default='ship',
-                     help='whose motion (default %(default)s)')
-    sub.add_argument('--evaluations', type=int, default=evaluations, metavar='N',
-                     help='settings to try (default %(default)s)')
-    sub.add_argument('--tracks', type=int, default=TRACKS, metavar='N',
-                     help='tracks to try each on (default %(default)s); '
-                     f'{FRESH} times as many fresh ones are judged on')
+    sub.add_argument(
+        '--for',
+        dest='target',
+        choices=list(targets),
+        default='training',
+        help='what it is to be best at: every kind of motion and '
+        'phase alike, or manoeuvres only (default %(default)s)',
+    )
+    sub.add_argument(
+        '--vessel-class',
+        choices=VESSEL_CLASSES,
+        default='ship',
+        help='whose motion (default %(default)s)',
+    )
+    sub.add_argument(
+        '--evaluations',
+        type=int,
+        default=evaluations,
+        metavar='N',
+        help='settings to try (default %(default)s)',
+    )
+    sub.add_argument(
+        '--tracks',
+        type=int,
+        default=TRACKS,
+        metavar='N',
+        help='tracks to try each on (default %(default)s); '
+        f'{FRESH} times as many fresh ones are judged on',
+    )
     sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
     report.add_arguments(sub)
 
@@ -60,25 +82,49 @@ def run(args) -> int:
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
     keep_freed_memory()
-    shipped = {f'shipped for {target}': settings
-               for target, settings in _shipped(args.filter, args.vessel_class).items()}
+    shipped = {
+        f'shipped for {target}': settings
+        for target, settings in _shipped(args.filter, args.vessel_class).items()
+    }
     rival = f'shipped for {args.target}'
     with progress_bar('trying settings') as show:
         found, seen = filter_tuning.tune(
-            args.target, args.tracks, args.evaluations, args.seed, show, args.vessel_class,
-            filter_tuning.FAMILIES[args.filter])
+            args.target,
+            args.tracks,
+            args.evaluations,
+            args.seed,
+            show,
+            args.vessel_class,
+            filter_tuning.FAMILIES[args.filter],
+        )
     fresh = filter_tuning.fresh(FRESH * args.tracks, args.seed, args.vessel_class)
-    verdict = filter_tuning.judge(found.settings, shipped, rival, args.target, seen, fresh,
-                                  args.seed)
+    verdict = filter_tuning.judge(
+        found.settings, shipped, rival, args.target, seen, fresh, args.seed
+    )
     settings = filter_tuning.as_text(found.settings)
     better = verdict.ratio.high < 1 and verdict.ratio.value < CLEAR
     claim = report.Claim(
-        rival, 'tuned as well as can be', settings,
-        'NO: on fresh tracks the settings found are clearly better; use them' if better
-        else 'nothing clearly better was found')
+        rival,
+        'tuned as well as can be',
+        settings,
+        'NO: on fresh tracks the settings found are clearly better; use them'
+        if better
+        else 'nothing clearly better was found',
+    )
     return report.publish(
         f'{args.filter} of {args.vessel_class} for {args.target}: {args.evaluations} evaluations '
-        f'on {len(seen.kind)} tracks, seed {args.seed}', verdict.figures, args.json,
-        {'filter': args.filter, 'vessel_class': args.vessel_class, 'target': args.target,
-         'evaluations': args.evaluations, 'tracks': len(seen.kind), 'seed': args.seed,
-         'settings': found.settings._asdict(), 'best': found.best}, [claim])
+        f'on {len(seen.kind)} tracks, seed {args.seed}',
+        verdict.figures,
+        args.json,
+        {
+            'filter': args.filter,
+            'vessel_class': args.vessel_class,
+            'target': args.target,
+            'evaluations': args.evaluations,
+            'tracks': len(seen.kind),
+            'seed': args.seed,
+            'settings': found.settings._asdict(),
+            'best': found.best,
+        },
+        [claim],
+    )

@@ -29,18 +29,27 @@ UNITS = ('deg', 'kn', 'NM', 'min', 'deg', 'kn')
 IN_UNITS = 1 / np.array([np.radians(1), KNOT, NAUTICAL_MILE, 60.0, np.radians(1), KNOT])
 ANGLES = np.array([True, False, False, False, True, False])
 MINUTES = (1, 3)
-NONE = np.nan                   # no limit
+NONE = np.nan  # no limit
 
 # Of A.823 by minutes of steady tracking and scenario, and of MSC.192 for any target.
 A823: dict[int, dict[int, tuple[float, ...]]] = {
-    1: {1: (11, 2.8, 1.6, NONE, NONE, NONE), 2: (7, 0.6, NONE, NONE, NONE, NONE),
-        3: (14, 2.2, 1.8, NONE, NONE, NONE), 4: (15, 1.5, 2.0, NONE, NONE, NONE)},
-    3: {1: (3.0, 0.8, 0.5, 1.0, 7.4, 1.2), 2: (2.3, 0.3, NONE, NONE, 2.8, 0.8),
-        3: (4.4, 0.9, 0.7, 1.0, 3.3, 1.0), 4: (4.6, 0.8, 0.7, 1.0, 2.6, 1.2)}}
+    1: {
+        1: (11, 2.8, 1.6, NONE, NONE, NONE),
+        2: (7, 0.6, NONE, NONE, NONE, NONE),
+        3: (14, 2.2, 1.8, NONE, NONE, NONE),
+        4: (15, 1.5, 2.0, NONE, NONE, NONE),
+    },
+    3: {
+        1: (3.0, 0.8, 0.5, 1.0, 7.4, 1.2),
+        2: (2.3, 0.3, NONE, NONE, 2.8, 0.8),
+        3: (4.4, 0.9, 0.7, 1.0, 3.3, 1.0),
+        4: (4.6, 0.8, 0.7, 1.0, 2.6, 1.2),
+    },
+}
 MSC192 = {1: (11, 1.5, 1.0, NONE, NONE, NONE), 3: (3, 0.8, 0.3, 0.5, 5, 0.5)}
-MSC192_SHARE = {1: 0.10, 3: 0.01}       # of the speed, where that is more than the limit in knots
+MSC192_SHARE = {1: 0.10, 3: 0.01}  # of the speed, where that is more than the limit in knots
 
-CHUNK = 10                      # runs a job
+CHUNK = 10  # runs a job
 
 
 class Outcome(NamedTuple):
@@ -78,18 +87,22 @@ def msc192_limits(truth, minutes: int) -> Array:
     """
     limits = np.array(MSC192[minutes], dtype=float)
     speeds = [1, 5]
-    limits[speeds] = np.maximum(limits[speeds],
-                                MSC192_SHARE[minutes] * (truth * IN_UNITS)[speeds])
+    limits[speeds] = np.maximum(limits[speeds], MSC192_SHARE[minutes] * (truth * IN_UNITS)[speeds])
     return limits
 
 
 def figures_of(position, velocity, true_velocity) -> Array:
     """FIGURES [..., 6] of relative position [..., 2] m, relative and true velocity [..., 2] m/s."""
-    return np.stack([np.arctan2(velocity[..., 0], velocity[..., 1]),
-                     np.hypot(velocity[..., 0], velocity[..., 1]),
-                     *cpa_of(position, velocity),
-                     np.arctan2(true_velocity[..., 0], true_velocity[..., 1]),
-                     np.hypot(true_velocity[..., 0], true_velocity[..., 1])], -1)
+    return np.stack(
+        [
+            np.arctan2(velocity[..., 0], velocity[..., 1]),
+            np.hypot(velocity[..., 0], velocity[..., 1]),
+            *cpa_of(position, velocity),
+            np.arctan2(true_velocity[..., 0], true_velocity[..., 1]),
+            np.hypot(true_velocity[..., 0], true_velocity[..., 1]),
+        ],
+        -1,
+    )
 
 
 def told(data: TargetData, place) -> Array:
@@ -98,9 +111,19 @@ def told(data: TargetData, place) -> Array:
         return np.full(6, np.nan)
     row = np.hypot(*(data.motion.position - data.own.position - place).T).argmin()
     approach = data.approach
-    return np.array([column[row] for column in (
-        approach.relative_course, approach.relative_speed, approach.cpa, approach.tcpa,
-        approach.course, approach.speed)])
+    return np.array(
+        [
+            column[row]
+            for column in (
+                approach.relative_course,
+                approach.relative_speed,
+                approach.cpa,
+                approach.tcpa,
+                approach.course,
+                approach.speed,
+            )
+        ]
+    )
 
 
 class AccuracyTrial(NamedTuple):
@@ -117,16 +140,20 @@ class AccuracyTrial(NamedTuple):
 def a823_trial(number: int, judged_after: float, own_turn_deg: float = 0.0) -> AccuracyTrial:
     """A scenario of A.823 judged some seconds after acquisition, or after own ship's turn."""
     moment = standard_scenarios.judged_at(judged_after, own_turn_deg)
-    return AccuracyTrial(standard_scenarios.a823(number, judged_after, own_turn_deg, moment), moment,
-                 standard_scenarios.judged_at(0.0, own_turn_deg) if own_turn_deg else 0.0)
+    return AccuracyTrial(
+        standard_scenarios.a823(number, judged_after, own_turn_deg, moment),
+        moment,
+        standard_scenarios.judged_at(0.0, own_turn_deg) if own_turn_deg else 0.0,
+    )
 
 
 def judged(trial: AccuracyTrial) -> Array:
     """The true FIGURES [6] of a trial's only target when it is judged."""
     loaded = scenario.build(trial.values, 'trial')
     truth, own = loaded.truth_at(trial.moment), loaded.own_ship_at(trial.moment)
-    return figures_of(truth.position[0] - own.position[0], truth.velocity[0] - own.velocity[0],
-                      truth.velocity[0])
+    return figures_of(
+        truth.position[0] - own.position[0], truth.velocity[0] - own.velocity[0], truth.velocity[0]
+    )
 
 
 def follow(trial: AccuracyTrial, estimators: Sequence[str], seeds: Sequence[int]) -> Array:
@@ -163,16 +190,26 @@ def fit(scans: Sequence[Scan], steady_since: float) -> Array:
     return figures_of(at - own[-1].position[-1], velocity - own_velocity, velocity)
 
 
-def run(trials: Sequence[AccuracyTrial], estimators: Sequence[str], runs: int, seed: int,
-        progress: Progress = silent, processes: int | None = None) -> list[Outcome]:
+def run(
+    trials: Sequence[AccuracyTrial],
+    estimators: Sequence[str],
+    runs: int,
+    seed: int,
+    progress: Progress = silent,
+    processes: int | None = None,
+) -> list[Outcome]:
     """Each trial `runs` times; what comes out depends on seed and runs alone."""
     work, whose = [], []
     for number, trial in enumerate(trials):
         seeds = np.random.SeedSequence([seed, number]).generate_state(runs, np.uint64).tolist()
         for first in range(0, runs, CHUNK):
-            work.append(parallel.Job(follow, (trial, estimators, seeds[first:first + CHUNK])))
+            work.append(parallel.Job(follow, (trial, estimators, seeds[first : first + CHUNK])))
             whose.append(number)
     found = parallel.run(work, processes or os.cpu_count() or 1, progress)
-    return [Outcome(judged(trial), np.concatenate([
-        part for part, number in zip(found, whose) if number == one]))
-        for one, trial in enumerate(trials)]
+    return [
+        Outcome(
+            judged(trial),
+            np.concatenate([part for part, number in zip(found, whose) if number == one]),
+        )
+        for one, trial in enumerate(trials)
+    ]

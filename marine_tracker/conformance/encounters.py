@@ -22,8 +22,8 @@ from ..types import Array
 from .ring_of_ships import owners_of
 from .target_data import Service, heading
 
-JUDGED_AFTER = 180.0            # s after acquisition
-WARNED_BEFORE = 360.0           # s of TCPA
+JUDGED_AFTER = 180.0  # s after acquisition
+WARNED_BEFORE = 360.0  # s of TCPA
 
 
 class Encounter(NamedTuple):
@@ -42,16 +42,25 @@ class Encounter(NamedTuple):
     tcpa: Array
 
 
-def run(estimators: Sequence[str], runs: int, seed: int, progress: Progress = silent,
-        processes: int | None = None) -> list[Encounter]:
+def run(
+    estimators: Sequence[str],
+    runs: int,
+    seed: int,
+    progress: Progress = silent,
+    processes: int | None = None,
+) -> list[Encounter]:
     """Every encounter `runs` times."""
     numbers = range(1, len(IMAZU) + 1)
-    work = [parallel.Job(follow, (number, estimators, int(of_run)))
-            for number in numbers
-            for of_run in np.random.SeedSequence([seed, 2, number]).generate_state(runs)]
+    work = [
+        parallel.Job(follow, (number, estimators, int(of_run)))
+        for number in numbers
+        for of_run in np.random.SeedSequence([seed, 2, number]).generate_state(runs)
+    ]
     found = parallel.run(work, processes or os.cpu_count() or 1, progress)
-    return [Encounter(number, *np.stack(found[first:first + runs], 2))
-            for number, first in zip(numbers, range(0, len(found), runs))]
+    return [
+        Encounter(number, *np.stack(found[first : first + runs], 2))
+        for number, first in zip(numbers, range(0, len(found), runs))
+    ]
 
 
 def follow(number: int, estimators: Sequence[str], seed: int) -> Array:
@@ -75,8 +84,9 @@ def follow(number: int, estimators: Sequence[str], seed: int) -> Array:
             row, found = owners_of(picture.motion.position - picture.own.position, place)
             new = found & np.isinf(acquired[e])
             acquired[e, new] = picture.targets.since[row[new]]
-            alarms = picture.alerts.id[(picture.alerts.kind == DANGER)
-                                       & (picture.alerts.state == ACTIVE_UNACKNOWLEDGED)]
+            alarms = picture.alerts.id[
+                (picture.alerts.kind == DANGER) & (picture.alerts.state == ACTIVE_UNACKNOWLEDGED)
+            ]
             now = found & np.isinf(warned[e])
             now[now] = np.isin(picture.targets.id[row[now]], alarms)
             warned[e, now] = left

@@ -11,12 +11,12 @@ from .encounters import Encounter
 from .loss import Kept
 from .manoeuvres import MET_AGAIN, RIGHT, Turn
 
-HALVES = 12                     # of A.823's 3-minute limits that are to be met twice over
-RATIO = 1.25                    # to the straight-line fit, at most
-RIGHT_WITHIN = 60.0             # s after a target's turn
-CPA_ERROR, TCPA_ERROR = 0.15, 0.3               # NM, min: Imazu's encounters
-WARNED = 6.0                    # min of TCPA
-KEPT, ENDED = 99.0, 10          # %, scans
+HALVES = 12  # of A.823's 3-minute limits that are to be met twice over
+RATIO = 1.25  # to the straight-line fit, at most
+RIGHT_WITHIN = 60.0  # s after a target's turn
+CPA_ERROR, TCPA_ERROR = 0.15, 0.3  # NM, min: Imazu's encounters
+WARNED = 6.0  # min of TCPA
+KEPT, ENDED = 99.0, 10  # %, scans
 
 
 class Results(NamedTuple):
@@ -58,10 +58,11 @@ def lines(outcomes: dict[tuple[int, int], Outcome], column: int) -> list[Line]:
     for (minutes, number), outcome in outcomes.items():
         a823, msc192 = a823_limits(number, minutes), msc192_limits(outcome.truth, minutes)
         values = outcome.in_95
-        found += [Line(minutes, number, name, unit, values[column, k], values[0, k], a823[k],
-                       msc192[k])
-                  for k, (name, unit) in enumerate(zip(FIGURES, UNITS))
-                  if not np.isnan(a823[k]) or (minutes == MINUTES[0] and not np.isnan(msc192[k]))]
+        found += [
+            Line(minutes, number, name, unit, values[column, k], values[0, k], a823[k], msc192[k])
+            for k, (name, unit) in enumerate(zip(FIGURES, UNITS))
+            if not np.isnan(a823[k]) or (minutes == MINUTES[0] and not np.isnan(msc192[k]))
+        ]
     return found
 
 
@@ -74,23 +75,43 @@ def figures(results: Results) -> list[Figure]:
         if told:
             found += _overall(name, told, results.steady, e + 1)
         for number, outcome in results.own_turns.items():
-            found += [_limited(
-                f'{name}: scenario {number}, {MET_AGAIN:g} s after own ship turned 45 deg: '
-                f'{line.figure}', line, line.a823, f'fit {line.fit:.2f}')
-                for line in lines({(3, number): outcome}, e + 1)]
+            found += [
+                _limited(
+                    f'{name}: scenario {number}, {MET_AGAIN:g} s after own ship turned 45 deg: '
+                    f'{line.figure}',
+                    line,
+                    line.a823,
+                    f'fit {line.fit:.2f}',
+                )
+                for line in lines({(3, number): outcome}, e + 1)
+            ]
         for turn in results.turns:
-            found.append(at_most(
-                f'{name}: target turned {turn.angle:g} deg at {turn.rate:g} deg/s: course error '
-                f'below {RIGHT:g} deg', turn.right_again[e], RIGHT_WITHIN, 's',
-                f'after the turn; {turn.before[e]:.2f} deg before it'))
+            found.append(
+                at_most(
+                    f'{name}: target turned {turn.angle:g} deg at {turn.rate:g} deg/s: '
+                    f'course error below {RIGHT:g} deg',
+                    turn.right_again[e],
+                    RIGHT_WITHIN,
+                    's',
+                    f'after the turn; {turn.before[e]:.2f} deg before it',
+                )
+            )
         found += _encounters(name, results.encounters, e)
         if results.kept is not None:
             ended = results.kept.ended[e]
             found += [
-                at_least(f'{name}: targets in 5 of 10 scans kept for 10 minutes',
-                         100 * results.kept.kept[e].mean(), KEPT, '%'),
-                at_most(f'{name}: lost alarm, scans after the last plot',
-                        np.nanmax(ended, initial=0), ENDED)]
+                at_least(
+                    f'{name}: targets in 5 of 10 scans kept for 10 minutes',
+                    100 * results.kept.kept[e].mean(),
+                    KEPT,
+                    '%',
+                ),
+                at_most(
+                    f'{name}: lost alarm, scans after the last plot',
+                    np.nanmax(ended, initial=0),
+                    ENDED,
+                ),
+            ]
     return found
 
 
@@ -113,8 +134,9 @@ def _limited(title, line, limit, against):
     if np.isnan(limit):
         return Figure(title, line.value, line.unit, None, None, against)
     if line.fit > limit:
-        return Figure(title, line.value, line.unit, f'<= {limit:g}', None,
-                      f'{against}: not even the fit')
+        return Figure(
+            title, line.value, line.unit, f'<= {limit:g}', None, f'{against}: not even the fit'
+        )
     return at_most(title, line.value, limit, line.unit, against)
 
 
@@ -123,26 +145,50 @@ def _overall(name, told, outcomes, column):
     without = max(np.isinf(outcome.errors[:, column, 0]).mean() for outcome in outcomes.values())
     halves = sum(line.value <= 0.5 * line.a823 for line in judged)
     return [
-        at_least(f'{name}: A.823 figures at 3 min at or below half their limit', halves, HALVES,
-                 '', f'of {len(judged)}; fit {sum(x.fit <= 0.5 * x.a823 for x in judged)}'),
-        at_most(f'{name}: largest ratio to the fit at 3 min',
-                max((line.ratio for line in judged), default=None), RATIO, '', 'fit'),
-        Figure(f'{name}: runs without a target when it was judged, worst scenario',
-               100 * without, '%')]
+        at_least(
+            f'{name}: A.823 figures at 3 min at or below half their limit',
+            halves,
+            HALVES,
+            '',
+            f'of {len(judged)}; fit {sum(x.fit <= 0.5 * x.a823 for x in judged)}',
+        ),
+        at_most(
+            f'{name}: largest ratio to the fit at 3 min',
+            max((line.ratio for line in judged), default=None),
+            RATIO,
+            '',
+            'fit',
+        ),
+        Figure(
+            f'{name}: runs without a target when it was judged, worst scenario', 100 * without, '%'
+        ),
+    ]
 
 
 def _encounters(name, encounters, e):
     found = []
     for one in encounters:
-        for what, errors, limit, unit in (('CPA', one.cpa, CPA_ERROR, 'NM'),
-                                          ('TCPA', one.tcpa, TCPA_ERROR, 'min')):
+        for what, errors, limit, unit in (
+            ('CPA', one.cpa, CPA_ERROR, 'NM'),
+            ('TCPA', one.tcpa, TCPA_ERROR, 'min'),
+        ):
             error = np.quantile(errors[e], 0.95, axis=0, method='inverted_cdf').max()
-            found.append(at_most(f'{name}: Imazu {one.number}, 3 min after acquisition: '
-                                 f'{what} error', error, limit, unit, 'CPA 0, 95 % of runs'))
+            found.append(
+                at_most(
+                    f'{name}: Imazu {one.number}, 3 min after acquisition: {what} error',
+                    error,
+                    limit,
+                    unit,
+                    'CPA 0, 95 % of runs',
+                )
+            )
     if encounters:
         acquired = np.concatenate([np.isfinite(one.acquired[e]).ravel() for one in encounters])
         warned = min(one.warned[e].min() for one in encounters)
-        found += [at_least(f'{name}: Imazu, targets acquired', 100 * acquired.mean(), 100, '%'),
-                  at_least(f'{name}: Imazu, TCPA left at the danger alarm, least', warned / 60,
-                           WARNED, 'min')]
+        found += [
+            at_least(f'{name}: Imazu, targets acquired', 100 * acquired.mean(), 100, '%'),
+            at_least(
+                f'{name}: Imazu, TCPA left at the danger alarm, least', warned / 60, WARNED, 'min'
+            ),
+        ]
     return found

@@ -19,7 +19,7 @@ from ..types import Array, take
 from . import ring_of_ships
 from .target_data import Service
 
-BEGIN, MINUTES, AFTER = 10, 10, 14              # scans seen at first; minutes of gaps; scans unseen
+BEGIN, MINUTES, AFTER = 10, 10, 14  # scans seen at first; minutes of gaps; scans unseen
 SHOWN, OF = 5, 10
 
 
@@ -33,12 +33,19 @@ class Kept(NamedTuple):
     ended: Array
 
 
-def run(estimators: Sequence[str], runs: int, seed: int, progress: Progress = silent,
-        processes: int | None = None) -> Kept:
+def run(
+    estimators: Sequence[str],
+    runs: int,
+    seed: int,
+    progress: Progress = silent,
+    processes: int | None = None,
+) -> Kept:
     """At least `runs` targets."""
     scenes = -(-runs // ring_of_ships.SHIPS)
-    work = [parallel.Job(_follow, (estimators, int(of_scene)))
-            for of_scene in np.random.SeedSequence([seed, 3]).generate_state(scenes)]
+    work = [
+        parallel.Job(_follow, (estimators, int(of_scene)))
+        for of_scene in np.random.SeedSequence([seed, 3]).generate_state(scenes)
+    ]
     found = parallel.run(work, processes or os.cpu_count() or 1, progress)
     return Kept(*(np.concatenate(column, axis=1) for column in zip(*found)))
 
@@ -54,15 +61,23 @@ def _follow(estimators, seed):
     """kept and ended [E, SHIPS] of one scene."""
     gaps = round(MINUTES * 60 / REVOLUTION)
     scans = BEGIN + gaps + AFTER
-    loaded = scenario.build(ring_of_ships.ring(
-        scans * REVOLUTION, {'rotation_rpm': ROTATION, 'pd_near': 1, 'pd_far': 1}, []), 'gaps')
+    loaded = scenario.build(
+        ring_of_ships.ring(
+            scans * REVOLUTION, {'rotation_rpm': ROTATION, 'pd_near': 1, 'pd_far': 1}, []
+        ),
+        'gaps',
+    )
     ships = ring_of_ships.SHIPS
-    shows = np.concatenate([np.ones((BEGIN, ships), bool),
-                            pattern(gaps, ships, np.random.default_rng(seed)),
-                            np.zeros((AFTER, ships), bool)])
+    shows = np.concatenate(
+        [
+            np.ones((BEGIN, ships), bool),
+            pattern(gaps, ships, np.random.default_rng(seed)),
+            np.zeros((AFTER, ships), bool),
+        ]
+    )
     services = [Service(loaded, name) for name in estimators]
     memories: list[Any] = [None for _ in services]
-    numbers = np.zeros((len(services), ships), np.int64)        # the ships' target numbers
+    numbers = np.zeros((len(services), ships), np.int64)  # the ships' target numbers
     kept = np.ones((len(services), ships), bool)
     last = np.zeros(ships, np.int64)
     ended = np.full((len(services), ships), np.inf)
@@ -90,5 +105,6 @@ def _follow(estimators, seed):
 def _numbers(data, truth, loaded):
     """[SHIPS] number of each ship's target, 0 for none."""
     row, found = ring_of_ships.owners(
-        data, truth.position - loaded.own_ship_at(truth.time).position)
+        data, truth.position - loaded.own_ship_at(truth.time).position
+    )
     return np.where(found, np.append(data.tracks.number, 0)[np.where(found, row, -1)], 0)

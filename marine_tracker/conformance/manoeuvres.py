@@ -21,12 +21,12 @@ from . import ring_of_ships
 from .accuracy import AccuracyTrial, a823_trial
 from .target_data import Service
 
-OWN_TURNS = (-45.0, 45.0)                       # deg
-MET_AGAIN = 20.0                                # s after own ship's turn
-TURNS = ((0.5, 45.0), (1.0, 60.0), (2.0, 90.0))         # deg/s, deg
-BEFORE = 60                                     # scans before the target's turn
-AFTER = 90.0                                    # s watched after it
-RIGHT = 5.0                                     # deg: the course is right again below this
+OWN_TURNS = (-45.0, 45.0)  # deg
+MET_AGAIN = 20.0  # s after own ship's turn
+TURNS = ((0.5, 45.0), (1.0, 60.0), (2.0, 90.0))  # deg/s, deg
+BEFORE = 60  # scans before the target's turn
+AFTER = 90.0  # s watched after it
+RIGHT = 5.0  # deg: the course is right again below this
 
 
 def own_turns(number: int, after: float = MET_AGAIN) -> list[AccuracyTrial]:
@@ -66,17 +66,24 @@ class Turn(NamedTuple):
         return self.in_95[:, np.flatnonzero(self.after < -self.angle / self.rate)[-1]]
 
 
-def target_turns(estimators: Sequence[str], runs: int, seed: int, progress: Progress = silent,
-                 processes: int | None = None) -> list[Turn]:
+def target_turns(
+    estimators: Sequence[str],
+    runs: int,
+    seed: int,
+    progress: Progress = silent,
+    processes: int | None = None,
+) -> list[Turn]:
     """At least `runs` ships for each of TURNS."""
     scenes = -(-runs // ring_of_ships.SHIPS)
-    work = [parallel.Job(_turn, (rate, angle, estimators, int(number)))
-            for kind, (rate, angle) in enumerate(TURNS)
-            for number in np.random.SeedSequence([seed, 1, kind]).generate_state(scenes)]
+    work = [
+        parallel.Job(_turn, (rate, angle, estimators, int(number)))
+        for kind, (rate, angle) in enumerate(TURNS)
+        for number in np.random.SeedSequence([seed, 1, kind]).generate_state(scenes)
+    ]
     found = parallel.run(work, processes or os.cpu_count() or 1, progress)
     turns = []
     for kind, (rate, angle) in enumerate(TURNS):
-        parts = found[kind * scenes:(kind + 1) * scenes]
+        parts = found[kind * scenes : (kind + 1) * scenes]
         errors = np.concatenate([errors for _, errors in parts], axis=1)
         turns.append(Turn(rate, angle, parts[0][0], errors))
     return turns
@@ -85,9 +92,17 @@ def target_turns(estimators: Sequence[str], runs: int, seed: int, progress: Prog
 def _turn(rate, angle, estimators, seed):
     """Times [K] s after the end of the turn, and errors [E, SHIPS, K] of the relative course."""
     end = BEFORE * REVOLUTION + angle / rate
-    loaded = scenario.build(ring_of_ships.ring(end + AFTER, A823_RADAR, [
-        {'straight': {'duration_s': BEFORE * REVOLUTION}},
-        {'turn': {'angle_deg': angle, 'rate_deg_per_s': rate}}]), 'turning')
+    loaded = scenario.build(
+        ring_of_ships.ring(
+            end + AFTER,
+            A823_RADAR,
+            [
+                {'straight': {'duration_s': BEFORE * REVOLUTION}},
+                {'turn': {'angle_deg': angle, 'rate_deg_per_s': rate}},
+            ],
+        ),
+        'turning',
+    )
     services = [Service(loaded, name) for name in estimators]
     memories: list[Any] = [None for _ in services]
     errors = np.full((len(services), ring_of_ships.SHIPS, loaded.scans), np.inf)

@@ -25,8 +25,10 @@ demanded."""
 def write(folder, results: Results, title: str, seed: int) -> Path:
     """Write index.html and pictures into the folder, which is made; the page's path."""
     drawn = draw(folder, pictures(results, seed))
-    parts = [f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>',
-             f'<style>{STYLE}</style><h1>{escape(title)}</h1><p>{escape(ABOUT)}</p>']
+    parts = [
+        f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>',
+        f'<style>{STYLE}</style><h1>{escape(title)}</h1><p>{escape(ABOUT)}</p>',
+    ]
     for e, name in enumerate(results.estimators):
         if results.steady:
             parts += [f'<h2>{escape(name)}: accuracy</h2>', _accuracy(lines(results.steady, e + 1))]
@@ -43,10 +45,31 @@ def _accuracy(told) -> str:
     for line in told:
         cells = [f'{line.scenario}', f'{line.minutes} min', line.figure, line.unit]
         values = [number(line.value), number(line.fit), number(line.ratio)]
-        rows.append(_row(cells, values, [_verdict(line.value, line.fit, limit)
-                                         for limit in (line.a823, 0.5 * line.a823, line.msc192)]))
-    return _rows(('scenario', 'after', 'figure', '', '95 %', 'fit', 'ratio', 'A.823', 'half of it',
-                  'MSC.192'), rows)
+        rows.append(
+            _row(
+                cells,
+                values,
+                [
+                    _verdict(line.value, line.fit, limit)
+                    for limit in (line.a823, 0.5 * line.a823, line.msc192)
+                ],
+            )
+        )
+    return _rows(
+        (
+            'scenario',
+            'after',
+            'figure',
+            '',
+            '95 %',
+            'fit',
+            'ratio',
+            'A.823',
+            'half of it',
+            'MSC.192',
+        ),
+        rows,
+    )
 
 
 def _verdict(value, fit, limit) -> tuple[str, str]:
@@ -58,18 +81,34 @@ def _verdict(value, fit, limit) -> tuple[str, str]:
 
 def _table(told: Sequence[Figure]) -> str:
     verdict = {True: 'met', False: 'missed', None: 'past'}
-    return _rows(('figure', '', 'limit', 'beside'), [
-        _row([f.name], [f'{number(f.value)} {f.unit}'],
-             [(escape(f.limit or ''), verdict[f.ok]), (escape(f.against or ''), '')])
-        for f in told])
+    return _rows(
+        ('figure', '', 'limit', 'beside'),
+        [
+            _row(
+                [f.name],
+                [f'{number(f.value)} {f.unit}'],
+                [(escape(f.limit or ''), verdict[f.ok]), (escape(f.against or ''), '')],
+            )
+            for f in told
+        ],
+    )
 
 
 def _row(texts, values, marked) -> str:
-    return ('<tr>' + ''.join(f'<td>{escape(text)}</td>' for text in texts)
-            + ''.join(f'<td class="n">{escape(text)}</td>' for text in values)
-            + ''.join(f'<td class="{kind}">{text}</td>' for text, kind in marked) + '</tr>')
+    return (
+        '<tr>'
+        + ''.join(f'<td>{escape(text)}</td>' for text in texts)
+        + ''.join(f'<td class="n">{escape(text)}</td>' for text in values)
+        + ''.join(f'<td class="{kind}">{text}</td>' for text, kind in marked)
+        + '</tr>'
+    )
 
 
 def _rows(head, rows) -> str:
-    return ('<table><tr>' + ''.join(f'<th>{escape(text)}</th>' for text in head) + '</tr>'
-            + '\n'.join(rows) + '</table>')
+    return (
+        '<table><tr>'
+        + ''.join(f'<th>{escape(text)}</th>' for text in head)
+        + '</tr>'
+        + '\n'.join(rows)
+        + '</table>'
+    )

@@ -19,12 +19,20 @@ A823_COLOUR, MSC192_COLOUR, FIT_COLOUR = '#b00020', '#e08a00', '0.35'
 
 def pictures(results: Results, seed: int) -> list[Picture]:
     """Those of what was run."""
-    found = [Picture(f'errors_{minutes}_min_{number}', (10, 6),
-                     partial(_errors, results=results, key=(minutes, number)))
-             for minutes, number in results.steady]
+    found = [
+        Picture(
+            f'errors_{minutes}_min_{number}',
+            (10, 6),
+            partial(_errors, results=results, key=(minutes, number)),
+        )
+        for minutes, number in results.steady
+    ]
     if results.steady:
-        found.append(Picture('tracks', (10, 10), partial(
-            _tracks, estimator=results.estimators[0], seed=seed)))
+        found.append(
+            Picture(
+                'tracks', (10, 10), partial(_tracks, estimator=results.estimators[0], seed=seed)
+            )
+        )
     if results.turns:
         found.append(Picture('target_turns', (10, 3.6), partial(_turns, results=results)))
     return found
@@ -34,16 +42,25 @@ def _errors(canvas, results, key):
     """How many runs err by no more than so much, figure by figure."""
     minutes, number = key
     outcome = results.steady[key]
-    canvas.suptitle(f'Scenario {number} after {minutes} min: share of {len(outcome.errors)} runs '
-                    'whose error is not larger')
-    limits = ((a823_limits(number, minutes), A823_COLOUR, 'A.823'),
-              (msc192_limits(outcome.truth, minutes), MSC192_COLOUR, 'MSC.192'))
+    canvas.suptitle(
+        f'Scenario {number} after {minutes} min: share of {len(outcome.errors)} runs '
+        'whose error is not larger'
+    )
+    limits = (
+        (a823_limits(number, minutes), A823_COLOUR, 'A.823'),
+        (msc192_limits(outcome.truth, minutes), MSC192_COLOUR, 'MSC.192'),
+    )
     names = ('straight-line fit', *results.estimators)
     for k, axes in enumerate(canvas.subplots(2, 3).flat):
         for column, (name, colour) in enumerate(zip(names, (FIT_COLOUR, *COLOURS))):
             errors = np.sort(outcome.errors[:, column, k])
-            axes.plot(errors, np.arange(1, len(errors) + 1) / len(errors), color=colour, label=name,
-                      linestyle='--' if column == 0 else '-')
+            axes.plot(
+                errors,
+                np.arange(1, len(errors) + 1) / len(errors),
+                color=colour,
+                label=name,
+                linestyle='--' if column == 0 else '-',
+            )
         for limit, colour, name in limits:
             if not np.isnan(limit[k]):
                 axes.axvline(limit[k], color=colour, linewidth=1, label=name)
@@ -67,20 +84,40 @@ def _tracks(canvas, estimator, seed):
             places += [r * unit_vector(b) for r, b in zip(scan.plots.range, scan.plots.bearing)]
         data = service.targets(memory, trial.moment)
         truth, own = loaded.truth_at(trial.moment), loaded.own_ship_at(trial.moment)
-        axes.plot(*np.array(places).T / NAUTICAL_MILE, '.', color='0.6', markersize=3,
-                  label='plots')
-        lines = [(truth.position[0] - own.position[0], truth.velocity[0] - own.velocity[0],
-                  FIT_COLOUR, 'truth', '--')]
-        lines += [(position - data.own.position, velocity - data.own.velocity, COLOURS[0],
-                   'shown, to its CPA', '-')
-                  for position, velocity in zip(data.motion.position, data.motion.velocity)]
+        axes.plot(
+            *np.array(places).T / NAUTICAL_MILE, '.', color='0.6', markersize=3, label='plots'
+        )
+        lines = [
+            (
+                truth.position[0] - own.position[0],
+                truth.velocity[0] - own.velocity[0],
+                FIT_COLOUR,
+                'truth',
+                '--',
+            )
+        ]
+        lines += [
+            (
+                position - data.own.position,
+                velocity - data.own.velocity,
+                COLOURS[0],
+                'shown, to its CPA',
+                '-',
+            )
+            for position, velocity in zip(data.motion.position, data.motion.velocity)
+        ]
         for position, velocity, colour, name, style in lines:
             ahead = max(-(position @ velocity) / (velocity @ velocity), 180.0)
             way = np.stack([position, position + ahead * velocity]) / NAUTICAL_MILE
             axes.plot(*way.T, style, color=colour, linewidth=1.2, label=name)
         axes.plot(0.0, 0.0, 'o', color='black', fillstyle='none', label='own ship')
-        axes.set(title=f'scenario {number}', xlabel='east, NM', ylabel='north, NM',
-                 aspect='equal', adjustable='datalim')
+        axes.set(
+            title=f'scenario {number}',
+            xlabel='east, NM',
+            ylabel='north, NM',
+            aspect='equal',
+            adjustable='datalim',
+        )
         axes.grid(color='0.92')
     axes.legend(fontsize=7)
 
@@ -94,8 +131,12 @@ def _turns(canvas, results):
         axes.axvspan(-turn.angle / turn.rate, 0, color='0.93')
         axes.axhline(RIGHT, color=A823_COLOUR, linewidth=1)
         axes.axvline(RIGHT_WITHIN, color=A823_COLOUR, linewidth=1, linestyle=':')
-        axes.set(title=f'{turn.angle:g} deg at {turn.rate:g} deg/s', xlabel='s after the turn',
-                 xlim=(-turn.angle / turn.rate - 40, None), ylim=(0, 60))
+        axes.set(
+            title=f'{turn.angle:g} deg at {turn.rate:g} deg/s',
+            xlabel='s after the turn',
+            xlim=(-turn.angle / turn.rate - 40, None),
+            ylim=(0, 60),
+        )
         axes.grid(color='0.92')
     canvas.axes[0].set_ylabel('deg')
     canvas.axes[0].legend(fontsize=7)

@@ -13,16 +13,25 @@ from ..types import Array
 from .target_data import TargetData
 
 SHIPS = 24
-DISTANCE, SPEED = 5000.0, 8.0           # m, m/s
-REACH = 500.0                           # m: a track farther from a ship is not hers
+DISTANCE, SPEED = 5000.0, 8.0  # m, m/s
+REACH = 500.0  # m: a track farther from a ship is not hers
 
 
 def ring(duration: float, radar: dict[str, Any], legs: list[dict[str, Any]]) -> dict[str, Any]:
     """The scenario's mapping; all ships run the legs."""
-    return {'duration_s': duration, 'radar': radar, 'targets': [
-        {'start': {'range_m': DISTANCE, 'bearing_deg': float(bearing)},
-         'course_deg': float(bearing + 90) % 360, 'speed_mps': SPEED, 'legs': legs}
-        for bearing in (np.arange(SHIPS) + 0.5) * (360 / SHIPS)]}
+    return {
+        'duration_s': duration,
+        'radar': radar,
+        'targets': [
+            {
+                'start': {'range_m': DISTANCE, 'bearing_deg': float(bearing)},
+                'course_deg': float(bearing + 90) % 360,
+                'speed_mps': SPEED,
+                'legs': legs,
+            }
+            for bearing in (np.arange(SHIPS) + 0.5) * (360 / SHIPS)
+        ],
+    }
 
 
 class Owners(NamedTuple):

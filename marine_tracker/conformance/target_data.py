@@ -51,8 +51,9 @@ class Service:
     """
 
     def __init__(self, scenario: Scenario, estimator: str, **changes: Any):
-        self.parameters = from_mapping(TrackerParameters, {
-            **scenario.tracker_parameters(), 'estimator': estimator, **changes})
+        self.parameters = from_mapping(
+            TrackerParameters, {**scenario.tracker_parameters(), 'estimator': estimator, **changes}
+        )
         self.tracker = tracker.Tracker(self.parameters)
         self.arpa = arpa.Arpa(ArpaParameters(), self.parameters)
 
@@ -66,8 +67,9 @@ class Service:
             own = lately(memory.own, scan.own_ship, scan.end)
         tracked, report = self.tracker.step(tracked, scan)
         radar = self.arpa.radars[scan.radar].parameters
-        plots = locate(scan.plots, scan.own_ship, radar.range_sigma_m,
-                       np.radians(radar.bearing_sigma_deg))
+        plots = locate(
+            scan.plots, scan.own_ship, radar.range_sigma_m, np.radians(radar.bearing_sigma_deg)
+        )
         moving = motion.step(moving, report, plots, self.arpa.motion, scan.radar)
         return Memory(tracked, moving, own, report)
 
@@ -78,8 +80,13 @@ class Service:
         moving = motion.at(take(memory.motion, rows), time)
         own = own_motion(memory.own, time, heading(memory.own))
         limits = self.arpa.limits
-        return TargetData(time, take(tracks, rows), moving,
-                          cpa.approach(moving, own, limits.cpa, limits.tcpa), own)
+        return TargetData(
+            time,
+            take(tracks, rows),
+            moving,
+            cpa.approach(moving, own, limits.cpa, limits.tcpa),
+            own,
+        )
 
 
 def heading(own_ship: OwnShip) -> float:

@@ -34,11 +34,11 @@ from .polar_motion import NEAREST, axes, to_ground, to_polar
 
 # White acceleration, m^2/s^3 each axis. The estimate does not depend on it, only its covariance.
 NOISE = {'ship': 0.01, 'small_craft': 0.5}
-SHORTEST = 0.5          # s; plots nearer in time say little about rates
-VAGUE = 100.0           # times the track's deviation: a plot that much worse says nothing
-HARMLESS = 0.125        # of the radial speed's deviation: a shift that does not matter
-UNKNOWN = 1e12          # m^2/s^2, variance of a radial speed that the radar does not tell
-RATES_LAST = np.array([0, 2, 1, 3])     # from polar order to values before rates, and back
+SHORTEST = 0.5  # s; plots nearer in time say little about rates
+VAGUE = 100.0  # times the track's deviation: a plot that much worse says nothing
+HARMLESS = 0.125  # of the radial speed's deviation: a shift that does not matter
+UNKNOWN = 1e12  # m^2/s^2, variance of a radial speed that the radar does not tell
+RATES_LAST = np.array([0, 2, 1, 3])  # from polar order to values before rates, and back
 
 
 class AlphaBetaState(NamedTuple):
@@ -62,8 +62,9 @@ class AlphaBetaState(NamedTuple):
     misfit: Array
 
 
-def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float,
-               period: float = 0.0) -> Estimator:
+def alpha_beta(
+    mode: str, max_speed: float, speed_sigma: float, noise: float, period: float = 0.0
+) -> Estimator:
     """The filter in one of the modes of GAINS.
 
     max_speed    m/s, of the targets
@@ -85,14 +86,19 @@ def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float,
         polar, by_mean = to_polar(mean, plots.origin)
         told, speed = _doppler(plots)
         off = np.where(told, speed - polar[:, 1], 0.0)
-        noise_of = np.where(told, speed_sigma ** 2, UNKNOWN)
-        along = by_mean[:, 1]                   # of the radial speed, an update with it alone
+        noise_of = np.where(told, speed_sigma**2, UNKNOWN)
+        along = by_mean[:, 1]  # of the radial speed, an update with it alone
         cross = np.matmul(covariance, along[..., None])[..., 0]
         gain = cross / ((along * cross).sum(1) + noise_of)[:, None]
         return AlphaBetaState(
-            plots.time.copy(), mean + gain * off[:, None],
-            covariance - gain[:, :, None] * cross[:, None], plots.origin.copy(),
-            plots.time.copy(), known, 2 * np.stack([range_sigma, bearing_sigma], -1) ** 2)
+            plots.time.copy(),
+            mean + gain * off[:, None],
+            covariance - gain[:, :, None] * cross[:, None],
+            plots.origin.copy(),
+            plots.time.copy(),
+            known,
+            2 * np.stack([range_sigma, bearing_sigma], -1) ** 2,
+        )
 
     def extrapolate(state, time):
         mean, covariance = _predict(state, time, noise, straight)
@@ -106,27 +112,46 @@ def alpha_beta(mode: str, max_speed: float, speed_sigma: float, noise: float,
         told, m = _misfit(plots, polar, before, speed_sigma)
 
         # Two plots make the first rates; from the third on the mode decides.
-        alpha_r, beta_v, alpha_a, beta_w = (
-            np.where(m.plots == 2, 1.0, gain) for gain in gains(m))
+        alpha_r, beta_v, alpha_a, beta_w = (np.where(m.plots == 2, 1.0, gain) for gain in gains(m))
         # A rate from plots that hardly differ in time would be noise without bound.
         step = plots.time - before.since
         a_second = np.maximum(step, 0.0) / np.maximum(step, shortest) ** 2
-        after = polar + np.stack([
-            alpha_r * m.range, beta_v * np.where(told, m.speed, m.range * a_second),
-            alpha_a * m.bearing, beta_w * m.bearing * a_second], -1)
+        after = polar + np.stack(
+            [
+                alpha_r * m.range,
+                beta_v * np.where(told, m.speed, m.range * a_second),
+                alpha_a * m.bearing,
+                beta_w * m.bearing * a_second,
+            ],
+            -1,
+        )
         after[:, 0] = np.maximum(after[:, 0], NEAREST)
         fastest = max_speed / after[:, 0]
         after[:, 3] = np.clip(after[:, 3], -fastest, fastest)
 
         mean, by_polar = to_ground(after, plots.origin)
-        covariance = sandwich(by_polar, _spread_after(
-            spread, m, np.where(told, speed_sigma ** 2, UNKNOWN), told * m.speed, after - polar))
-        vague = ((m.range_sigma > VAGUE * np.sqrt(spread[:, 0, 0]))
-                 & (m.bearing_sigma > VAGUE * np.sqrt(spread[:, 2, 2])))
-        return put(state, rows, AlphaBetaState(
-            plots.time, mean, covariance, plots.origin,
-            np.where(vague, before.since, plots.time), np.where(vague, before.plots, m.plots),
-            np.where(vague[:, None], before.misfit, m.mean_square)))
+        covariance = sandwich(
+            by_polar,
+            _spread_after(
+                spread, m, np.where(told, speed_sigma**2, UNKNOWN), told * m.speed, after - polar
+            ),
+        )
+        vague = (m.range_sigma > VAGUE * np.sqrt(spread[:, 0, 0])) & (
+            m.bearing_sigma > VAGUE * np.sqrt(spread[:, 2, 2])
+        )
+        return put(
+            state,
+            rows,
+            AlphaBetaState(
+                plots.time,
+                mean,
+                covariance,
+                plots.origin,
+                np.where(vague, before.since, plots.time),
+                np.where(vague, before.plots, m.plots),
+                np.where(vague[:, None], before.misfit, m.mean_square),
+            ),
+        )
 
     return Estimator(init, extrapolate, update)
 
@@ -164,9 +189,9 @@ def _moved(mean, covariance, step, noise):
     transition[:, [0, 1], [2, 3]] = step[:, None]
     spread = sandwich(transition, covariance)
     size = np.abs(step)[:, None]
-    spread[:, [0, 1], [0, 1]] += noise * size ** 3 / 3
+    spread[:, [0, 1], [0, 1]] += noise * size**3 / 3
     spread[:, [2, 3], [2, 3]] += noise * size
-    spread[:, [0, 1, 2, 3], [2, 3, 0, 1]] += np.tile(noise * size ** 2 / 2, 2)
+    spread[:, [0, 1, 2, 3], [2, 3, 0, 1]] += np.tile(noise * size**2 / 2, 2)
     return out, spread
 
 
@@ -174,7 +199,8 @@ def _measured(plots: Plots):
     """Range m and bearing rad of the plots [K], and the standard deviations of both."""
     distance, bearing = to_range_bearing(plots.position - plots.origin)
     range_sigma, across_sigma = (
-        np.sqrt(np.einsum('ni,nij,nj->n', side, plots.covariance, side)) for side in axes(bearing))
+        np.sqrt(np.einsum('ni,nij,nj->n', side, plots.covariance, side)) for side in axes(bearing)
+    )
     return distance, bearing, range_sigma, across_sigma / np.maximum(distance, NEAREST)
 
 
@@ -197,8 +223,15 @@ def _misfit(plots: Plots, polar, before: AlphaBetaState, speed_sigma: float):
     mean_square = before.misfit + (square - before.misfit) / np.minimum(count, WINDOW)[:, None]
     # Without Doppler both are T times a speed: only their ratio counts, from which T cancels.
     return told, Misfit(
-        off_range, np.where(told, speed - polar[:, 1], off_range), off_bearing, range_sigma,
-        np.where(told, speed_sigma, np.sqrt(2) * range_sigma), bearing_sigma, count, mean_square)
+        off_range,
+        np.where(told, speed - polar[:, 1], off_range),
+        off_bearing,
+        range_sigma,
+        np.where(told, speed_sigma, np.sqrt(2) * range_sigma),
+        bearing_sigma,
+        count,
+        mean_square,
+    )
 
 
 def _spread_after(spread, m: Misfit, speed_variance, off_speed, shift):
@@ -209,11 +242,11 @@ def _spread_after(spread, m: Misfit, speed_variance, off_speed, shift):
     P - K S K' + (g - K d)(g - K d)', whatever led to the shift.
     """
     noise = np.zeros((len(shift), 3, 3))
-    noise[:, 0, 0], noise[:, 1, 1] = m.range_sigma ** 2, speed_variance
-    noise[:, 2, 2] = m.bearing_sigma ** 2
+    noise[:, 0, 0], noise[:, 1, 1] = m.range_sigma**2, speed_variance
+    noise[:, 2, 2] = m.bearing_sigma**2
     off = np.stack([m.range, off_speed, m.bearing], -1)
     cross = spread[:, :3]
-    gain = np.matmul(np.linalg.inv(cross[:, :, :3] + noise), cross)         # K'
+    gain = np.matmul(np.linalg.inv(cross[:, :, :3] + noise), cross)  # K'
     apart = shift - np.matmul(off[:, None], gain)[:, 0]
     out = spread - np.matmul(gain.swapaxes(1, 2), cross) + apart[:, :, None] * apart[:, None, :]
     return 0.5 * (out + out.swapaxes(1, 2))

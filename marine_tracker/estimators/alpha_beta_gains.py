@@ -7,9 +7,9 @@ import numpy as np
 
 from ..types import Array
 
-WINDOW = 10             # plots over which method1 judges its prediction error
-SOFT_SPEED, SOFT_BEARING = 4.0, 6.0     # sigma at which hf_soft goes half the way
-GATE_BEARING = 6.0      # c_a: the association gate of the bearing, sigma
+WINDOW = 10  # plots over which method1 judges its prediction error
+SOFT_SPEED, SOFT_BEARING = 4.0, 6.0  # sigma at which hf_soft goes half the way
+GATE_BEARING = 6.0  # c_a: the association gate of the bearing, sigma
 
 
 class Misfit(NamedTuple):
@@ -33,12 +33,12 @@ class Misfit(NamedTuple):
 
 def rate_gain(position_gain):
     """beta of alpha by Benedict and Bordner's relation: alpha^2 / (2 - alpha)."""
-    return position_gain ** 2 / (2 - position_gain)
+    return position_gain**2 / (2 - position_gain)
 
 
 def position_gain(rate_gain):
     """alpha of beta by the same relation, solved for it."""
-    return 0.5 * (np.sqrt(rate_gain ** 2 + 8 * rate_gain) - rate_gain)
+    return 0.5 * (np.sqrt(rate_gain**2 + 8 * rate_gain) - rate_gain)
 
 
 def _hf(m: Misfit):
@@ -50,16 +50,22 @@ def _hf(m: Misfit):
 
 def _hf_soft(m: Misfit):
     """The same with r / (1 + r) over wider scales: what noise alone does counts for less."""
-    beta_v, alpha_a = (ratio / (1 + ratio) for ratio in (
-        np.abs(m.speed) / (SOFT_SPEED * m.speed_sigma),
-        np.abs(m.bearing) / (SOFT_BEARING * m.bearing_sigma)))
+    beta_v, alpha_a = (
+        ratio / (1 + ratio)
+        for ratio in (
+            np.abs(m.speed) / (SOFT_SPEED * m.speed_sigma),
+            np.abs(m.bearing) / (SOFT_BEARING * m.bearing_sigma),
+        )
+    )
     return position_gain(beta_v), beta_v, alpha_a, rate_gain(alpha_a)
 
 
 def _method1(m: Misfit):
     """Paper 002's first rival: prediction variance over itself and the plot's."""
-    alpha_r, alpha_a = (square / (square + sigma ** 2) for square, sigma in zip(
-        m.mean_square.T, (m.range_sigma, m.bearing_sigma), strict=True))
+    alpha_r, alpha_a = (
+        square / (square + sigma**2)
+        for square, sigma in zip(m.mean_square.T, (m.range_sigma, m.bearing_sigma), strict=True)
+    )
     return alpha_r, rate_gain(alpha_r), alpha_a, rate_gain(alpha_a)
 
 
@@ -72,4 +78,8 @@ def _method2(m: Misfit):
 
 # alpha_r, beta_v, alpha_a, beta_w [K each] of a Misfit, from a track's third plot on.
 GAINS: dict[str, Callable[[Misfit], tuple[Array, Array, Array, Array]]] = {
-    'hf_soft': _hf_soft, 'hf': _hf, 'method1': _method1, 'method2': _method2}
+    'hf_soft': _hf_soft,
+    'hf': _hf,
+    'method1': _method1,
+    'method2': _method2,
+}

@@ -20,7 +20,7 @@ def first_velocity(velocity: Velocity | None, count: int, max_speed: float) -> V
     """The velocities of `count` new rows: those given, or at rest give or take max_speed, m/s."""
     if velocity is not None:
         return velocity
-    variance = (max_speed / 2) ** 2     # that of a uniform density on the disc
+    variance = (max_speed / 2) ** 2  # that of a uniform density on the disc
     return Velocity(np.zeros((count, 2)), np.tile(variance * np.eye(2), (count, 1, 1)))
 
 

@@ -19,12 +19,12 @@ from ..gaussian.linear import kalman_update, sandwich
 from ..types import Array, Extrapolation, put, take
 from .contract import Estimator, first_velocity
 
-RAYLEIGH = (4 - np.pi) / np.pi      # variance of the Rayleigh density over its squared mean
+RAYLEIGH = (4 - np.pi) / np.pi  # variance of the Rayleigh density over its squared mean
 # Without a floor the process noise vanishes when the estimate sits at a_max, and the filter
 # diverges: 5,388 m RMS against 33 m with it (measured).
 VARIANCE_FLOOR = 0.05
-SERIES_BELOW = 0.5                  # alpha T; the closed forms lose all digits near 0
-SERIES_TERMS = 16                   # the rest at y = 0.5 is below 1e-15
+SERIES_BELOW = 0.5  # alpha T; the closed forms lose all digits near 0
+SERIES_TERMS = 16  # the rest at y = 0.5 is below 1e-15
 POSITION = (0, 3)
 VELOCITY = (1, 4)
 POSITION_VELOCITY = np.array([0, 3, 1, 4])
@@ -62,11 +62,12 @@ def _series_coefficients():
         for d in range(3):
             table[j, d] = (-1) ** j / factorial(j + d)
     pairs = [(2, 2), (2, 1), (2, 0), (1, 1), (1, 0), (0, 0)]
-    for column, (a, b) in enumerate(pairs, 3):                      # integral of phi_a phi_b
+    for column, (a, b) in enumerate(pairs, 3):  # integral of phi_a phi_b
         for i in range(SERIES_TERMS):
             for j in range(SERIES_TERMS - i):
                 table[i + j, column] += (-1) ** (i + j) / (
-                    factorial(i + a) * factorial(j + b) * (i + j + a + b + 1))
+                    factorial(i + a) * factorial(j + b) * (i + j + a + b + 1)
+                )
     return table
 
 
@@ -85,7 +86,7 @@ def model(frequency: float, step):
     units = np.empty_like(out)
     units[0], units[1], units[2] = 1.0, step, step * step
     size = np.abs(step)
-    units[8], units[7], units[5] = size, size * size, size ** 3
+    units[8], units[7], units[5] = size, size * size, size**3
     units[6], units[4], units[3] = units[5], units[7] ** 2, units[7] * units[5]
     out *= units
     far = np.abs(y) > SERIES_BELOW
@@ -102,7 +103,7 @@ def _powers(y):
     known = 2
     while known < SERIES_TERMS:
         more = min(known - 1, SERIES_TERMS - known)
-        np.multiply(powers[1:1 + more], powers[known - 1], out=powers[known:known + more])
+        np.multiply(powers[1 : 1 + more], powers[known - 1], out=powers[known : known + more])
         known += more
     return powers
 
@@ -110,24 +111,27 @@ def _powers(y):
 def _closed_form(alpha, step):
     y = alpha * step
     e = np.exp(-y)
-    phi = np.stack([e, (1 - e) / alpha, (y - 1 + e) / alpha ** 2])
+    phi = np.stack([e, (1 - e) / alpha, (y - 1 + e) / alpha**2])
     y = np.abs(y)
     e = np.exp(-y)
     e2 = e * e
-    q = np.stack([
-        (1 - e2 + 2 * y + 2 * y ** 3 / 3 - 2 * y ** 2 - 4 * y * e) / (2 * alpha ** 5),
-        (1 + e2 - 2 * e + 2 * e * y - 2 * y + y ** 2) / (2 * alpha ** 4),
-        (1 - e2 - 2 * e * y) / (2 * alpha ** 3),
-        (4 * e - 3 - e2 + 2 * y) / (2 * alpha ** 3),
-        (e2 + 1 - 2 * e) / (2 * alpha ** 2),
-        (1 - e2) / (2 * alpha)])
+    q = np.stack(
+        [
+            (1 - e2 + 2 * y + 2 * y**3 / 3 - 2 * y**2 - 4 * y * e) / (2 * alpha**5),
+            (1 + e2 - 2 * e + 2 * e * y - 2 * y + y**2) / (2 * alpha**4),
+            (1 - e2 - 2 * e * y) / (2 * alpha**3),
+            (4 * e - 3 - e2 + 2 * y) / (2 * alpha**3),
+            (e2 + 1 - 2 * e) / (2 * alpha**2),
+            (1 - e2) / (2 * alpha),
+        ]
+    )
     return phi, q
 
 
 def acceleration_variance(acceleration, max_acceleration: float):
     """sigma_a^2 [...] of the modified Rayleigh density about the estimate [...], with the floor."""
     room = max_acceleration - np.minimum(np.abs(acceleration), max_acceleration)
-    return RAYLEIGH * np.maximum(room * room, VARIANCE_FLOOR * max_acceleration ** 2)
+    return RAYLEIGH * np.maximum(room * room, VARIANCE_FLOOR * max_acceleration**2)
 
 
 def _per_axis(block):
@@ -155,9 +159,12 @@ class _Layout(NamedTuple):
 def _layout(rows):
     noise = _per_axis([[1, 2, 3], [2, 4, 5], [3, 5, 6]])
     noise[3:, 3:] += 6
-    return _Layout(_per_axis([[1, 2, 5], [0, 1, 4], [0, 0, 3]])[rows],
-                   np.array([6, 7, 8, 6, 7, 8])[rows], np.array([0, 0, 0, 1, 1, 1])[rows],
-                   noise[np.ix_(rows, rows)])
+    return _Layout(
+        _per_axis([[1, 2, 5], [0, 1, 4], [0, 0, 3]])[rows],
+        np.array([6, 7, 8, 6, 7, 8])[rows],
+        np.array([0, 0, 0, 1, 1, 1])[rows],
+        noise[np.ix_(rows, rows)],
+    )
 
 
 WHOLE, SHOWN = _layout(np.arange(6)), _layout(POSITION_VELOCITY)
@@ -203,8 +210,9 @@ def predict_mean(mean, step, manoeuvre: Manoeuvre):
     out = np.empty_like(mean)
     for x, v, a in ((0, 1, 2), (3, 4, 5)):
         held = np.clip(mean[:, a], -limit, limit)
-        out[:, x] = mean[:, x] + step * mean[:, v] + phi2 * mean[:, a] + (
-            0.5 * step * step - phi2) * held
+        out[:, x] = (
+            mean[:, x] + step * mean[:, v] + phi2 * mean[:, a] + (0.5 * step * step - phi2) * held
+        )
         out[:, v] = mean[:, v] + phi1 * mean[:, a] + (step - phi1) * held
         out[:, a] = phi0 * mean[:, a] + (1 - phi0) * held
     return out
@@ -225,21 +233,25 @@ def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         covariance[:, [[0], [3]], POSITION] = plots.covariance
         covariance[:, [[1], [4]], VELOCITY] = velocity.covariance
         covariance[:, 2, 2] = covariance[:, 5, 5] = acceleration_variance(
-            0.0, manoeuvre.max_acceleration)
+            0.0, manoeuvre.max_acceleration
+        )
         return CsState(plots.time.copy(), mean, covariance)
 
     def extrapolate(state, time):
-        mean, covariance = predict(state.mean, state.covariance, time - state.time, manoeuvre,
-                                   SHOWN)
+        mean, covariance = predict(
+            state.mean, state.covariance, time - state.time, manoeuvre, SHOWN
+        )
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state, plots, rows):
         before = take(state, rows)
-        mean, covariance = predict(before.mean, before.covariance, plots.time - before.time,
-                                   manoeuvre)
+        mean, covariance = predict(
+            before.mean, before.covariance, plots.time - before.time, manoeuvre
+        )
         innovation = plots.position - mean.take(POSITION, 1)
-        mean, covariance, _, _ = kalman_update(mean, covariance, innovation, plots.covariance,
-                                               POSITION)
+        mean, covariance, _, _ = kalman_update(
+            mean, covariance, innovation, plots.covariance, POSITION
+        )
         return put(state, rows, CsState(plots.time, mean, covariance))
 
     return Estimator(init, extrapolate, update)

@@ -37,8 +37,8 @@ from .cs_kalman import (
 from .rough_features import inputs, quiet_variance
 
 LEAST_SHARE = 0.01
-QUIET_SHARE = 0.02              # what the networks are taught for a target that keeps its course
-SHORTEST = 1e-3                 # s; at step 0 the share is of no consequence
+QUIET_SHARE = 0.02  # what the networks are taught for a target that keeps its course
+SHORTEST = 1e-3  # s; at step 0 the share is of no consequence
 DIAGONAL = np.arange(6)
 
 
@@ -66,7 +66,7 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
     """The two filters and a network; max_speed as for `cs_kalman`."""
     single = cs_kalman(manoeuvre, max_speed)
     frequency, limit = manoeuvre.frequency, manoeuvre.max_acceleration
-    variance = RAYLEIGH * limit ** 2
+    variance = RAYLEIGH * limit**2
     neurons = weights.network.inner.shape[1]
 
     def share_of(apart, wide, narrow, noise, step):
@@ -74,9 +74,11 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
         total = wide + narrow
         total[..., 0] += 2 * noise
         size = np.maximum(np.abs(step), SHORTEST)[:, None]
-        gamma = np.sqrt(variance / noise) * size ** 2
-        unit = 1 / np.sqrt(total * quiet_variance(
-            weights.quiet, gamma, np.broadcast_to(frequency * size, gamma.shape)))
+        gamma = np.sqrt(variance / noise) * size**2
+        unit = 1 / np.sqrt(
+            total
+            * quiet_variance(weights.quiet, gamma, np.broadcast_to(frequency * size, gamma.shape))
+        )
         seen = inputs(np.abs(apart) * unit, (np.sqrt(wide) + np.sqrt(narrow)) * unit, neurons)
         share = forward(weights.network, seen.reshape(-1, *seen.shape[2:])).reshape(-1, 2)
         return np.minimum(np.maximum(share, LEAST_SHARE), 1.0)
@@ -87,8 +89,9 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
         count = len(step)
         phi, q = model(frequency, step)
         both = append(state.wide, state.narrow)
-        mean, covariance = move(both.mean, both.covariance, np.tile(step, 2), np.tile(phi, 2),
-                                limit)
+        mean, covariance = move(
+            both.mean, both.covariance, np.tile(step, 2), np.tile(phi, 2), limit
+        )
         density = 2 * frequency * variance
         covariance[:count] += process_noise(q, np.full((count, 2), density))
         spread = covariance[:, DIAGONAL, DIAGONAL].reshape(2, count, 2, 3)
@@ -100,9 +103,12 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
 
     def init(plots, velocity=None):
         first = single.init(plots, velocity)
-        return ParallelState(first, first._make(array.copy() for array in first),
-                             np.full((len(plots.time), 2), QUIET_SHARE),
-                             np.diagonal(plots.covariance, axis1=1, axis2=2).copy())
+        return ParallelState(
+            first,
+            first._make(array.copy() for array in first),
+            np.full((len(plots.time), 2), QUIET_SHARE),
+            np.diagonal(plots.covariance, axis1=1, axis2=2).copy(),
+        )
 
     def extrapolate(state, time):
         mean, covariance, _ = predict(state, time)
@@ -120,10 +126,13 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
         gain = known / (known + noise)
         noise = before.noise * (noise / before.noise) ** gain
         innovation = np.tile(plots.position, (2, 1)) - mean.take(POSITION, 1)
-        mean, covariance, _, _ = kalman_update(mean, covariance, innovation,
-                                               np.tile(plots.covariance, (2, 1, 1)), POSITION)
-        wide, narrow = (CsState(plots.time, mean[part], covariance[part])
-                        for part in (slice(0, count), slice(count, None)))
+        mean, covariance, _, _ = kalman_update(
+            mean, covariance, innovation, np.tile(plots.covariance, (2, 1, 1)), POSITION
+        )
+        wide, narrow = (
+            CsState(plots.time, mean[part], covariance[part])
+            for part in (slice(0, count), slice(count, None))
+        )
         return put(state, rows, ParallelState(wide, narrow, share, noise))
 
     return Estimator(init, extrapolate, update)

@@ -39,17 +39,26 @@ class ImmState(NamedTuple):
 
 
 PRESETS = {
-    'ship': Modes(noise=(0.0005, 0.4, 0.015, 0.015), turn_rate=(0, 0, 0.021, -0.021),
-                  stay=(0.995, 0.85, 0.93, 0.93), period=60 / 22),
-    'small_craft': Modes(noise=(0.01, 8.0, 0.5, 0.5), turn_rate=(0, 0, 0.262, -0.262),
-                         stay=(0.96, 0.8, 0.8, 0.8), period=60 / 22),
+    'ship': Modes(
+        noise=(0.0005, 0.4, 0.015, 0.015),
+        turn_rate=(0, 0, 0.021, -0.021),
+        stay=(0.995, 0.85, 0.93, 0.93),
+        period=60 / 22,
+    ),
+    'small_craft': Modes(
+        noise=(0.01, 8.0, 0.5, 0.5),
+        turn_rate=(0, 0, 0.262, -0.262),
+        stay=(0.96, 0.8, 0.8, 0.8),
+        period=60 / 22,
+    ),
 }
 
 
 def bank_of(modes: Modes) -> linear_modes.Bank:
     """The modes as one chain; a mode left is left for each other mode alike."""
-    chain = linear_modes.Chain(slice(0, len(modes.noise)),
-                               linear_modes.transition_power(modes.stay, modes.period))
+    chain = linear_modes.Chain(
+        slice(0, len(modes.noise)), linear_modes.transition_power(modes.stay, modes.period)
+    )
     return linear_modes.bank(modes.noise, modes.turn_rate, [chain])
 
 
@@ -65,7 +74,8 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
         """Columns [14, J, N] of the modes and their weights [J, N] at the times [N] s."""
         step = time - state.time
         columns, weight = linear_modes.mix(
-            bank, linear_modes.pack(state.mean, state.covariance), state.weight, step)
+            bank, linear_modes.pack(state.mean, state.covariance), state.weight, step
+        )
         return linear_modes.move(bank, columns, step), weight.T
 
     def init(plots, velocity=None):
@@ -84,8 +94,9 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
 
     def update(state, plots, rows):
         columns, weight = predict(take(state, rows), plots.time)
-        columns, score = linear_modes.correct(columns, plots.position.T,
-                                              linear_modes.packed_noise(plots.covariance))
+        columns, score = linear_modes.correct(
+            columns, plots.position.T, linear_modes.packed_noise(plots.covariance)
+        )
         weight = linear_modes.reweigh(weight, score)
         mean, covariance = linear_modes.unpack(linear_modes.rows_of(columns))
         return put(state, rows, ImmState(plots.time, weight.T, mean, covariance))

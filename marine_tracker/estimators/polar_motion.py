@@ -7,7 +7,7 @@ import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector
 
-NEAREST = 1.0           # m; bearings from nearer than this mean nothing
+NEAREST = 1.0  # m; bearings from nearer than this mean nothing
 
 
 def to_polar(mean, origin):
@@ -24,8 +24,9 @@ def to_polar(mean, origin):
     by_mean[:, 0, :2] = by_mean[:, 1, 2:] = along
     by_mean[:, 1, :2] = rate[:, None] * across
     by_mean[:, 2, :2] = by_mean[:, 3, 2:] = across / distance[:, None]
-    by_mean[:, 3, :2] = -((speed / distance)[:, None] * across + rate[:, None] * along
-                          ) / distance[:, None]
+    by_mean[:, 3, :2] = (
+        -((speed / distance)[:, None] * across + rate[:, None] * along) / distance[:, None]
+    )
     return np.stack([distance, speed, bearing, rate], -1), by_mean
 
 
@@ -34,8 +35,7 @@ def to_ground(polar, origin):
     distance, speed, bearing, rate = polar.T
     along, across = axes(bearing)
     distance, speed, rate = distance[:, None], speed[:, None], rate[:, None]
-    mean = np.concatenate([origin + distance * along,
-                           speed * along + distance * rate * across], 1)
+    mean = np.concatenate([origin + distance * along, speed * along + distance * rate * across], 1)
     by_polar = np.zeros((len(polar), 4, 4))
     by_polar[:, :2, 0] = by_polar[:, 2:, 1] = along
     by_polar[:, 2:, 0] = rate * across

@@ -23,7 +23,7 @@ LAMBDA = 0.3
 KAPPA = 3.0
 LOW = float(chi2.ppf(0.5, 1))
 HIGH = KAPPA * float(chi2.ppf(0.95, 1))
-MOST = HIGH ** 0.5              # of |d|: harder than hard was not trained
+MOST = HIGH**0.5  # of |d|: harder than hard was not trained
 
 
 def inputs(apart, deviation, neurons: int):

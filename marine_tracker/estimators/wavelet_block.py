@@ -21,8 +21,8 @@ from ..types import Array
 from . import cs_kalman
 from .cs_kalman import POSITION, Manoeuvre
 
-SIZE = 4                        # states of a block: N = 3 resolutions
-COARSEST = 2                    # depth of the decomposition: one row for the whole block
+SIZE = 4  # states of a block: N = 3 resolutions
+COARSEST = 2  # depth of the decomposition: one row for the whole block
 
 
 class Block(NamedTuple):
@@ -40,7 +40,7 @@ def analysis(wavelet: str, depth: int, size: int = SIZE) -> Array:
     coarse to fine (paper 003, eq 4 and 5). ValueError for a size that cannot be halved so often,
     and for a wavelet that is not orthogonal.
     """
-    if size % 2 ** depth:
+    if size % 2**depth:
         raise ValueError(f'a block of {size} cannot be halved {depth} times')
     if not pywt.Wavelet(wavelet).orthogonal:
         raise ValueError(f'the wavelet {wavelet} is not orthogonal')
@@ -56,7 +56,7 @@ def analysis(wavelet: str, depth: int, size: int = SIZE) -> Array:
 
 def coarse(wavelet: str, depth: int) -> Array:
     """The low-pass rows [r, SIZE] alone."""
-    return analysis(wavelet, depth)[:SIZE >> depth]
+    return analysis(wavelet, depth)[: SIZE >> depth]
 
 
 def transition(frequency: float, step) -> Array:
@@ -114,8 +114,9 @@ def correct(block: Block, position, noise, rows, details=None, threshold: float 
     seen = np.kron(rows, _OBSERVE)
     keep = np.eye(6 * size) - gain @ seen
     through = gain @ np.kron(rows, np.eye(2))
-    covariance = (keep @ block.covariance @ keep.swapaxes(1, 2)
-                  + through @ spread @ through.swapaxes(1, 2))
+    covariance = keep @ block.covariance @ keep.swapaxes(
+        1, 2
+    ) + through @ spread @ through.swapaxes(1, 2)
     return Block(mean.reshape(block.mean.shape), 0.5 * (covariance + covariance.swapaxes(1, 2)))
 
 
@@ -126,11 +127,14 @@ def _gain(covariance, innovation, spread, rows):
     """H' K [B, 6n, 2r], innovations [B, 2r] at the rows' resolution, and their deviations."""
     states, plots = np.kron(rows, np.eye(6)), np.kron(rows, np.eye(2))
     observe = np.kron(np.eye(len(rows)), _OBSERVE)
-    own = states @ covariance @ states.T                                # P_i = H P H'
-    expected = observe @ own @ observe.T + plots @ spread @ plots.T     # S = C P_i C' + R_i
-    gain = np.linalg.solve(expected, observe @ own).swapaxes(1, 2)      # K
-    return (states.T @ gain, innovation.reshape(len(innovation), -1) @ plots.T,
-            np.sqrt(np.diagonal(expected, axis1=1, axis2=2)))
+    own = states @ covariance @ states.T  # P_i = H P H'
+    expected = observe @ own @ observe.T + plots @ spread @ plots.T  # S = C P_i C' + R_i
+    gain = np.linalg.solve(expected, observe @ own).swapaxes(1, 2)  # K
+    return (
+        states.T @ gain,
+        innovation.reshape(len(innovation), -1) @ plots.T,
+        np.sqrt(np.diagonal(expected, axis1=1, axis2=2)),
+    )
 
 
 class Smoothed(NamedTuple):
@@ -140,8 +144,17 @@ class Smoothed(NamedTuple):
     covariance: Array
 
 
-def smooth(mean, covariance, time, position, noise, manoeuvre: Manoeuvre, wavelet: str = 'haar',
-           depth: int = COARSEST, threshold: float | None = None) -> Smoothed:
+def smooth(
+    mean,
+    covariance,
+    time,
+    position,
+    noise,
+    manoeuvre: Manoeuvre,
+    wavelet: str = 'haar',
+    depth: int = COARSEST,
+    threshold: float | None = None,
+) -> Smoothed:
     """A history of plots smoothed block by block.
 
     mean [B, 6], covariance [B, 6, 6]  what is known at time[:, 0]
@@ -155,7 +168,7 @@ def smooth(mean, covariance, time, position, noise, manoeuvre: Manoeuvre, wavele
     if count % SIZE:
         raise ValueError(f'a history of {count} plots; it must be a multiple of {SIZE}')
     rows = coarse(wavelet, depth)
-    details = None if threshold is None else analysis(wavelet, depth)[len(rows):]
+    details = None if threshold is None else analysis(wavelet, depth)[len(rows) :]
     steps = np.diff(time, axis=1)
     means, covariances = [], []
     for at in range(0, count, SIZE):

@@ -68,9 +68,13 @@ def begin(time, mean, covariance) -> WaveletState:
     """New rows of which the states [N, 6], [N, 6, 6] at the times [N] are known, and no plots."""
     rows = len(time)
     return WaveletState(
-        np.repeat(time[:, None], SIZE, 1), np.repeat(mean[:, None], SIZE, 1),
-        np.repeat(covariance[:, None], SIZE, 1), np.zeros((rows, SIZE - 1, 2)),
-        np.ones((rows, SIZE - 1, 1, 1)) * np.eye(2), np.zeros(rows))
+        np.repeat(time[:, None], SIZE, 1),
+        np.repeat(mean[:, None], SIZE, 1),
+        np.repeat(covariance[:, None], SIZE, 1),
+        np.zeros((rows, SIZE - 1, 2)),
+        np.ones((rows, SIZE - 1, 1, 1)) * np.eye(2),
+        np.zeros(rows),
+    )
 
 
 def newest(state: WaveletState) -> CsState:
@@ -90,8 +94,9 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
 
     def extrapolate(state, time):
         last = newest(state)
-        mean, covariance = cs_kalman.predict(last.mean, last.covariance, time - last.time,
-                                             manoeuvre, SHOWN)
+        mean, covariance = cs_kalman.predict(
+            last.mean, last.covariance, time - last.time, manoeuvre, SHOWN
+        )
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state, plots, rows):
@@ -102,12 +107,17 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         for chosen, method in ((young, _plot), (~young, _block)):
             at = np.flatnonzero(chosen)
             if len(at):
-                mean[at], covariance[at], told[at] = method(take(before, at), take(plots, at),
-                                                            manoeuvre)
+                mean[at], covariance[at], told[at] = method(
+                    take(before, at), take(plots, at), manoeuvre
+                )
         after = WaveletState(
-            _push(before.time, plots.time), _push(before.mean, mean),
-            _push(before.covariance, covariance), _push(before.position, plots.position),
-            _push(before.noise, plots.covariance), before.plots + 1)
+            _push(before.time, plots.time),
+            _push(before.mean, mean),
+            _push(before.covariance, covariance),
+            _push(before.position, plots.position),
+            _push(before.noise, plots.covariance),
+            before.plots + 1,
+        )
         return put(state, rows[told], take(after, told))
 
     return Estimator(init, extrapolate, update)
@@ -130,11 +140,13 @@ def _tells(covariance, noise):
 def _plot(state, plots, manoeuvre):
     """All resolutions: the Kalman update of the chain that ended last."""
     last = newest(state)
-    mean, covariance = cs_kalman.predict(last.mean, last.covariance, plots.time - last.time,
-                                         manoeuvre)
+    mean, covariance = cs_kalman.predict(
+        last.mean, last.covariance, plots.time - last.time, manoeuvre
+    )
     told = _tells(covariance, plots.covariance)
     mean, covariance, _, _ = kalman_update(
-        mean, covariance, plots.position - mean.take(POSITION, 1), plots.covariance, POSITION)
+        mean, covariance, plots.position - mean.take(POSITION, 1), plots.covariance, POSITION
+    )
     return mean, covariance, told
 
 
@@ -150,12 +162,12 @@ def _block(state, plots, manoeuvre):
 
     covariance = both[..., :3, :3].swapaxes(2, 3).reshape(rows, 6, 6)
     told = _tells(covariance, plots.covariance)
-    toward, own = both[..., 3, :3].reshape(rows, 2, 6), both[..., 3, 3:]    # C cov(m, x), of m
-    spread = own[..., 0] + ((weight ** 2)[..., None, None] * noise).sum(1)
+    toward, own = both[..., 3, :3].reshape(rows, 2, 6), both[..., 3, 3:]  # C cov(m, x), of m
+    spread = own[..., 0] + ((weight**2)[..., None, None] * noise).sum(1)
     inverse, _ = invert_2x2(spread)
     behind = squared_distance(innovation, inverse) > SURPRISE
     shape = _shape(manoeuvre.frequency, plots.time - state.time[:, 0], own, behind)
-    gain = np.matmul(own[..., 0], inverse)                                  # of the position
+    gain = np.matmul(own[..., 0], inverse)  # of the position
     gain = (gain[:, :, None] * shape[:, None, :, None]).reshape(rows, 6, 2)
     mean = mean + np.matmul(gain, innovation[..., None])[..., 0]
     cross = np.matmul(gain, toward)
@@ -174,8 +186,9 @@ def _predict(state, time, weight, manoeuvre):
     """
     rows = len(time)
     limit = manoeuvre.max_acceleration
-    moves, noises, drives = _steps(manoeuvre.frequency, np.diff(
-        np.concatenate([state.time, time[:, None]], 1), axis=1))
+    moves, noises, drives = _steps(
+        manoeuvre.frequency, np.diff(np.concatenate([state.time, time[:, None]], 1), axis=1)
+    )
     x = state.mean[:, 0].reshape(rows, 2, 3)
     held = np.clip(x[:, :, 2:], -limit, limit)
     variance = 2 * manoeuvre.frequency * acceleration_variance(x[:, :, 2], limit)
@@ -211,8 +224,14 @@ def _shape(frequency, tau, own, behind):
     kalman = kalman / kalman[:, :1]
     limited = (tau > 0) & ~behind
     tau = np.where(limited, tau, 1.0)
-    limit = np.stack([np.ones_like(tau), VELOCITY_GAIN / tau,
-                      ACCELERATION_GAIN / (1 + FALL * frequency * tau) / tau ** 2], 1)
+    limit = np.stack(
+        [
+            np.ones_like(tau),
+            VELOCITY_GAIN / tau,
+            ACCELERATION_GAIN / (1 + FALL * frequency * tau) / tau**2,
+        ],
+        1,
+    )
     return np.where(limited[:, None], np.minimum(limit, kalman), kalman)
 
 
@@ -224,5 +243,8 @@ def _steps(frequency, steps):
     move = np.stack([one, step, phi2, none, one, phi1, none, none, phi0], -1)
     drive = np.stack([0.5 * step * step - phi2, step - phi1, 1 - phi0], -1)
     noise = q.T.take([0, 1, 2, 1, 3, 4, 2, 4, 5], 1)
-    return (move.reshape(*steps.shape, 3, 3), noise.reshape(*steps.shape, 3, 3),
-            drive.reshape(*steps.shape, 3))
+    return (
+        move.reshape(*steps.shape, 3, 3),
+        noise.reshape(*steps.shape, 3, 3),
+        drive.reshape(*steps.shape, 3),
+    )

@@ -30,23 +30,28 @@ from .gospa import assign_sticky
 from .metrics import CUTOFF, Live, chosen, live_rows
 from .recorded_truth import by_scan
 
-MAX_GAP = 120.0             # s
+MAX_GAP = 120.0  # s
 LEAST_SCANS, LOST_SCANS = 16, 8
-CLASSES = (1, 10, 20, 50)   # scans: each class of track lengths begins at one
+CLASSES = (1, 10, 20, 50)  # scans: each class of track lengths begins at one
 
-_ERRORS = {'radial_speed': ('mps', 'm/s', 'radial speed'), 'range': ('m', 'm', 'range'),
-           'bearing': ('deg', 'deg', 'bearing')}
-_CLASS_NAMES = [f'tracks_of_{low}_to_{high - 1}_scans' for low, high in zip(CLASSES, CLASSES[1:])
-                ] + [f'tracks_of_{CLASSES[-1]}_scans_or_more']
+_ERRORS = {
+    'radial_speed': ('mps', 'm/s', 'radial speed'),
+    'range': ('m', 'm', 'range'),
+    'bearing': ('deg', 'deg', 'bearing'),
+}
+_CLASS_NAMES = [
+    f'tracks_of_{low}_to_{high - 1}_scans' for low, high in zip(CLASSES, CLASSES[1:])
+] + [f'tracks_of_{CLASSES[-1]}_scans_or_more']
 FIGURES = {
     'runs': ('', 'track files'),
     'vessels': ('', f'vessels in view for {LEAST_SCANS} scans or more'),
     'held': ('', 'part of their scans in view with a track, all vessels'),
     'lost_percent': ('%', f'vessels and runs without track in the last {LOST_SCANS} scans in view'),
-    **{f'{name}_error_{what}_{suffix}': (unit, f'{text} of the error in {words}')
-       for name, (suffix, unit, words) in _ERRORS.items()
-       for what, text in (('mean', 'mean'), ('sd', 'standard deviation'),
-                          ('max', 'greatest size'))},
+    **{
+        f'{name}_error_{what}_{suffix}': (unit, f'{text} of the error in {words}')
+        for name, (suffix, unit, words) in _ERRORS.items()
+        for what, text in (('mean', 'mean'), ('sd', 'standard deviation'), ('max', 'greatest size'))
+    },
     'ahead_s': ('s', 'time by which tracks run ahead of AIS along its way; late reports show here'),
     'tracks': ('', 'tracks, per run'),
     **{name: ('', 'of them, by length') for name in _CLASS_NAMES},
@@ -69,8 +74,11 @@ class _Fleet(NamedTuple):
         at = np.repeat(time, len(self.names))
         position, velocity = motion.locate_ships(self.paths, vessel, at)
         shape = (len(time), len(self.names))
-        return (position.reshape(*shape, 2), velocity.reshape(*shape, 2),
-                motion.exist(self.paths, vessel, at).reshape(shape))
+        return (
+            position.reshape(*shape, 2),
+            velocity.reshape(*shape, 2),
+            motion.exist(self.paths, vessel, at).reshape(shape),
+        )
 
 
 class _Run(NamedTuple):
@@ -86,9 +94,15 @@ class _Run(NamedTuple):
     held: NDArray[np.bool_]
 
 
-def score(recording: Recording, runs: Sequence[TrackRows], ais_file: Path,
-          origin: Sequence[float] | None = None, start: float | None = None,
-          cutoff: float | None = None, max_gap: float = MAX_GAP) -> dict[str, float | int | None]:
+def score(
+    recording: Recording,
+    runs: Sequence[TrackRows],
+    ais_file: Path,
+    origin: Sequence[float] | None = None,
+    start: float | None = None,
+    cutoff: float | None = None,
+    max_gap: float = MAX_GAP,
+) -> dict[str, float | int | None]:
     """The figures of FIGURES, None where there was nothing to take one from.
 
     runs    track files of the same scans
@@ -107,24 +121,38 @@ def score(recording: Recording, runs: Sequence[TrackRows], ais_file: Path,
     in_view = _in_view(recording, fleet)
     done = [_pair(recording, live_rows(recording, rows), fleet, in_view, cutoff) for rows in runs]
     long = in_view.sum(0) >= LEAST_SCANS
-    lost = [not run.held[np.flatnonzero(in_view[:, v])[-LOST_SCANS:], v].any()
-            for run in done for v in np.flatnonzero(long)]
+    lost = [
+        not run.held[np.flatnonzero(in_view[:, v])[-LOST_SCANS:], v].any()
+        for run in done
+        for v in np.flatnonzero(long)
+    ]
     of_long = [run.held[:, long][in_view[:, long]] for run in done]
     figures: dict[str, float | int | None] = {
-        'runs': len(runs), 'vessels': int(long.sum()),
-        'held': _mean(np.concatenate(of_long)), 'lost_percent': _mean(100.0 * np.array(lost)),
-        **_errors(recording, done, fleet), **_lengths(done)}
+        'runs': len(runs),
+        'vessels': int(long.sum()),
+        'held': _mean(np.concatenate(of_long)),
+        'lost_percent': _mean(100.0 * np.array(lost)),
+        **_errors(recording, done, fleet),
+        **_lengths(done),
+    }
     return {name: figures[name] for name in FIGURES}
 
 
 def _origin(recording: Recording, given: Sequence[float] | None) -> tuple[float, float]:
     origin = recording.notes.get('origin') if given is None else given
     if origin is None:
-        raise ValueError(f'recording {recording.name} does not tell where on Earth it is: give '
-                         'its origin, here or in notes.json')
-    if not (isinstance(origin, (list, tuple)) and len(origin) == 2 and all(
+        raise ValueError(
+            f'recording {recording.name} does not tell where on Earth it is: give '
+            'its origin, here or in notes.json'
+        )
+    if not (
+        isinstance(origin, (list, tuple))
+        and len(origin) == 2
+        and all(
             type(degrees) in (int, float) and abs(degrees) <= most
-            for degrees, most in zip(origin, (85, 180)))):
+            for degrees, most in zip(origin, (85, 180))
+        )
+    ):
         raise ValueError(f'origin is {origin}; it must be latitude and longitude in degrees')
     return float(origin[0]), float(origin[1])
 
@@ -132,8 +160,9 @@ def _origin(recording: Recording, given: Sequence[float] | None) -> tuple[float,
 def _fleet(recording, file, origin, start, max_gap) -> _Fleet:
     end = float(recording.scans[-1].end)
     vessels = ais.read(file, start, end, max_gap)
-    return _Fleet(list(vessels),
-                  motion.table([ais.way(reports, origin) for reports in vessels.values()], end))
+    return _Fleet(
+        list(vessels), motion.table([ais.way(reports, origin) for reports in vessels.values()], end)
+    )
 
 
 def _in_view(recording: Recording, fleet: _Fleet) -> NDArray[np.bool_]:
@@ -143,8 +172,9 @@ def _in_view(recording: Recording, fleet: _Fleet) -> NDArray[np.bool_]:
     own, _ = own_ship_at(recording.own_ship, middle)
     distance = np.linalg.norm(position - own[:, None], axis=-1)
     ranges = np.concatenate([scan.plots.range for scan in recording.scans])
-    return known & (distance >= ranges.min(initial=np.inf)) & (
-        distance <= ranges.max(initial=-np.inf))
+    return (
+        known & (distance >= ranges.min(initial=np.inf)) & (distance <= ranges.max(initial=-np.inf))
+    )
 
 
 def _pair(recording: Recording, live: Live, fleet: _Fleet, in_view, cutoff: float) -> _Run:
@@ -157,8 +187,9 @@ def _pair(recording: Recording, live: Live, fleet: _Fleet, in_view, cutoff: floa
     for k, rows in enumerate(by_scan(live.scan, len(recording.scans))):
         near = np.flatnonzero((apart[rows] < cutoff).any(0))
         distance = np.minimum(apart[rows][:, near].T, 2 * cutoff)
-        vessel, column = assign_sticky(distance, cutoff, [
-            np.flatnonzero(live.track[rows] == last[v]).tolist() for v in near])
+        vessel, column = assign_sticky(
+            distance, cutoff, [np.flatnonzero(live.track[rows] == last[v]).tolist() for v in near]
+        )
         held[k, near[vessel]] = True
         last[near[vessel]] = live.track[rows[column]]
         pairs.append(np.stack([rows[column], near[vessel]], -1))
@@ -173,12 +204,25 @@ def _errors(recording: Recording, done: list[_Run], fleet: _Fleet) -> dict:
         time = run.live.time[row]
         position, velocity, _ = (values[np.arange(len(row)), vessel] for values in fleet.at(time))
         own, _ = own_ship_at(recording.own_ship, time)
-        seen, true = (_seen(place - own, speed) for place, speed in (
-            (run.live.position[row], run.live.velocity[row]), (position, velocity)))
+        seen, true = (
+            _seen(place - own, speed)
+            for place, speed in (
+                (run.live.position[row], run.live.velocity[row]),
+                (position, velocity),
+            )
+        )
         ahead = ((run.live.position[row] - position) * velocity).sum(1)
-        parts.append(np.column_stack([
-            seen[0] - true[0], seen[1] - true[1], np.degrees(wrap_angle(seen[2] - true[2])),
-            ahead, (velocity ** 2).sum(1)]))
+        parts.append(
+            np.column_stack(
+                [
+                    seen[0] - true[0],
+                    seen[1] - true[1],
+                    np.degrees(wrap_angle(seen[2] - true[2])),
+                    ahead,
+                    (velocity**2).sum(1),
+                ]
+            )
+        )
     errors = np.concatenate(parts)
     figures: dict[str, float | None] = {}
     for column, (name, (suffix, _, _)) in enumerate(_ERRORS.items()):
@@ -221,11 +265,14 @@ def _lengths(done: list[_Run]) -> dict:
     length, bend = np.concatenate(scans), np.concatenate(bends)
     which = np.searchsorted(CLASSES, length, 'right') - 1
     runs = len(done)
-    return {'tracks': len(length) / runs,
-            **{name: int((which == k).sum()) / runs for k, name in enumerate(_CLASS_NAMES)},
-            'strangers': strange / runs, 'mean_length_scans': _mean(length),
-            'mean_length_s': _mean(np.concatenate(seconds)),
-            'roughness_m': float(np.sqrt((bend ** 2).sum(1).mean())) if len(bend) else None}
+    return {
+        'tracks': len(length) / runs,
+        **{name: int((which == k).sum()) / runs for k, name in enumerate(_CLASS_NAMES)},
+        'strangers': strange / runs,
+        'mean_length_scans': _mean(length),
+        'mean_length_s': _mean(np.concatenate(seconds)),
+        'roughness_m': float(np.sqrt((bend**2).sum(1).mean())) if len(bend) else None,
+    }
 
 
 def _mean(values) -> float | None:

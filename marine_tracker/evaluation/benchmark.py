@@ -14,15 +14,15 @@ from ..parameters import TrackerParameters
 from ..tracking.tracker import Tracker
 from ..types import OwnShip, PolarPlots, Scan
 
-PERIOD = 60 / 22                    # s
-RANGE_SIGMA = 20.0                  # m
+PERIOD = 60 / 22  # s
+RANGE_SIGMA = 20.0  # m
 BEARING_SIGMA = float(np.radians(0.5))
 DETECTION = 0.9
 NEAREST, FARTHEST = 0.25 * NAUTICAL_MILE, 24 * NAUTICAL_MILE
 STONE_SOUP = 'Stone Soup'
-WARM_UP = 12                        # scans in which the tracker finds the targets by itself
-TURN_CPU = 0.1                      # s, this tracker's least share of a turn
-KEPT_WITHIN = 4.0                   # of the plot noise at that range, plus 50 m
+WARM_UP = 12  # scans in which the tracker finds the targets by itself
+TURN_CPU = 0.1  # s, this tracker's least share of a turn
+KEPT_WITHIN = 4.0  # of the plot noise at that range, plus 50 m
 
 
 class Traffic(NamedTuple):
@@ -58,11 +58,12 @@ def traffic(targets: int, clutter: int, scans: int, seed: int) -> Traffic:
     Every plot of a scan carries one time, as both trackers then extrapolate every track once.
     """
     rng = np.random.default_rng(seed)
-    distance = np.sqrt(rng.uniform(NEAREST ** 2, FARTHEST ** 2, targets))
+    distance = np.sqrt(rng.uniform(NEAREST**2, FARTHEST**2, targets))
     position = distance[:, None] * unit_vector(rng.uniform(0, 2 * np.pi, targets))
     speed, course = rng.uniform(0, 30 * KNOT, targets), rng.uniform(0, 2 * np.pi, targets)
-    turning = np.where(np.arange(targets) < targets // 10,
-                       np.radians(rng.uniform(0.5, 1.5, targets)), 0.0)
+    turning = np.where(
+        np.arange(targets) < targets // 10, np.radians(rng.uniform(0.5, 1.5, targets)), 0.0
+    )
     own = np.zeros((1, 2))
     out, positions, velocities = [], [], []
     for k in range(scans):
@@ -72,13 +73,18 @@ def traffic(targets: int, clutter: int, scans: int, seed: int) -> Traffic:
         seen = rng.random(targets) < DETECTION
         range_ = np.hypot(*position[seen].T) + rng.normal(0, RANGE_SIGMA, seen.sum())
         bearing = np.arctan2(*position[seen].T) + rng.normal(0, BEARING_SIGMA, seen.sum())
-        range_ = np.r_[range_, np.sqrt(rng.uniform(NEAREST ** 2, FARTHEST ** 2, clutter))]
+        range_ = np.r_[range_, np.sqrt(rng.uniform(NEAREST**2, FARTHEST**2, clutter))]
         bearing = np.r_[bearing, rng.uniform(0, 2 * np.pi, clutter)]
         order = rng.permutation(len(range_))
         at = np.full(len(range_), k * PERIOD)
-        out.append(Scan(k * PERIOD, k * PERIOD, PolarPlots(
-            at, range_[order], wrap_bearing(bearing[order]), np.zeros(len(at))),
-            OwnShip(np.array([k * PERIOD]), own, own)))
+        out.append(
+            Scan(
+                k * PERIOD,
+                k * PERIOD,
+                PolarPlots(at, range_[order], wrap_bearing(bearing[order]), np.zeros(len(at))),
+                OwnShip(np.array([k * PERIOD]), own, own),
+            )
+        )
         course = course + (turning * PERIOD if scans // 3 <= k < 2 * scans // 3 else 0.0)
         position = position + velocity * PERIOD
     return Traffic(out, np.stack(positions), np.stack(velocities))
@@ -92,13 +98,16 @@ class Clock:
 
     def time(self, estimator: Estimator) -> Estimator:
         """The same estimator, by the clock."""
+
         def timed(function):
             def run(*arguments):
                 begin = time.process_time()
                 found = function(*arguments)
                 self.spent += time.process_time() - begin
                 return found
+
             return run
+
         return Estimator(estimator.init, timed(estimator.extrapolate), timed(estimator.update))
 
 
@@ -109,8 +118,13 @@ def run_tracker(scene: Traffic, estimator: str) -> Iterator[BenchmarkResult]:
     """
     targets = scene.position.shape[1]
     parameters = TrackerParameters(
-        estimator=estimator, range_sigma_m=RANGE_SIGMA, bearing_sigma_deg=0.5,
-        glint_sigma_m=0.0, scan_period_s=PERIOD, max_tracks=min(2 * targets + 1000, 100000))
+        estimator=estimator,
+        range_sigma_m=RANGE_SIGMA,
+        bearing_sigma_deg=0.5,
+        glint_sigma_m=0.0,
+        scan_period_s=PERIOD,
+        max_tracks=min(2 * targets + 1000, 100000),
+    )
     clock = Clock()
     tracker = Tracker(parameters, clock.time(ESTIMATORS[estimator](parameters)))
     warm = tracker.start()
@@ -124,9 +138,14 @@ def run_tracker(scene: Traffic, estimator: str) -> Iterator[BenchmarkResult]:
             memory, _ = tracker.step(memory, scan)
             after.append(memory.tracks)
         cpu = time.process_time() - begin
-        yield BenchmarkResult(cpu / len(timed), clock.spent / len(timed), [
-            tracker.extrapolate(tracks, scan.end).position[tracks.number > 0]
-            for tracks, scan in zip(after, timed, strict=True)])
+        yield BenchmarkResult(
+            cpu / len(timed),
+            clock.spent / len(timed),
+            [
+                tracker.extrapolate(tracks, scan.end).position[tracks.number > 0]
+                for tracks, scan in zip(after, timed, strict=True)
+            ],
+        )
 
 
 def run_stone_soup(scene: Traffic) -> Iterator[BenchmarkResult]:
@@ -157,11 +176,16 @@ def run_stone_soup(scene: Traffic) -> Iterator[BenchmarkResult]:
     axis = ConstantVelocity(0.05)
     predictor = ExtendedKalmanPredictor(CombinedLinearGaussianTransitionModel([axis, axis]))
     radar = CartesianToBearingRange(
-        ndim_state=4, mapping=(0, 2), noise_covar=np.diag([BEARING_SIGMA ** 2, RANGE_SIGMA ** 2]))
+        ndim_state=4, mapping=(0, 2), noise_covar=np.diag([BEARING_SIGMA**2, RANGE_SIGMA**2])
+    )
     updater = ExtendedKalmanUpdater(radar)
     associator = DetectionKDTreeGNN2D(
         DistanceHypothesiser(predictor, updater, Mahalanobis(), missed_distance=4),
-        predictor, updater, number_of_neighbours=5, max_distance_covariance_multiplier=3)
+        predictor,
+        updater,
+        number_of_neighbours=5,
+        max_distance_covariance_multiplier=3,
+    )
 
     rng = np.random.default_rng(0)
     first = WARM_UP - 1
@@ -171,20 +195,31 @@ def run_stone_soup(scene: Traffic) -> Iterator[BenchmarkResult]:
     for (e, n), (ve, vn), r in zip(position, velocity, distance, strict=True):
         sigma = np.array([RANGE_SIGMA + r * BEARING_SIGMA, 3, RANGE_SIGMA + r * BEARING_SIGMA, 3])
         state = np.array([e, ve, n, vn]) + rng.normal(0, 0.5, 4) * sigma
-        tracks.add(Track([GaussianState(state, np.diag(sigma ** 2),
-                                        start + datetime.timedelta(seconds=first * PERIOD))]))
+        tracks.add(
+            Track(
+                [
+                    GaussianState(
+                        state, np.diag(sigma**2), start + datetime.timedelta(seconds=first * PERIOD)
+                    )
+                ]
+            )
+        )
     for k in range(WARM_UP, len(scene.scans)):
         plots = scene.scans[k].plots
         now = start + datetime.timedelta(seconds=k * PERIOD)
         detections = {
             Detection(np.array([[np.pi / 2 - b], [r]]), timestamp=now, measurement_model=radar)
-            for b, r in zip(plots.bearing, plots.range, strict=True)}
+            for b, r in zip(plots.bearing, plots.range, strict=True)
+        }
         begin = time.process_time()
         for track, hypothesis in associator.associate(tracks, detections, now).items():
             track.append(updater.update(hypothesis) if hypothesis else hypothesis.prediction)
         cpu = time.process_time() - begin
-        yield BenchmarkResult(cpu, np.nan, [np.array([[float(t.state_vector[0]), float(t.state_vector[2])]
-                                    for t in tracks])])
+        yield BenchmarkResult(
+            cpu,
+            np.nan,
+            [np.array([[float(t.state_vector[0]), float(t.state_vector[2])] for t in tracks])],
+        )
 
 
 def _nearest(truth, found):
@@ -204,8 +239,14 @@ def _result(turns: Sequence[BenchmarkResult], found, scene: Traffic) -> Result:
     return Result(cpu, estimator, float(kept[-1].mean()), rmse)
 
 
-def benchmark(targets: int, clutter: int, estimators: Sequence[str], timed_scans: int, seed: int,
-              alone: bool = False) -> dict[str, Result]:
+def benchmark(
+    targets: int,
+    clutter: int,
+    estimators: Sequence[str],
+    timed_scans: int,
+    seed: int,
+    alone: bool = False,
+) -> dict[str, Result]:
     """This tracker with each of the estimators, and Stone Soup, on one scene, by name.
 
     They take turns, scan by scan of Stone Soup, so that what else the machine does meets all
@@ -214,7 +255,7 @@ def benchmark(targets: int, clutter: int, estimators: Sequence[str], timed_scans
     scene = traffic(targets, clutter, WARM_UP + timed_scans, seed)
     ours = {name: run_tracker(scene, name) for name in estimators}
     for turns in ours.values():
-        next(turns)                                 # the first pass faults its memory in
+        next(turns)  # the first pass faults its memory in
     theirs = None
     if not alone and find_spec('stonesoup'):
         theirs = run_stone_soup(scene)

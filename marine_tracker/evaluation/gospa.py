@@ -27,19 +27,30 @@ def gospa_parts(distance: Array, cutoff: float) -> tuple[float, float, float]:
     """
     row, column = assign(distance, cutoff)
     targets, tracks = distance.shape
-    alone = cutoff ** 2 / 2
-    return (float((distance[row, column] ** 2).sum()), (targets - len(row)) * alone,
-            (tracks - len(row)) * alone)
+    alone = cutoff**2 / 2
+    return (
+        float((distance[row, column] ** 2).sum()),
+        (targets - len(row)) * alone,
+        (tracks - len(row)) * alone,
+    )
 
 
-def assign_sticky(distance: Array, cutoff: float, last: Sequence[Sequence[int]]
-                  ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def assign_sticky(
+    distance: Array, cutoff: float, last: Sequence[Sequence[int]]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Pairs where each row keeps the column it had while within the cutoff, then the best rest.
 
     last  for each row the column that it had, in a list; an empty list for none
     """
-    kept = np.array([(row, column) for row, columns in enumerate(last) for column in columns
-                     if distance[row, column] < cutoff], np.int64).reshape(-1, 2)
+    kept = np.array(
+        [
+            (row, column)
+            for row, columns in enumerate(last)
+            for column in columns
+            if distance[row, column] < cutoff
+        ],
+        np.int64,
+    ).reshape(-1, 2)
     free = distance.copy()
     free[kept[:, 0]] = cutoff
     free[:, kept[:, 1]] = cutoff

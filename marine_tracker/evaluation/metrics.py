@@ -27,9 +27,9 @@ from ..types import Array
 from .gospa import assign, assign_sticky, gospa_parts
 from .recorded_truth import Truths, as_plotted, by_scan, seen_by_radar
 
-SHORT_LIVED = 20        # scans
-CUTOFF = 100.0          # m, where the recording's notes do not tell
-SEEN_WITHIN = 50.0      # m, likewise
+SHORT_LIVED = 20  # scans
+CUTOFF = 100.0  # m, where the recording's notes do not tell
+SEEN_WITHIN = 50.0  # m, likewise
 LIVE = ('confirmed', 'coasting')
 
 FIGURES = {
@@ -58,7 +58,9 @@ FIGURES = {
     'never_confirmed': ('', 'targets that never had a track'),
     'false_per_scan': ('', 'tracks without target'),
     'false_short_lived_per_scan': (
-        '', f'the same, only tracks never on a target, false in under {SHORT_LIVED} scans'),
+        '',
+        f'the same, only tracks never on a target, false in under {SHORT_LIVED} scans',
+    ),
     'false_tracks': ('', 'tracks never on a target'),
 }
 TARGET_FIGURES = {
@@ -86,17 +88,22 @@ class Score(NamedTuple):
 class Live(NamedTuple):
     """The rows [R] of live tracks, in the order of scans, at most one a track and scan."""
 
-    scan: NDArray[np.int64]         # index of the scan
-    track: NDArray[np.int64]        # number of the track in this file
+    scan: NDArray[np.int64]  # index of the scan
+    track: NDArray[np.int64]  # number of the track in this file
     time: Array
     position: Array
     velocity: Array
     predicted: Array
-    before: NDArray[np.int64]       # row of the same track in the scan before, -1 for none
+    before: NDArray[np.int64]  # row of the same track in the scan before, -1 for none
 
 
-def score(recording: Recording, tracks: TrackRows, cutoff: float | None = None,
-          bias_deg: float | None = None, lag: float | None = None) -> Score:
+def score(
+    recording: Recording,
+    tracks: TrackRows,
+    cutoff: float | None = None,
+    bias_deg: float | None = None,
+    lag: float | None = None,
+) -> Score:
     """Score tracks against the truth of a recording, by the rules above.
 
     cutoff    m; default the notes' cutoff_m, else 100
@@ -108,21 +115,26 @@ def score(recording: Recording, tracks: TrackRows, cutoff: float | None = None,
     """
     cutoff = chosen(recording, 'cutoff_m', cutoff, CUTOFF, above=0.0)
     within = chosen(recording, 'seen_within_m', None, SEEN_WITHIN, above=0.0)
-    truth = as_plotted(recording, chosen(recording, 'azimuth_bias_deg', bias_deg, 0.0),
-                       chosen(recording, 'plot_lag_s', lag, 0.0))
+    truth = as_plotted(
+        recording,
+        chosen(recording, 'azimuth_bias_deg', bias_deg, 0.0),
+        chosen(recording, 'plot_lag_s', lag, 0.0),
+    )
     if not len(truth.time):
         raise ValueError(f'recording {recording.name} has no truth to score against')
     seen, plotted = seen_by_radar(recording, truth, within)
     live = live_rows(recording, tracks)
     scans = len(recording.scans)
-    parts = np.zeros((scans, 3))                    # m^2: localisation, missed, false
-    pairs: list[NDArray[np.int64]] = []             # rows of truth and live, by GOSPA
-    holder = np.full(len(truth.time), -1)           # track on each truth, by pairs that stick
+    parts = np.zeros((scans, 3))  # m^2: localisation, missed, false
+    pairs: list[NDArray[np.int64]] = []  # rows of truth and live, by GOSPA
+    holder = np.full(len(truth.time), -1)  # track on each truth, by pairs that stick
     false = np.zeros(len(live.time), bool)
-    last: dict[int, int] = {}                       # target -> the track it had last
+    last: dict[int, int] = {}  # target -> the track it had last
     for k, (at, rows) in enumerate(zip(by_scan(truth.scan, scans), by_scan(live.scan, scans))):
-        moved = live.position[rows] + live.velocity[rows] * (
-            truth.time[at][:, None] - live.time[rows])[..., None]
+        moved = (
+            live.position[rows]
+            + live.velocity[rows] * (truth.time[at][:, None] - live.time[rows])[..., None]
+        )
         distance = np.linalg.norm(moved - truth.position[at][:, None], axis=-1)
         matched, column = assign(distance, cutoff)
         aside = column[~seen[at][matched]]
@@ -131,32 +143,51 @@ def score(recording: Recording, tracks: TrackRows, cutoff: float | None = None,
         matched, column = assign(distance, cutoff)
         parts[k] = gospa_parts(distance, cutoff)
         pairs.append(np.stack([at[matched], rows[column]], -1))
-        matched, column = assign_sticky(distance, cutoff, [
-            np.flatnonzero(live.track[rows] == last.get(target, -1)).tolist()
-            for target in truth.target[at].tolist()])
+        matched, column = assign_sticky(
+            distance,
+            cutoff,
+            [
+                np.flatnonzero(live.track[rows] == last.get(target, -1)).tolist()
+                for target in truth.target[at].tolist()
+            ],
+        )
         holder[at[matched]] = live.track[rows[column]]
         last.update(zip(truth.target[at[matched]].tolist(), live.track[rows[column]].tolist()))
         false[np.delete(rows, column)] = True
-    targets = {int(target): _of_target(truth.time[rows], holder[rows])
-               for target in dict.fromkeys(truth.target[seen].tolist())
-               for rows in [np.flatnonzero(seen & (truth.target == target))]}
+    targets = {
+        int(target): _of_target(truth.time[rows], holder[rows])
+        for target in dict.fromkeys(truth.target[seen].tolist())
+        for rows in [np.flatnonzero(seen & (truth.target == target))]
+    }
     figures = {
-        'cutoff_m': cutoff, 'scans': scans, 'truth_targets': len(targets),
-        'truth_rows': len(truth.time), 'scored_rows': int(seen.sum()),
+        'cutoff_m': cutoff,
+        'scans': scans,
+        'truth_targets': len(targets),
+        'truth_rows': len(truth.time),
+        'scored_rows': int(seen.sum()),
         'plot_fraction_on_scored': _mean(plotted[seen]),
-        **_gospa(parts), **_errors(truth, live, np.concatenate(pairs)),
+        **_gospa(parts),
+        **_errors(truth, live, np.concatenate(pairs)),
         **_holding(truth, live, np.concatenate(pairs), holder[seen], targets, cutoff),
-        **_false(live, false, holder, scans)}
-    return Score({name: figures[name] for name in FIGURES}, targets,
-                 bool(recording.notes.get('uncooperative', True)))
+        **_false(live, false, holder, scans),
+    }
+    return Score(
+        {name: figures[name] for name in FIGURES},
+        targets,
+        bool(recording.notes.get('uncooperative', True)),
+    )
 
 
-def chosen(recording: Recording, name: str, given: float | None, default: float,
-            above: float = -np.inf) -> float:
+def chosen(
+    recording: Recording, name: str, given: float | None, default: float, above: float = -np.inf
+) -> float:
     """What was given, else what the recording's notes say, else the default."""
     value = recording.notes.get(name, default) if given is None else given
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not (
-            above < value < np.inf):
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, (int, float))
+        or not (above < value < np.inf)
+    ):
         limit = 'finite' if above == -np.inf else f'above {above:g} and finite'
         raise ValueError(f'{name} is {value!r}; it must be a number, {limit}')
     return float(value)
@@ -168,17 +199,24 @@ def live_rows(recording: Recording, tracks: TrackRows) -> Live:
     rows = np.argsort(tracks.time, kind='stable')
     rows = rows[(np.isin(tracks.status, LIVE) & known)[rows]]
     names, track = np.unique(tracks.track[rows], return_inverse=True)
-    slot = scan[rows] * len(names) + track              # one number for a scan and a track
+    slot = scan[rows] * len(names) + track  # one number for a scan and a track
     slots, first = np.unique(slot, return_index=True)
     last = len(slot) - 1 - np.unique(slot[::-1], return_index=True)[1]
     scan_before = np.searchsorted(slots, slots - len(names))
     before = np.where(np.isin(slots - len(names), slots), scan_before, -1)
     order = np.lexsort([first, scan[rows[first]]])
-    place = np.argsort(order)                           # of each slot in that order
+    place = np.argsort(order)  # of each slot in that order
     before = np.where(before >= 0, place[before], -1)[order] if len(slots) else before
     rows = rows[last[order]]
-    return Live(scan[rows], track[last[order]], tracks.time[rows], tracks.position[rows],
-                 tracks.velocity[rows], tracks.predicted[rows], before)
+    return Live(
+        scan[rows],
+        track[last[order]],
+        tracks.time[rows],
+        tracks.position[rows],
+        tracks.velocity[rows],
+        tracks.predicted[rows],
+        before,
+    )
 
 
 def _scan_of(recording: Recording, tracks: TrackRows):
@@ -188,17 +226,21 @@ def _scan_of(recording: Recording, tracks: TrackRows):
         scan = np.minimum(scan, len(recording.numbers) - 1)
         return scan, recording.numbers[scan] == tracks.scan
     times = recording.own_ship.time
-    scan = np.searchsorted((times[1:] + times[:-1]) / 2, tracks.time)       # the nearest in time
+    scan = np.searchsorted((times[1:] + times[:-1]) / 2, tracks.time)  # the nearest in time
     return scan, np.ones(len(scan), bool)
 
 
 def _gospa(parts: Array) -> dict:
     localisation, missed, false = np.sqrt(parts.mean(0)).tolist()
     total = np.sqrt(parts.sum(1))
-    return {'gospa_mean_m': float(total.mean()), 'gospa_rms_m': _rms(total),
-            'gospa_localisation_rms_m': localisation, 'gospa_missed_rms_m': missed,
-            'gospa_false_rms_m': false,
-            'gospa_without_false_m': float(np.sqrt(parts[:, :2].sum(1)).mean())}
+    return {
+        'gospa_mean_m': float(total.mean()),
+        'gospa_rms_m': _rms(total),
+        'gospa_localisation_rms_m': localisation,
+        'gospa_missed_rms_m': missed,
+        'gospa_false_rms_m': false,
+        'gospa_without_false_m': float(np.sqrt(parts[:, :2].sum(1)).mean()),
+    }
 
 
 def _errors(truth: Truths, live: Live, pairs) -> dict:
@@ -210,11 +252,13 @@ def _errors(truth: Truths, live: Live, pairs) -> dict:
     old = live.before[row[again]]
     reckoned = _error(truth, at[again], live.position[old], live.velocity[old], live.time[old])
     position = _error(truth, at, live.position[row], live.velocity[row], live.time[row])
-    return {'position_rmse_m': _rms(position),
-            'position_median_m': float(np.median(position)) if len(position) else None,
-            'velocity_rmse_mps': _rms(velocity[np.isfinite(velocity)]),
-            'prediction_rmse_m': _rms(predicted[np.isfinite(predicted)]),
-            'cv_prediction_rmse_m': _rms(reckoned)}
+    return {
+        'position_rmse_m': _rms(position),
+        'position_median_m': float(np.median(position)) if len(position) else None,
+        'velocity_rmse_mps': _rms(velocity[np.isfinite(velocity)]),
+        'prediction_rmse_m': _rms(predicted[np.isfinite(predicted)]),
+        'cv_prediction_rmse_m': _rms(reckoned),
+    }
 
 
 def _error(truth: Truths, at, position, velocity, time) -> Array:
@@ -226,32 +270,40 @@ def _error(truth: Truths, at, position, velocity, time) -> Array:
 def _holding(truth: Truths, live: Live, pairs, holder, targets: dict, cutoff: float) -> dict:
     at, row = pairs.T
     near = _error(truth, at, live.position[row], live.velocity[row], live.time[row]) < cutoff / 5
-    waits = [t['first_confirmation_s'] for t in targets.values()
-             if t['first_confirmation_s'] is not None]
+    waits = [
+        t['first_confirmation_s'] for t in targets.values() if t['first_confirmation_s'] is not None
+    ]
     count = max(len(targets), 1)
-    return {'held': _mean(holder >= 0),
-            'held_within_fifth': int(near.sum()) / max(len(holder), 1),
-            'breaks_per_target': sum(t['breaks'] for t in targets.values()) / count,
-            'switches_per_target': sum(t['switches'] for t in targets.values()) / count,
-            'first_confirmation_s': float(np.median(waits)) if waits else None,
-            'never_confirmed': len(targets) - len(waits)}
+    return {
+        'held': _mean(holder >= 0),
+        'held_within_fifth': int(near.sum()) / max(len(holder), 1),
+        'breaks_per_target': sum(t['breaks'] for t in targets.values()) / count,
+        'switches_per_target': sum(t['switches'] for t in targets.values()) / count,
+        'first_confirmation_s': float(np.median(waits)) if waits else None,
+        'never_confirmed': len(targets) - len(waits),
+    }
 
 
 def _of_target(time: Array, holder) -> dict:
     """Figures of one target from its scored truths: their times and the tracks on them."""
     held = holder >= 0
-    return {'rows': len(held), 'held': float(held.mean()),
-            'breaks': int((held[:-1] & ~held[1:]).sum()),
-            'switches': int((np.diff(holder[held]) != 0).sum()),
-            'first_confirmation_s': float(time[held][0] - time[0]) if held.any() else None}
+    return {
+        'rows': len(held),
+        'held': float(held.mean()),
+        'breaks': int((held[:-1] & ~held[1:]).sum()),
+        'switches': int((np.diff(holder[held]) != 0).sum()),
+        'first_confirmation_s': float(time[held][0] - time[0]) if held.any() else None,
+    }
 
 
 def _false(live: Live, false, holder, scans: int) -> dict:
     count = np.bincount(live.track[false], minlength=live.track.max(initial=-1) + 1)
-    count[np.unique(holder[holder >= 0])] = 0       # tracks that were once on a target
-    return {'false_per_scan': int(false.sum()) / scans,
-            'false_short_lived_per_scan': int(count[count < SHORT_LIVED].sum()) / scans,
-            'false_tracks': int((count > 0).sum())}
+    count[np.unique(holder[holder >= 0])] = 0  # tracks that were once on a target
+    return {
+        'false_per_scan': int(false.sum()) / scans,
+        'false_short_lived_per_scan': int(count[count < SHORT_LIVED].sum()) / scans,
+        'false_tracks': int((count > 0).sum()),
+    }
 
 
 def _mean(values) -> float | None:
@@ -259,4 +311,4 @@ def _mean(values) -> float | None:
 
 
 def _rms(values) -> float | None:
-    return float(np.sqrt(np.mean(values ** 2))) if len(values) else None
+    return float(np.sqrt(np.mean(values**2))) if len(values) else None

@@ -24,8 +24,12 @@ def run(jobs: Sequence[Job], processes: int, progress: Progress) -> list[Any]:
     done = 0
     progress(done, len(jobs))
     others = set(multiprocessing.active_children())
-    with _one_thread_each(), ProcessPoolExecutor(
-            min(processes, len(jobs)), multiprocessing.get_context('spawn'), _begin) as pool:
+    with (
+        _one_thread_each(),
+        ProcessPoolExecutor(
+            min(processes, len(jobs)), multiprocessing.get_context('spawn'), _begin
+        ) as pool,
+    ):
         try:
             futures = [pool.submit(job.function, *job.arguments) for job in jobs]
             for future in as_completed(futures):
@@ -35,7 +39,7 @@ def run(jobs: Sequence[Job], processes: int, progress: Progress) -> list[Any]:
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             for process in set(multiprocessing.active_children()) - others:
-                process.terminate()         # would go on for minutes
+                process.terminate()  # would go on for minutes
             raise
         return [future.result() for future in futures]
 

@@ -10,8 +10,8 @@ from ..recording.csv_folder import Recording
 from ..types import Array
 from .gospa import assign
 
-WINDOW = 11     # scans around a truth ...
-NEEDED = 5      # ... of which this many need a plot; 3 are met by chance among landmarks
+WINDOW = 11  # scans around a truth ...
+NEEDED = 5  # ... of which this many need a plot; 3 are met by chance among landmarks
 
 
 class Truths(NamedTuple):
@@ -36,8 +36,7 @@ def as_plotted(recording: Recording, bias_deg: float, lag: float) -> Truths:
     Where the recording gives no velocity it is taken from the positions two scans before and after.
     """
     scan = np.repeat(np.arange(len(recording.scans)), [len(t.time) for t in recording.truths])
-    time, target, position, velocity = (
-        np.concatenate(column) for column in zip(*recording.truths))
+    time, target, position, velocity = (np.concatenate(column) for column in zip(*recording.truths))
     for one in np.unique(target):
         rows = np.flatnonzero(target == one)
         if len(rows) > 1:
@@ -51,12 +50,12 @@ def as_plotted(recording: Recording, bias_deg: float, lag: float) -> Truths:
     # Clockwise, as bearings grow: [east, north] of the old north and of the old east.
     east, north = unit_vector(np.radians([bias_deg + 90.0, bias_deg]))
     turn = np.stack([east, north])
-    return Truths(scan, target, time, origin + offset @ turn, velocity @ turn,
-                   np.hypot(*offset.T))
+    return Truths(scan, target, time, origin + offset @ turn, velocity @ turn, np.hypot(*offset.T))
 
 
-def seen_by_radar(recording: Recording, truth: Truths, within: float
-                  ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def seen_by_radar(
+    recording: Recording, truth: Truths, within: float
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """[T] whether the radar saw each truth, and whether it had a plot in that very scan.
 
     within  m, a plot no farther than this from a truth may be its plot
@@ -64,12 +63,14 @@ def seen_by_radar(recording: Recording, truth: Truths, within: float
     plotted = np.zeros(len(truth.time), bool)
     for rows, scan in zip(by_scan(truth.scan, len(recording.scans)), recording.scans):
         plots = _own_ship_at(recording, scan.plots.time) + (
-            scan.plots.range[:, None] * unit_vector(scan.plots.bearing))
+            scan.plots.range[:, None] * unit_vector(scan.plots.bearing)
+        )
         distance = np.linalg.norm(truth.position[rows][:, None] - plots, axis=-1)
         plotted[rows[assign(distance, within)[0]]] = True
     ranges = np.concatenate([scan.plots.range for scan in recording.scans])
-    seen = ((truth.range >= ranges.min(initial=np.inf))
-            & (truth.range <= ranges.max(initial=-np.inf)))
+    seen = (truth.range >= ranges.min(initial=np.inf)) & (
+        truth.range <= ranges.max(initial=-np.inf)
+    )
     number = recording.numbers[truth.scan]
     for target in np.unique(truth.target):
         rows = np.flatnonzero(truth.target == target)
@@ -88,5 +89,4 @@ def by_scan(scan, count: int) -> list[NDArray[np.intp]]:
 def _own_ship_at(recording: Recording, time) -> Array:
     """Own ship's position [..., 2] m by the whole recording; at rest before and after it."""
     own_ship = recording.own_ship
-    return np.stack([np.interp(time, own_ship.time, column)
-                     for column in own_ship.position.T], -1)
+    return np.stack([np.interp(time, own_ship.time, column) for column in own_ship.position.T], -1)

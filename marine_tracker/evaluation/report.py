@@ -36,25 +36,35 @@ class Claim(NamedTuple):
 
 def at_most(name: str, value, limit: float, unit: str = '', against: str | None = None) -> Figure:
     """A figure that must not exceed `limit`; one that could not be measured fails."""
-    return Figure(name, value, unit, f'<= {limit:g}', value is not None and bool(value <= limit),
-                  against)
+    return Figure(
+        name, value, unit, f'<= {limit:g}', value is not None and bool(value <= limit), against
+    )
 
 
 def at_least(name: str, value, limit: float, unit: str = '', against: str | None = None) -> Figure:
     """A figure that must reach `limit`; one that could not be measured fails."""
-    return Figure(name, value, unit, f'>= {limit:g}', value is not None and bool(value >= limit),
-                  against)
+    return Figure(
+        name, value, unit, f'>= {limit:g}', value is not None and bool(value >= limit), against
+    )
 
 
 def add_arguments(parser) -> None:
     """--json, for every command that measures."""
-    parser.add_argument('--json', metavar='FILE',
-                        help='also write the figures as JSON; - for standard output, the table '
-                             'then goes to standard error')
+    parser.add_argument(
+        '--json',
+        metavar='FILE',
+        help='also write the figures as JSON; - for standard output, the table '
+        'then goes to standard error',
+    )
 
 
-def publish(title: str, figures: Sequence[Figure], json_to: str | None = None,
-            facts: dict[str, Any] | None = None, claims: Sequence[Claim] = ()) -> int:
+def publish(
+    title: str,
+    figures: Sequence[Figure],
+    json_to: str | None = None,
+    facts: dict[str, Any] | None = None,
+    claims: Sequence[Claim] = (),
+) -> int:
     """Print the table and the claims, write the JSON where asked, and return the exit code.
 
     json_to  a file, '-' for standard output, None for no JSON
@@ -91,14 +101,19 @@ def table(figures: Sequence[Figure]) -> str:
     """The figures as aligned lines; a column that says nothing is left out."""
     verdict = {None: '', True: 'ok', False: 'MISSED'}
     rows = [('figure', 'value', 'unit', 'limit', '', 'against')]
-    rows += [(f.name, number(f.value), f.unit, f.limit or '', verdict[f.ok], f.against or '')
-             for f in figures]
+    rows += [
+        (f.name, number(f.value), f.unit, f.limit or '', verdict[f.ok], f.against or '')
+        for f in figures
+    ]
     columns = [column for column in zip(*rows) if any(column[1:])]
     widths = [max(map(len, column)) for column in columns]
     return '\n'.join(
-        '  '.join(cell.rjust(width) if cell and column[0] == 'value' else cell.ljust(width)
-                  for cell, width, column in zip(cells, widths, columns)).rstrip()
-        for cells in zip(*columns))
+        '  '.join(
+            cell.rjust(width) if cell and column[0] == 'value' else cell.ljust(width)
+            for cell, width, column in zip(cells, widths, columns)
+        ).rstrip()
+        for cells in zip(*columns)
+    )
 
 
 def number(value) -> str:

@@ -8,7 +8,7 @@ from .report import Claim, Figure
 
 BORNE_OUT, NOT_BORNE_OUT, IN_PART = 'borne out', 'not borne out', 'borne out in part'
 
-Progress = Callable[[int, int], None]           # parts done, and of how many
+Progress = Callable[[int, int], None]  # parts done, and of how many
 
 
 class Picture(NamedTuple):

@@ -29,9 +29,17 @@ def follow(tracker: Tracker, recording: Recording) -> TrackRows:
     for number, scan in zip(recording.numbers.tolist(), recording.scans, strict=True):
         memory, report = tracker.step(memory, scan)
         now = tracker.extrapolate(report.tracks, report.time)
-        rows.append((now.time, report.tracks.id.astype(str), names[report.tracks.status],
-                     now.position, now.velocity, report.predicted,
-                     np.full(len(now.time), number)))
+        rows.append(
+            (
+                now.time,
+                report.tracks.id.astype(str),
+                names[report.tracks.status],
+                now.position,
+                now.velocity,
+                report.predicted,
+                np.full(len(now.time), number),
+            )
+        )
     return TrackRows(*map(np.concatenate, zip(*rows)))
 
 
@@ -39,6 +47,7 @@ def simulated(chosen: scenario.Scenario, seed: int) -> Recording:
     """A scenario as a recording."""
     with tempfile.TemporaryDirectory() as work:
         folder = Path(work, chosen.name)
-        csv_folder.write(folder, chosen.name, radar.simulate(chosen, seed),
-                         chosen.tracker_parameters())
+        csv_folder.write(
+            folder, chosen.name, radar.simulate(chosen, seed), chosen.tracker_parameters()
+        )
         return csv_folder.read(folder)

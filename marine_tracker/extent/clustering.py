@@ -19,10 +19,10 @@ from ..gaussian.linear import invert_2x2, squared_distance
 from ..types import Array, Plots
 from .smear import smear
 
-LINK = 1.5                  # range resolutions, and beam widths
-GAP = 40.0                  # m
+LINK = 1.5  # range resolutions, and beam widths
+GAP = 40.0  # m
 TURN = 2 * np.pi
-REACH = 225.0               # m from a hull's middle: so far what touches it is still its own
+REACH = 225.0  # m from a hull's middle: so far what touches it is still its own
 
 
 class Gates(NamedTuple):
@@ -90,12 +90,20 @@ def _links(cells, range_resolution, beam_width):
     if len(cells.range) < 2:
         return np.zeros((2, 0), np.int64)
     turn = TURN / (LINK * beam_width)
-    places = np.column_stack([cells.range / (LINK * range_resolution),
-                              np.minimum(cells.bearing * (turn / TURN), np.nextafter(turn, 0))])
+    places = np.column_stack(
+        [
+            cells.range / (LINK * range_resolution),
+            np.minimum(cells.bearing * (turn / TURN), np.nextafter(turn, 0)),
+        ]
+    )
     tree = cKDTree(places, boxsize=[0, turn], balanced_tree=False)
     near = cKDTree(cells.position, balanced_tree=False)
-    return np.concatenate([tree.query_pairs(1.0 + 1e-9, p=np.inf, output_type='ndarray'),
-                           near.query_pairs(GAP, output_type='ndarray')]).T
+    return np.concatenate(
+        [
+            tree.query_pairs(1.0 + 1e-9, p=np.inf, output_type='ndarray'),
+            near.query_pairs(GAP, output_type='ndarray'),
+        ]
+    ).T
 
 
 def in_gates(cells: Plots, gates: Gates) -> Place:
@@ -104,14 +112,16 @@ def in_gates(cells: Plots, gates: Gates) -> Place:
     if not len(gates.time):
         return Place(np.full(len(dry), -1), np.full(len(dry), np.inf), dry)
     later = cells.time - gates.time[:, None]
-    offset = (cells.position - gates.middle[:, None]
-              - later[..., None] * gates.velocity[:, None])             # [H, M, 2]
+    offset = (
+        cells.position - gates.middle[:, None] - later[..., None] * gates.velocity[:, None]
+    )  # [H, M, 2]
     inverse, _ = invert_2x2(gates.area)
     depth = squared_distance(offset, inverse[:, None])
     nearest = depth.argmin(0)
     every = np.arange(len(nearest))
-    return Place(np.where(depth[nearest, every] <= 1, nearest, -1),
-                 np.hypot(*offset[nearest, every].T), dry)
+    return Place(
+        np.where(depth[nearest, every] <= 1, nearest, -1), np.hypot(*offset[nearest, every].T), dry
+    )
 
 
 def _groups(first, second, place):
@@ -123,17 +133,20 @@ def _groups(first, second, place):
     gate, count = place.gate, len(place.gate)
     same = gate[first] == gate[second]
     hulls = (gate >= 0).nonzero()[0]
-    pairs = (np.concatenate([first[same], hulls]),
-             np.concatenate([second[same], count + gate[hulls]]))
-    graph = coo_array((np.ones(len(pairs[0]), np.int8), pairs),
-                      shape=(count + gate.max(initial=-1) + 1,) * 2)
+    pairs = (
+        np.concatenate([first[same], hulls]),
+        np.concatenate([second[same], count + gate[hulls]]),
+    )
+    graph = coo_array(
+        (np.ones(len(pairs[0]), np.int8), pairs), shape=(count + gate.max(initial=-1) + 1,) * 2
+    )
     group = connected_components(graph, directed=False)[1]
     crowded = np.zeros(len(group), bool)
     if same.all():
         return group[:count], crowded[:count]
     one, other = first[~same], second[~same]
     swap = gate[one] < 0
-    one, other = np.where(swap, other, one), np.where(swap, one, other)     # `one` in a gate
+    one, other = np.where(swap, other, one), np.where(swap, one, other)  # `one` in a gate
     hull, part = group[one], group[other]
     reach = np.zeros(len(group))
     np.maximum.at(reach, group[:count], place.off)
@@ -175,8 +188,15 @@ def _summary(cells, group, crowded, place, range_resolution, beam_width):
     along = off[:, 0] * np.sin(half)[group] + off[:, 1] * np.cos(half)[group]
     sin, cos = (mean(f(cells.bearing)) for f in (np.sin, np.cos))
     return Clusters(
-        mean(cells.time), position, scatter, count,
+        mean(cells.time),
+        position,
+        scatter,
+        count,
         smear(mean(cells.range), np.arctan2(sin, cos), range_resolution, beam_width),
-        most(along, -np.inf) + most(-along, -np.inf), most(cells.amplitude, -np.inf),
-        most(place.gate, -1), most(crowded, False), _mostly(place.land, group, clusters),
-        group)
+        most(along, -np.inf) + most(-along, -np.inf),
+        most(cells.amplitude, -np.inf),
+        most(place.gate, -1),
+        most(crowded, False),
+        _mostly(place.land, group, clusters),
+        group,
+    )

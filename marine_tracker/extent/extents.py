@@ -30,13 +30,13 @@ from .smear import smear
 
 # Of a ship's length: how far the centroid strays along her axis; across, as the lit side changes.
 STRAY_ALONG, STRAY_ACROSS = 0.1, 0.04
-RAMP = 0.2                  # of the way to an outline's centre that the plots move each scan
-ROD_SPREAD = 12.0                  # length^2 over variance of a rod
+RAMP = 0.2  # of the way to an outline's centre that the plots move each scan
+ROD_SPREAD = 12.0  # length^2 over variance of a rod
 # A gate is so many times the extent, the smear and the expectation's covariance: half again the
 # half length, and 2.8 deviations.
 OF_EXTENT, OF_NOISE = 1.5, 8.0
-AT_SEA = 22                 # scans clear of land that prove a ship, though she lies on it later
-ALIKE, DRIFT = 9.0, 2.0     # squared distance of velocities, and m/s, of two parts of one hull
+AT_SEA = 22  # scans clear of land that prove a ship, though she lies on it later
+ALIKE, DRIFT = 9.0, 2.0  # squared distance of velocities, and m/s, of two parts of one hull
 
 
 class ExtentsMemory(NamedTuple):
@@ -84,16 +84,22 @@ class Extents:
 
     def start(self) -> ExtentsMemory:
         """No targets yet."""
-        return ExtentsMemory(hulls.begin(self.parameters.extent == 'gp'), np.zeros((0, 2)),
-                      np.zeros(0, np.int64), land_map.empty(), 0)
+        return ExtentsMemory(
+            hulls.begin(self.parameters.extent == 'gp'),
+            np.zeros((0, 2)),
+            np.zeros(0, np.int64),
+            land_map.empty(),
+            0,
+        )
 
     def adopt(self, known: ExtentsMemory, previous: 'Extents') -> ExtentsMemory:
         """The memory of another; sizes are found anew where it was asked for something else."""
         same = self.parameters.extent == previous.parameters.extent
         return known if same else self.start()
 
-    def track(self, tracker: Any, tracks: Any, known: ExtentsMemory, scan: Scan
-              ) -> tuple[tuple[Any, ExtentsMemory], Any, Scan, Shapes | None]:
+    def track(
+        self, tracker: Any, tracks: Any, known: ExtentsMemory, scan: Scan
+    ) -> tuple[tuple[Any, ExtentsMemory], Any, Scan, Shapes | None]:
         """One antenna revolution: a step of a `tracking.tracker.Tracker` and of this.
 
         Returns the tracker's memory and this one's, the tracker's report, the scan that it refers
@@ -103,48 +109,66 @@ class Extents:
             tracks, report = tracker.step(tracks, scan)
             return (tracks, known), report, scan, None
         sure = take(tracks.tracks, tracks.tracks.number > 0)
-        plain, seen = self.reduce(known, scan, sure.id, tracker.extrapolate(
-            sure, 0.5 * (scan.start + scan.end)))
+        plain, seen = self.reduce(
+            known, scan, sure.id, tracker.extrapolate(sure, 0.5 * (scan.start + scan.end))
+        )
         tracks, report = tracker.step(tracks, plain)
         estimate = tracker.extrapolate(report.tracks, report.time)
         known = self.step(known, seen, report.tracks.id, report.time, report.plot, estimate)
         noise = self._noise(known.hulls.matrix.mean[:, :2] - seen.own)
         return (tracks, known), report, plain, hulls.shapes(known.hulls, noise, estimate.position)
 
-    def reduce(self, memory: ExtentsMemory, scan: Scan, ids, ahead: Extrapolation) -> tuple[Scan, Seen]:
+    def reduce(
+        self, memory: ExtentsMemory, scan: Scan, ids, ahead: Extrapolation
+    ) -> tuple[Scan, Seen]:
         """The scan with one plot a cluster, land left out.
 
         ids [N] of the tracks that are surely targets, and where they are expected.
         """
         p = self.parameters
-        cells = locate(scan.plots, scan.own_ship, p.range_sigma_m,
-                       float(np.radians(p.bearing_sigma_deg)))
+        cells = locate(
+            scan.plots, scan.own_ship, p.range_sigma_m, float(np.radians(p.bearing_sigma_deg))
+        )
         own, _ = own_ship_at(scan.own_ship, 0.5 * (scan.start + scan.end))
         gates, row = self._gates(memory, ids, ahead, own)
         place = in_gates(cells, gates)
         along = unit_vector(cells.bearing)
         width = (self.beam_width * cells.range)[:, None] * np.stack([along[:, 1], -along[:, 0]], -1)
         land = land_map.learn(memory.land, cells.position, width)
-        found = cluster(cells, p.range_resolution_m, self.beam_width, place._replace(
-            land=(place.gate < 0) & land_map.on_land(land, cells.position)))
+        found = cluster(
+            cells,
+            p.range_resolution_m,
+            self.beam_width,
+            place._replace(land=(place.gate < 0) & land_map.on_land(land, cells.position)),
+        )
         dry = found.land | ((found.size > LONGEST) & (found.gate < 0))
         chosen = (~dry).nonzero()[0]
         plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan)
         return scan._replace(plots=plots), Seen(cells, found, chosen, int(dry.sum()), own, land)
 
-    def step(self, memory: ExtentsMemory, seen: Seen, ids, time, plot, estimate: Extrapolation) -> ExtentsMemory:
+    def step(
+        self, memory: ExtentsMemory, seen: Seen, ids, time, plot, estimate: Extrapolation
+    ) -> ExtentsMemory:
         """After the tracker's step: ids [N] of its tracks, time [N] s, plot [N] rows of the
         reduced scan or -1, and its estimate then."""
         taken = np.where(plot >= 0, np.append(seen.chosen, -1)[plot], -1)
-        edge = (lit_edge(seen.cells, seen.clusters.of_cell, seen.clusters.noise,
-                         self.parameters.range_resolution_m, self.beam_width)
-                if self.parameters.extent == 'gp' else None)
-        known = hulls.step(memory.hulls, ids, time, estimate, seen.clusters, taken, edge,
-                           seen.own)
+        edge = (
+            lit_edge(
+                seen.cells,
+                seen.clusters.of_cell,
+                seen.clusters.noise,
+                self.parameters.range_resolution_m,
+                self.beam_width,
+            )
+            if self.parameters.extent == 'gp'
+            else None
+        )
+        known = hulls.step(memory.hulls, ids, time, estimate, seen.clusters, taken, edge, seen.own)
         shift, at_sea = np.zeros((len(ids), 2)), np.zeros(len(ids), np.int64)
         was = row_of(memory.hulls.id, ids)
-        shift[was >= 0], at_sea[was >= 0] = (of[was[was >= 0]] for of in (
-            memory.shift, memory.at_sea))
+        shift[was >= 0], at_sea[was >= 0] = (
+            of[was[was >= 0]] for of in (memory.shift, memory.at_sea)
+        )
         at_sea += ~land_map.on_land(seen.map, estimate.position)
         wanted = np.zeros_like(shift)
         if known.outline is not None:
@@ -166,14 +190,18 @@ class Extents:
         row = row_of(memory.hulls.id, ids)
         row, ahead = row[row >= 0], take(ahead, row >= 0)
         kept = (memory.hulls.scans[row] > 0) & (
-            (memory.at_sea[row] >= AT_SEA) | ~land_map.on_land(memory.land, ahead.position))
+            (memory.at_sea[row] >= AT_SEA) | ~land_map.on_land(memory.land, ahead.position)
+        )
         row, ahead = row[kept], take(ahead, kept)
         matrix = memory.hulls.matrix
-        area = (OF_EXTENT * matrix.extent[row]
-                + OF_NOISE * (self._noise(ahead.position - own) + ahead.covariance[:, :2, :2]))
+        area = OF_EXTENT * matrix.extent[row] + OF_NOISE * (
+            self._noise(ahead.position - own) + ahead.covariance[:, :2, :2]
+        )
         gates, kept = one_a_ship(
             Gates(ahead.time, ahead.position - memory.shift[row], ahead.velocity, area),
-            ahead.covariance[:, 2:, 2:], memory.hulls.scans[row] < hulls.SCANS)
+            ahead.covariance[:, 2:, 2:],
+            memory.hulls.scans[row] < hulls.SCANS,
+        )
         return gates, row[kept]
 
     def _plots(self, memory, chosen, row, scan):
@@ -191,12 +219,14 @@ class Extents:
         value, vector = np.linalg.eigh(extent)
         length = np.sqrt(ROD_SPREAD * SHIP.spread * value[:, 1])
         stray = (vector * np.square([STRAY_ACROSS, STRAY_ALONG])) @ vector.swapaxes(1, 2)
-        covariance = (cell_covariance(extent, chosen.noise) / count
-                      + np.square(length)[:, None, None] * stray)
+        covariance = (
+            cell_covariance(extent, chosen.noise) / count + np.square(length)[:, None, None] * stray
+        )
         origin, _ = own_ship_at(scan.own_ship, chosen.time)
         range_, bearing = to_range_bearing(chosen.position + shift - origin)
-        _, single = polar_to_position(range_, bearing, p.range_sigma_m,
-                                      np.radians(p.bearing_sigma_deg))
+        _, single = polar_to_position(
+            range_, bearing, p.range_sigma_m, np.radians(p.bearing_sigma_deg)
+        )
         covariance = np.where(count > 1, covariance, single)
         return PolarPlots(chosen.time, range_, bearing, chosen.amplitude, covariance=covariance)
 
@@ -215,11 +245,16 @@ def one_a_ship(gates: Gates, velocity_covariance, young) -> tuple[Gates, NDArray
     edge = way / np.sqrt(np.maximum(squared_distance(apart, inverse[:, None]), 1e-12))
     differ = gates.velocity[:, None] - gates.velocity
     certain, _ = invert_2x2(velocity_covariance[:, None] + velocity_covariance)
-    one = np.triu((way <= edge + edge.T) & (squared_distance(differ, certain) < ALIKE)
-                  & (np.square(differ).sum(-1) < DRIFT ** 2) & (young[:, None] | young), 1)
+    one = np.triu(
+        (way <= edge + edge.T)
+        & (squared_distance(differ, certain) < ALIKE)
+        & (np.square(differ).sum(-1) < DRIFT**2)
+        & (young[:, None] | young),
+        1,
+    )
     area = gates.area.copy()
     for older, younger in zip(*one.nonzero()):
         reach = 1 + edge[younger, older] / max(way[older, younger], 1.0)
-        area[older] += reach ** 2 * np.outer(apart[older, younger], apart[older, younger])
+        area[older] += reach**2 * np.outer(apart[older, younger], apart[older, younger])
     kept = (~one.any(0)).nonzero()[0]
     return take(gates._replace(area=area), kept), kept

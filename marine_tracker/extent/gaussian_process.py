@@ -26,10 +26,10 @@ from .input_noise import VARIANTS, input_variance, noisy_radius
 from .radial_function import Contour, radius
 from .random_matrix import constant_velocity
 
-HEADING, RATE, FIRST_RADIUS = 4, 5, 6        # where they begin in the state
-PLACE = np.array([0, 1, HEADING])       # on which the angle depends
-NEAREST = 0.5                           # of mu: cells nearer to the centre turn no further
-TINY = 1e-6                             # m
+HEADING, RATE, FIRST_RADIUS = 4, 5, 6  # where they begin in the state
+PLACE = np.array([0, 1, HEADING])  # on which the angle depends
+NEAREST = 0.5  # of mu: cells nearer to the centre turn no further
+TINY = 1e-6  # m
 
 
 class Model(NamedTuple):
@@ -88,8 +88,9 @@ def start(model: Model, time, motion, covariance, f, semi_axes) -> GpState:
     joint = np.zeros((len(time), n, n))
     joint[:, :FIRST_RADIUS, :FIRST_RADIUS] = covariance
     joint[:, FIRST_RADIUS:, FIRST_RADIUS:] = model.contour.covariance
-    return GpState(np.array(time, float), np.concatenate([motion, f], 1), joint,
-                   np.array(semi_axes, float))
+    return GpState(
+        np.array(time, float), np.concatenate([motion, f], 1), joint, np.array(semi_axes, float)
+    )
 
 
 def predict(state: GpState, time, model: Model) -> GpState:
@@ -97,8 +98,11 @@ def predict(state: GpState, time, model: Model) -> GpState:
     step = time - state.time
     _, kick = constant_velocity(step)
     mean, covariance = state.mean.copy(), state.covariance.copy()
-    for moved, speed, noise in ((0, 2, model.noise), (1, 3, model.noise),
-                                (HEADING, RATE, model.turn_noise)):
+    for moved, speed, noise in (
+        (0, 2, model.noise),
+        (1, 3, model.noise),
+        (HEADING, RATE, model.turn_noise),
+    ):
         mean[:, moved] += step * mean[:, speed]
         covariance[:, moved] += step[:, None] * covariance[:, speed]
         covariance[:, :, moved] += step[:, None] * covariance[:, :, speed]
@@ -111,22 +115,35 @@ def measure(state: GpState, cell, noise, model: Model, rng=None) -> Measurement:
     """How cells [N, 2] m with noise [N, 2, 2] m^2, one of each row, stand to the state."""
     distance, bearing = to_range_bearing(cell - state.mean[:, :2])
     along = unit_vector(bearing)
-    across = np.stack([along[:, 1], -along[:, 0]], -1)              # t = dp / dtheta
+    across = np.stack([along[:, 1], -along[:, 0]], -1)  # t = dp / dtheta
     angle, f = bearing - state.mean[:, HEADING], state.mean[:, FIRST_RADIUS:]
     distance = np.maximum(distance, TINY)
     known = radius(model.contour, state.semi_axes, f, angle[:, None]).mean[:, 0]
-    at = noisy_radius(model.contour, state.semi_axes, f, angle, input_variance(
-        across, np.maximum(distance, NEAREST * np.abs(known)), noise,
-        state.covariance[:, PLACE[:, None], PLACE] if model.full else None), model.variant, rng)
+    at = noisy_radius(
+        model.contour,
+        state.semi_axes,
+        f,
+        angle,
+        input_variance(
+            across,
+            np.maximum(distance, NEAREST * np.abs(known)),
+            noise,
+            state.covariance[:, PLACE[:, None], PLACE] if model.full else None,
+        ),
+        model.variant,
+        rng,
+    )
     inside, spread = model.inside
     jacobian = np.zeros_like(state.mean)
     jacobian[:, :2] = along - (inside * at.slope / distance)[:, None] * across
     jacobian[:, HEADING] = -inside * at.slope
     jacobian[:, FIRST_RADIUS:] = inside * at.weight
     radial = ((along[:, None] @ noise)[:, 0] * along).sum(-1)
-    return Measurement(distance - inside * at.mean, jacobian,
-                       radial + inside ** 2 * at.variance
-                       + spread ** 2 * (at.mean ** 2 + at.variance))
+    return Measurement(
+        distance - inside * at.mean,
+        jacobian,
+        radial + inside**2 * at.variance + spread**2 * (at.mean**2 + at.variance),
+    )
 
 
 def update(state: GpState, rows, cells, count, noise, model: Model, rng=None):
@@ -141,9 +158,9 @@ def update(state: GpState, rows, cells, count, noise, model: Model, rng=None):
         has = (count > j).nonzero()[0]
         here = take(now, has)
         seen = measure(here, cells[has, j], noise[has], model, rng)
-        cross = (here.covariance @ seen.jacobian[..., None])[..., 0]            # P H'
-        spread = (cross * seen.jacobian).sum(-1) + seen.noise                   # S
-        squared = seen.innovation ** 2 / spread
+        cross = (here.covariance @ seen.jacobian[..., None])[..., 0]  # P H'
+        spread = (cross * seen.jacobian).sum(-1) + seen.noise  # S
+        squared = seen.innovation**2 / spread
         total[has] += squared
         gain = cross / spread[:, None] * (squared <= model.gate)[:, None]
         now.mean[has] += gain * seen.innovation[:, None]

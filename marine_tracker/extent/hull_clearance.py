@@ -7,7 +7,7 @@ import numpy as np
 
 from ..types import Array
 
-STEPS = 4           # points on each side of an outline, between which the distance hardly bends
+STEPS = 4  # points on each side of an outline, between which the distance hardly bends
 
 
 def hull_clearance(outline: Array, position: Array, velocity: Array) -> Array:
@@ -20,7 +20,7 @@ def hull_clearance(outline: Array, position: Array, velocity: Array) -> Array:
     """
     share = np.arange(STEPS) / STEPS
     following = np.roll(outline, -1, 1)
-    points = (outline[:, :, None] + share[:, None] * (following - outline)[:, :, None])
+    points = outline[:, :, None] + share[:, None] * (following - outline)[:, :, None]
     points = points.reshape(len(outline), STEPS * outline.shape[1], 2) + position[:, None]
     speed = np.hypot(*velocity.T)
     way = velocity / np.maximum(speed, 1e-9)[:, None]

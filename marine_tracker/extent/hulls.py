@@ -23,15 +23,15 @@ from .lit_edge import FRINGE, Edge
 from .random_matrix import BOX_SPREAD, NO_MEMORY, RandomMatrixState
 from .ship_outline import SHIP, SLENDER, from_random_matrix, off_course
 
-BY_RANDOM_MATRIX, BY_GAUSSIAN_PROCESS = 0, 1       # methods
-SCANS, CELLS, SMEAR = 10, 10.0, 0.4     # for an outline: scans; mean cells; smear over half beam
-OFF_COURSE = np.radians(15)         # of an outline's heading: it is wrong
-NIS = 3.0                           # mean nu^2 / S of an outline's cells: they contradict it
-EDGE_CELLS = 6                      # of the lit edge that an outline needs to start
-RECENT = 5.0                        # scans that the means of cells and NIS remember
-FIRST_WEIGHT = 6.0                  # of a random matrix's first cluster
-LOST_TOUCH = 16.0                   # squared distance of the random matrix from the track
-SLOW = 1.0                          # m/s: slower, a course says little about the heading
+BY_RANDOM_MATRIX, BY_GAUSSIAN_PROCESS = 0, 1  # methods
+SCANS, CELLS, SMEAR = 10, 10.0, 0.4  # for an outline: scans; mean cells; smear over half beam
+OFF_COURSE = np.radians(15)  # of an outline's heading: it is wrong
+NIS = 3.0  # mean nu^2 / S of an outline's cells: they contradict it
+EDGE_CELLS = 6  # of the lit edge that an outline needs to start
+RECENT = 5.0  # scans that the means of cells and NIS remember
+FIRST_WEIGHT = 6.0  # of a random matrix's first cluster
+LOST_TOUCH = 16.0  # squared distance of the random matrix from the track
+SLOW = 1.0  # m/s: slower, a course says little about the heading
 
 
 class Hulls(NamedTuple):
@@ -80,10 +80,18 @@ class Shapes(NamedTuple):
 
 
 NOTHING = Clusters(
-    time=np.zeros(1), position=np.zeros((1, 2)), scatter=np.zeros((1, 2, 2)),
-    cells=np.ones(1, np.int64), noise=np.eye(2)[None], size=np.zeros(1), amplitude=np.zeros(1),
-    gate=np.full(1, -1), crowded=np.zeros(1, bool), land=np.zeros(1, bool),
-    of_cell=np.zeros(0, np.int64))
+    time=np.zeros(1),
+    position=np.zeros((1, 2)),
+    scatter=np.zeros((1, 2, 2)),
+    cells=np.ones(1, np.int64),
+    noise=np.eye(2)[None],
+    size=np.zeros(1),
+    amplitude=np.zeros(1),
+    gate=np.full(1, -1),
+    crowded=np.zeros(1, bool),
+    land=np.zeros(1, bool),
+    of_cell=np.zeros(0, np.int64),
+)
 METHODS = ('random_matrix', 'gp')
 COURSE, AXIS, BY_OUTLINE = 0, 1, 2
 SOURCES = ('course', 'axis', 'outline')
@@ -94,15 +102,34 @@ _AROUND = 2 * np.pi / CORNERS * np.arange(CORNERS)
 def begin(outlines: bool) -> Hulls:
     """No targets yet; outlines: whether there may be some."""
     none = np.zeros(0)
-    matrix = random_matrix.start(none, np.zeros((0, 2)), np.zeros((0, 2, 2)),
-                                 Velocity(np.zeros((0, 2)), np.zeros((0, 2, 2))),
-                                 np.zeros((0, 2, 2)))
-    return Hulls(none.astype(np.int64), matrix, _no_outline(0) if outlines else None,
-                 none.astype(np.int8), none.astype(np.int64), none, none)
+    matrix = random_matrix.start(
+        none,
+        np.zeros((0, 2)),
+        np.zeros((0, 2, 2)),
+        Velocity(np.zeros((0, 2)), np.zeros((0, 2, 2))),
+        np.zeros((0, 2, 2)),
+    )
+    return Hulls(
+        none.astype(np.int64),
+        matrix,
+        _no_outline(0) if outlines else None,
+        none.astype(np.int8),
+        none.astype(np.int64),
+        none,
+        none,
+    )
 
 
-def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, taken,
-         edge: Edge | None, own_ship) -> Hulls:
+def step(
+    before: Hulls,
+    ids,
+    time,
+    estimate: Extrapolation,
+    clusters: Clusters,
+    taken,
+    edge: Edge | None,
+    own_ship,
+) -> Hulls:
     """One scan.
 
     ids [N] of the tracks, time [N] s when the beam passed them, estimate of the point tracker
@@ -110,9 +137,10 @@ def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, 
     outlines; own_ship [2] m.
     """
     new = ~np.isin(ids, before.id)
-    hulls = append(take(before, np.isin(before.id, ids)),
-                   _start(ids[new], take(estimate, new), clusters, taken[new],
-                          before.outline is not None))
+    hulls = append(
+        take(before, np.isin(before.id, ids)),
+        _start(ids[new], take(estimate, new), clusters, taken[new], before.outline is not None),
+    )
     hulls = take(hulls, np.argsort(hulls.id)[np.argsort(np.argsort(ids))])
     matrix = random_matrix.predict(hulls.matrix, time)
     has = (taken >= 0) & ~new
@@ -125,8 +153,9 @@ def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, 
     count = np.zeros(len(ids))
     count[has] = clusters.cells[taken[has]]
     late = np.where(has, 1 / np.minimum(hulls.scans + 1.0, RECENT), 0.0)
-    hulls = hulls._replace(matrix=matrix, scans=hulls.scans + whole,
-                           cells=hulls.cells + late * (count - hulls.cells))
+    hulls = hulls._replace(
+        matrix=matrix, scans=hulls.scans + whole, cells=hulls.cells + late * (count - hulls.cells)
+    )
     if hulls.outline is None or edge is None:
         return hulls
     return _outlines(hulls, time, rows, taken, own, edge, own_ship)
@@ -134,8 +163,7 @@ def step(before: Hulls, ids, time, estimate: Extrapolation, clusters: Clusters, 
 
 def take_clusters(clusters: Clusters, rows) -> Clusters:
     """The chosen clusters; of_cell is left as it is."""
-    return take(clusters._replace(of_cell=clusters.cells), rows)._replace(
-        of_cell=clusters.of_cell)
+    return take(clusters._replace(of_cell=clusters.cells), rows)._replace(of_cell=clusters.of_cell)
 
 
 def first_extent(scatter, count, noise):
@@ -153,21 +181,40 @@ def _start(ids, estimate, clusters, taken, outlines):
     own = take_clusters(clusters if len(clusters.cells) else NOTHING, taken)
     scatter = np.where(none[:, None, None], 0.0, own.scatter)
     position = np.where(none[:, None], estimate.position, own.position)
-    spread = np.where(none[:, None, None], estimate.covariance[:, :2, :2],
-                      own.scatter / own.cells[:, None, None] + own.noise)
+    spread = np.where(
+        none[:, None, None],
+        estimate.covariance[:, :2, :2],
+        own.scatter / own.cells[:, None, None] + own.noise,
+    )
     matrix = random_matrix.start(
-        estimate.time, position, spread / own.cells[:, None, None],
+        estimate.time,
+        position,
+        spread / own.cells[:, None, None],
         Velocity(estimate.velocity, estimate.covariance[:, 2:, 2:]),
         first_extent(scatter, own.cells, own.noise),
-        NO_MEMORY + np.where(none, 0.0, np.minimum(own.cells, FIRST_WEIGHT)))
-    return Hulls(ids, matrix, _no_outline(count) if outlines else None, np.zeros(count, np.int8),
-                 np.where(none, 0, 1), np.where(none, 1.0, own.cells), np.ones(count))
+        NO_MEMORY + np.where(none, 0.0, np.minimum(own.cells, FIRST_WEIGHT)),
+    )
+    return Hulls(
+        ids,
+        matrix,
+        _no_outline(count) if outlines else None,
+        np.zeros(count, np.int8),
+        np.where(none, 0, 1),
+        np.where(none, 1.0, own.cells),
+        np.ones(count),
+    )
 
 
 def _no_outline(count):
     none = np.zeros(count)
-    return gaussian_process.start(SHIP, none, np.zeros((count, 6)), np.zeros((count, 6, 6)),
-                                  np.ones((count, len(SHIP.contour.angle))), np.ones((count, 2)))
+    return gaussian_process.start(
+        SHIP,
+        none,
+        np.zeros((count, 6)),
+        np.zeros((count, 6, 6)),
+        np.ones((count, len(SHIP.contour.angle))),
+        np.ones((count, 2)),
+    )
 
 
 def _keep_touch(matrix, rows, own, estimate):
@@ -183,8 +230,11 @@ def _keep_touch(matrix, rows, own, estimate):
     if not len(lost):
         return matrix
     mean = np.concatenate([own.position, estimate.velocity], 1)[lost]
-    return put(matrix, rows[lost], take(ahead, lost)._replace(
-        mean=mean, covariance=estimate.covariance[lost]))
+    return put(
+        matrix,
+        rows[lost],
+        take(ahead, lost)._replace(mean=mean, covariance=estimate.covariance[lost]),
+    )
 
 
 def _outlines(hulls, time, rows, taken, own, edge, own_ship):
@@ -203,12 +253,18 @@ def _outlines(hulls, time, rows, taken, own, edge, own_ship):
     abeam = unit_vector(course + np.pi / 2)
     blur = np.full(len(time), np.inf)
     blur[rows] = np.sqrt(np.einsum('ni,nij,nj->n', abeam[rows], own.noise, abeam[rows]))
-    fit = ((hulls.scans >= SCANS) & (hulls.cells >= CELLS) & (cells >= EDGE_CELLS)
-           & (blur <= SMEAR * half) & moving)
+    fit = (
+        (hulls.scans >= SCANS)
+        & (hulls.cells >= CELLS)
+        & (cells >= EDGE_CELLS)
+        & (blur <= SMEAR * half)
+        & moving
+    )
     fresh = (fit & ~active).nonzero()[0]
     if len(fresh):
-        outline = put(outline, fresh, from_random_matrix(
-            take(matrix, fresh), take(found, fresh), own_ship))
+        outline = put(
+            outline, fresh, from_random_matrix(take(matrix, fresh), take(found, fresh), own_ship)
+        )
     method = hulls.method.copy()
     method[fresh] = BY_GAUSSIAN_PROCESS
     nis = hulls.nis.copy()
@@ -217,12 +273,16 @@ def _outlines(hulls, time, rows, taken, own, edge, own_ship):
     if len(lined):
         padded, count = _padded(edge, taken[lined])
         outline, found_nis = gaussian_process.update(
-            outline, lined, padded, count, edge.noise[taken[lined]], SHIP)
+            outline, lined, padded, count, edge.noise[taken[lined]], SHIP
+        )
         nis[lined] += (found_nis - nis[lined]) / RECENT
-    failed = (method == BY_GAUSSIAN_PROCESS) & ((moving & (off_course(outline) > OFF_COURSE)) | (nis > NIS))
+    failed = (method == BY_GAUSSIAN_PROCESS) & (
+        (moving & (off_course(outline) > OFF_COURSE)) | (nis > NIS)
+    )
     method[failed] = BY_RANDOM_MATRIX
-    return hulls._replace(outline=outline, method=method, nis=nis,
-                          scans=np.where(failed, 1, hulls.scans))
+    return hulls._replace(
+        outline=outline, method=method, nis=nis, scans=np.where(failed, 1, hulls.scans)
+    )
 
 
 def _padded(edge, chosen):
@@ -243,7 +303,7 @@ def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
     found = random_matrix.measures(matrix, noise, size=BOX_SPREAD)
     line = unit_vector(found.axis)
     fringe = FRINGE * np.sqrt(np.einsum('ni,nij,nj->n', line, noise, line))
-    return found._replace(length=np.sqrt(found.length ** 2 + 4 * fringe ** 2) - 2 * fringe)
+    return found._replace(length=np.sqrt(found.length**2 + 4 * fringe**2) - 2 * fringe)
 
 
 def shapes(hulls: Hulls, noise, position) -> Shapes:
@@ -263,7 +323,8 @@ def shapes(hulls: Hulls, noise, position) -> Shapes:
     line, across = unit_vector(found.axis), unit_vector(found.axis + np.pi / 2)
     points = matrix.mean[:, None, :2] + 0.5 * (
         found.length[:, None, None] * np.cos(_AROUND)[:, None] * line[:, None]
-        + found.beam[:, None, None] * np.sin(_AROUND)[:, None] * across[:, None])
+        + found.beam[:, None, None] * np.sin(_AROUND)[:, None] * across[:, None]
+    )
     length, length_sd, beam = found.length, found.length_sd, found.beam
     heading_sd = np.where(by_course, course_sd, found.axis_sd)
     source = np.where(by_course, COURSE, AXIS).astype(np.int8)
@@ -275,6 +336,14 @@ def shapes(hulls: Hulls, noise, position) -> Shapes:
         length[lined], length_sd[lined], beam[lined] = of.length, of.length_sd, of.beam
         heading[lined], heading_sd[lined] = outline.mean[:, HEADING], of.axis_sd
         source[lined] = BY_OUTLINE
-    return Shapes((hulls.cells >= 3) & (length > 3 * length_sd), length, length_sd, beam,
-                  np.mod(heading, 2 * np.pi), heading_sd, source, hulls.method,
-                  points - position[:, None])
+    return Shapes(
+        (hulls.cells >= 3) & (length > 3 * length_sd),
+        length,
+        length_sd,
+        beam,
+        np.mod(heading, 2 * np.pi),
+        heading_sd,
+        source,
+        hulls.method,
+        points - position[:, None],
+    )

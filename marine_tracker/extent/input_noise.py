@@ -19,14 +19,14 @@ from .radial_function import Contour, Radius, radius
 
 VARIANTS = ('gp', 'gp_ts', 'gp_ss', 'gp_mc', 'gp_q15')
 DRAWS = 100
-MOST = (np.pi / 3) ** 2         # rad^2: a wider angle says nothing, and its moments are not these
+MOST = (np.pi / 3) ** 2  # rad^2: a wider angle says nothing, and its moments are not these
 
 
 def _even_nodes():
     nodes = np.linspace(-2.8, 2.8, 15)
-    weights = np.exp(-0.5 * nodes ** 2)
+    weights = np.exp(-0.5 * nodes**2)
     weights /= weights.sum()
-    return nodes / np.sqrt(weights @ nodes ** 2), weights
+    return nodes / np.sqrt(weights @ nodes**2), weights
 
 
 POINT = (np.zeros(1), np.ones(1))

@@ -17,12 +17,12 @@ from scipy.spatial import cKDTree
 
 from ..types import Array
 
-SQUARE = 50.0           # m
-LONGEST = 450.0         # m, more than any ship
-MEMORY = 20             # scans
-KEEPS = 0.4             # share of scans in which a square that keeps echoing echoes
-SMEARED = np.linspace(-0.75, 0.75, 7)   # beam widths
-FORGOTTEN = 0.02        # likewise, below which a square is not remembered
+SQUARE = 50.0  # m
+LONGEST = 450.0  # m, more than any ship
+MEMORY = 20  # scans
+KEEPS = 0.4  # share of scans in which a square that keeps echoing echoes
+SMEARED = np.linspace(-0.75, 0.75, 7)  # beam widths
+FORGOTTEN = 0.02  # likewise, below which a square is not remembered
 
 
 class LandMap(NamedTuple):
@@ -51,13 +51,14 @@ def learn(before: LandMap, position, width) -> LandMap:
     position [M, 2] m; width [M, 2] m: across the line of sight, what the beam is wide there. An
     echo fills all squares over which it may be smeared, so a far shore has no gaps.
     """
-    hit = np.unique(_square(position[:, None] + SMEARED[:, None] * width[:, None]).reshape(-1, 2),
-                    axis=0)
+    hit = np.unique(
+        _square(position[:, None] + SMEARED[:, None] * width[:, None]).reshape(-1, 2), axis=0
+    )
     square, where = np.unique(np.concatenate([before.square, hit]), axis=0, return_inverse=True)
     where = where.reshape(-1)
     share = np.zeros(len(square))
-    share[where[:len(before.share)]] = before.share * (1 - 1 / MEMORY)
-    share[where[len(before.share):]] += 1 / MEMORY
+    share[where[: len(before.share)]] = before.share * (1 - 1 / MEMORY)
+    share[where[len(before.share) :]] += 1 / MEMORY
     kept = share >= FORGOTTEN
     square, share, scans = square[kept], share[kept], before.scans + 1
     known = 1 - (1 - 1 / MEMORY) ** scans
@@ -85,8 +86,10 @@ def _long(square, keeps):
         return long
     chosen = square[rows]
     pairs = cKDTree(chosen).query_pairs(1.5, p=np.inf, output_type='ndarray').T
-    pieces, piece = connected_components(coo_array(
-        (np.ones(pairs.shape[1], np.int8), tuple(pairs)), shape=(len(rows),) * 2), directed=False)
+    pieces, piece = connected_components(
+        coo_array((np.ones(pairs.shape[1], np.int8), tuple(pairs)), shape=(len(rows),) * 2),
+        directed=False,
+    )
     # The longest extension along eight directions: at most 2 % less than the piece's length.
     turn = np.pi / 8 * np.arange(8)
     along = chosen @ np.array([np.cos(turn), np.sin(turn)])

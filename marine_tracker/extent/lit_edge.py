@@ -13,8 +13,8 @@ from ..geometry import unit_vector, wrap_angle
 from ..types import Array, Plots
 from .smear import ACROSS, ALONG
 
-FRINGE = 1.1            # deviations of a cell by which echoes reach beyond a hull
-NOISE = 0.36            # of a cell's R: that of a cell of the edge, which is known to within a cell
+FRINGE = 1.1  # deviations of a cell by which echoes reach beyond a hull
+NOISE = 0.36  # of a cell's R: that of a cell of the edge, which is known to within a cell
 
 
 class Edge(NamedTuple):
@@ -36,13 +36,12 @@ def lit_edge(cells: Plots, of_cell, noise, range_resolution: float, beam_width: 
     noise [C, 2, 2] m^2, R of a cell of each cluster; range_resolution m, beam_width rad.
     """
     count = int(of_cell.max(initial=-1)) + 1
-    middle = np.arctan2(*(np.bincount(of_cell, f(cells.bearing), count)
-                          for f in (np.sin, np.cos)))
+    middle = np.arctan2(*(np.bincount(of_cell, f(cells.bearing), count) for f in (np.sin, np.cos)))
     off = wrap_angle(cells.bearing - middle[of_cell])
     column = np.rint(off / beam_width).astype(np.int64)
     order = np.lexsort((cells.range, column, of_cell))
     first = np.ones(len(order), bool)
-    first[1:] = ((np.diff(of_cell[order]) != 0) | (np.diff(column[order]) != 0))
+    first[1:] = (np.diff(of_cell[order]) != 0) | (np.diff(column[order]) != 0)
     nearest = order[first]
     cluster, off = of_cell[nearest], off[nearest]
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
@@ -52,5 +51,6 @@ def lit_edge(cells: Plots, of_cell, noise, range_resolution: float, beam_width: 
     shrink = np.maximum(1 - 2 * FRINGE * ACROSS * beam_width / span, 0.0)
     bearing = (middle + centre)[cluster] + (off - centre[cluster]) * shrink[cluster]
     distance = cells.range[nearest] + FRINGE * ALONG * range_resolution
-    return Edge(cluster, cells.origin[nearest] + distance[:, None] * unit_vector(bearing),
-                NOISE * noise)
+    return Edge(
+        cluster, cells.origin[nearest] + distance[:, None] * unit_vector(bearing), NOISE * noise
+    )

@@ -10,7 +10,7 @@ from .gaussian_process import FIRST_RADIUS, HEADING, GpState
 from .radial_function import Contour, radius
 from .random_matrix import Measures, RandomMatrixState
 
-AROUND = np.arange(360) * np.pi / 180       # rad: where outlines are looked at
+AROUND = np.arange(360) * np.pi / 180  # rad: where outlines are looked at
 
 
 class Outline(NamedTuple):
@@ -43,8 +43,11 @@ def of_gaussian_process(state: GpState, prior: Contour, angle=AROUND) -> Outline
     """At the angles [A] rad clockwise from the bow."""
     at = _radius(state, prior, angle)
     variance = _form(at.weight, _outline_covariance(state)) + at.variance
-    return Outline(at.mean, np.sqrt(variance), _points(
-        state.mean[:, :2], at.mean, angle + state.mean[:, HEADING, None]))
+    return Outline(
+        at.mean,
+        np.sqrt(variance),
+        _points(state.mean[:, :2], at.mean, angle + state.mean[:, HEADING, None]),
+    )
 
 
 def of_random_matrix(state: RandomMatrixState, bearing=AROUND, size: float = 1.0) -> Outline:
@@ -52,8 +55,11 @@ def of_random_matrix(state: RandomMatrixState, bearing=AROUND, size: float = 1.0
     line = unit_vector(bearing)
     inverse = np.linalg.inv(state.extent)
     found = size / np.sqrt(np.einsum('ai,nij,aj->na', line, inverse, line))
-    return Outline(found, np.full_like(found, np.nan),
-                   _points(state.mean[:, :2], found, np.broadcast_to(bearing, found.shape)))
+    return Outline(
+        found,
+        np.full_like(found, np.nan),
+        _points(state.mean[:, :2], found, np.broadcast_to(bearing, found.shape)),
+    )
 
 
 def area(points):
@@ -68,8 +74,14 @@ def measures(state: GpState, prior: Contour) -> Measures:
     found = _radius(state, prior, AROUND).mean
     length, length_sd = _width(state, prior, found, 0.0)
     beam, beam_sd = _width(state, prior, found, np.pi / 2)
-    return Measures(length, length_sd, beam, beam_sd, np.mod(state.mean[:, HEADING], np.pi),
-                    np.sqrt(state.covariance[:, HEADING, HEADING]))
+    return Measures(
+        length,
+        length_sd,
+        beam,
+        beam_sd,
+        np.mod(state.mean[:, HEADING], np.pi),
+        np.sqrt(state.covariance[:, HEADING, HEADING]),
+    )
 
 
 def error(state: GpState, prior: Contour, truth) -> Error:
@@ -79,8 +91,9 @@ def error(state: GpState, prior: Contour, truth) -> Error:
     covariance = at.weight @ _outline_covariance(state) @ at.weight.swapaxes(1, 2)
     deviation = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
     squared = (off * np.linalg.solve(covariance, off[..., None])[..., 0]).sum(1)
-    return Error(np.sqrt(np.square(off).mean(1)), np.sqrt(squared),
-                 (np.abs(off) < 3 * deviation).mean(1))
+    return Error(
+        np.sqrt(np.square(off).mean(1)), np.sqrt(squared), (np.abs(off) < 3 * deviation).mean(1)
+    )
 
 
 def shape_error(points, centre, heading, true_radius):
@@ -115,10 +128,11 @@ def _form(rows, matrix):
 def _width(state, prior, found, direction):
     """Width m [N] along an angle off the bow, and its deviation; found [N, A] m at AROUND."""
     share = np.cos(AROUND - direction)
-    ends = np.stack([(found * share).argmax(1), (found * share).argmin(1)], 1)      # [N, 2]
+    ends = np.stack([(found * share).argmax(1), (found * share).argmin(1)], 1)  # [N, 2]
     at = radius(prior, state.semi_axes, state.mean[:, FIRST_RADIUS:], AROUND[ends])
     share = share[ends]
-    gradient = (share[:, 0, None] * at.weight[:, 0] - share[:, 1, None] * at.weight[:, 1])
-    variance = (_form(gradient[:, None], _outline_covariance(state))[:, 0]
-                + (share ** 2 * at.variance).sum(1))
+    gradient = share[:, 0, None] * at.weight[:, 0] - share[:, 1, None] * at.weight[:, 1]
+    variance = _form(gradient[:, None], _outline_covariance(state))[:, 0] + (
+        share**2 * at.variance
+    ).sum(1)
     return share[:, 0] * at.mean[:, 0] - share[:, 1] * at.mean[:, 1], np.sqrt(variance)

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..types import Array
 
-JITTER = 1e-6           # of sf^2: keeps K from being singular
+JITTER = 1e-6  # of sf^2: keeps K from being singular
 
 
 class Contour(NamedTuple):
@@ -60,8 +60,15 @@ class Radius(NamedTuple):
     variance: Array
 
 
-def contour(points: int, deviation: float, mean_deviation: float, scale: float, folds: int = 1,
-            mean: float = 0.0, power: float = 2.0) -> Contour:
+def contour(
+    points: int,
+    deviation: float,
+    mean_deviation: float,
+    scale: float,
+    folds: int = 1,
+    mean: float = 0.0,
+    power: float = 2.0,
+) -> Contour:
     """The prior over `points` angles; ValueError unless there are 3 or more and folds is 1 or 2."""
     if points < 3:
         raise ValueError(f'an outline of {points} points; it must have at least 3')
@@ -70,20 +77,20 @@ def contour(points: int, deviation: float, mean_deviation: float, scale: float, 
     angle = np.arange(points) * 2 * np.pi / (folds * points)
     empty = np.empty((0, 0))
     prior = Contour(angle, deviation, mean_deviation, scale, folds, mean, power, empty, empty)
-    covariance = kernel(prior, angle)[0] + JITTER * deviation ** 2 * np.eye(points)
+    covariance = kernel(prior, angle)[0] + JITTER * deviation**2 * np.eye(points)
     return prior._replace(covariance=covariance, precision=np.linalg.inv(covariance))
 
 
 def kernel(prior: Contour, angle):
     """k(b, U) and dk/db, both [..., M], at the angles [...] rad."""
     turned, points = prior.folds * np.asarray(angle)[..., None], prior.folds * prior.angle
-    cosine, sine = np.cos(turned), np.sin(turned)       # of few; then those of all the differences
+    cosine, sine = np.cos(turned), np.sin(turned)  # of few; then those of all the differences
     along, across = np.cos(points), np.sin(points)
-    squared = prior.scale ** 2
+    squared = prior.scale**2
     # 2 sin^2(d / 2) = 1 - cos d
-    bell = prior.deviation ** 2 * np.exp((cosine * along + sine * across - 1) / squared)
+    bell = prior.deviation**2 * np.exp((cosine * along + sine * across - 1) / squared)
     slope = (cosine * across - sine * along) * (prior.folds / squared) * bell
-    return bell + prior.mean_deviation ** 2, slope
+    return bell + prior.mean_deviation**2, slope
 
 
 def radius(prior: Contour, semi_axes, f, angle) -> Radius:
@@ -95,9 +102,13 @@ def radius(prior: Contour, semi_axes, f, angle) -> Radius:
     base, base_slope = lame(semi_axes[:, None], prior.power, angle)
     relative = prior.mean + _dot(h, off)
     relative_slope = _dot(dk, off @ prior.precision)
-    left = prior.deviation ** 2 + prior.mean_deviation ** 2 - (h * k).sum(-1)
-    return Radius(base * relative, base_slope * relative + base * relative_slope,
-                  base[..., None] * h, base * base * np.maximum(left, 0.0))
+    left = prior.deviation**2 + prior.mean_deviation**2 - (h * k).sum(-1)
+    return Radius(
+        base * relative,
+        base_slope * relative + base * relative_slope,
+        base[..., None] * h,
+        base * base * np.maximum(left, 0.0),
+    )
 
 
 def lame(semi_axes, power, angle):
@@ -107,8 +118,10 @@ def lame(semi_axes, power, angle):
     cosine, sine = np.cos(angle), np.sin(angle)
     ahead = np.abs(cosine / semi_axes[..., 0]) ** (power - 1)
     abeam = np.abs(sine / semi_axes[..., 1]) ** (power - 1)
-    ahead, abeam = (np.copysign(ahead, cosine) / semi_axes[..., 0],
-                    np.copysign(abeam, sine) / semi_axes[..., 1])
+    ahead, abeam = (
+        np.copysign(ahead, cosine) / semi_axes[..., 0],
+        np.copysign(abeam, sine) / semi_axes[..., 1],
+    )
     total = ahead * cosine + abeam * sine
     size = total ** (-1 / power)
     return size, (ahead * sine - abeam * cosine) * size / total

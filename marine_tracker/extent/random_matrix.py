@@ -15,10 +15,10 @@ from ..gaussian.linear import invert_2x2, kalman_update
 from ..geometry import unit_vector
 from ..types import Array, put, take
 
-SURFACE, CONTOUR = 1 / 4, 1 / 2     # z_s of scatterers all over an ellipse, and along its outline
-NO_MEMORY = 2.0                     # the weight at which an extent says nothing
-BOX_SPREAD = np.sqrt(3.0)                  # length over sqrt(X) of a box, all over: L^2 / 12 = X / 4
-ELLIPSE = 2.0                       # the same of the ellipse itself
+SURFACE, CONTOUR = 1 / 4, 1 / 2  # z_s of scatterers all over an ellipse, and along its outline
+NO_MEMORY = 2.0  # the weight at which an extent says nothing
+BOX_SPREAD = np.sqrt(3.0)  # length over sqrt(X) of a box, all over: L^2 / 12 = X / 4
+ELLIPSE = 2.0  # the same of the ellipse itself
 AXIS_UNKNOWN = np.pi / np.sqrt(12)  # rad, deviation of an axis that may lie anywhere
 
 
@@ -82,8 +82,9 @@ def start(time, position, covariance, velocity, extent, weight=6.0) -> RandomMat
     mean = np.concatenate([position, velocity.mean], 1)
     joint = np.zeros((count, 4, 4))
     joint[:, :2, :2], joint[:, 2:, 2:] = covariance, velocity.covariance
-    return RandomMatrixState(np.array(time, float), mean, joint, np.array(extent, float),
-                             np.full(count, weight, float))
+    return RandomMatrixState(
+        np.array(time, float), mean, joint, np.array(extent, float), np.full(count, weight, float)
+    )
 
 
 def predict(state: RandomMatrixState, time, model: Model = SHIP) -> RandomMatrixState:
@@ -93,11 +94,17 @@ def predict(state: RandomMatrixState, time, model: Model = SHIP) -> RandomMatrix
     mean[:, :2] += step[:, None] * mean[:, 2:]
     transition, noise = constant_velocity(step)
     transition = np.kron(transition, np.eye(2))
-    covariance = (transition @ state.covariance @ transition.swapaxes(1, 2)
-                  + model.noise * np.kron(noise, np.eye(2)))
+    covariance = transition @ state.covariance @ transition.swapaxes(1, 2) + model.noise * np.kron(
+        noise, np.eye(2)
+    )
     kept = np.exp(-np.abs(step) / model.memory)
-    return RandomMatrixState(np.array(time, float), mean, covariance, state.extent,
-                             NO_MEMORY + kept * (state.weight - NO_MEMORY))
+    return RandomMatrixState(
+        np.array(time, float),
+        mean,
+        covariance,
+        state.extent,
+        NO_MEMORY + kept * (state.weight - NO_MEMORY),
+    )
 
 
 def constant_velocity(step):
@@ -107,13 +114,14 @@ def constant_velocity(step):
     transition = np.tile(np.eye(2), (len(step), 1, 1))
     transition[:, 0, 1] = step
     noise = np.empty_like(transition)
-    noise[:, 0, 0], noise[:, 1, 1] = size ** 3 / 3, size
+    noise[:, 0, 0], noise[:, 1, 1] = size**3 / 3, size
     noise[:, 0, 1] = noise[:, 1, 0] = step * size / 2
     return transition, noise
 
 
-def update(state: RandomMatrixState, rows, centroid, scatter, count, noise,
-           model: Model = SHIP) -> RandomMatrixState:
+def update(
+    state: RandomMatrixState, rows, centroid, scatter, count, noise, model: Model = SHIP
+) -> RandomMatrixState:
     """The K named rows, predicted to their clusters' times, take one cluster each.
 
     centroid [K, 2] m; scatter [K, 2, 2] m^2, the sum over the cells of d d' with d from the
@@ -121,17 +129,21 @@ def update(state: RandomMatrixState, rows, centroid, scatter, count, noise,
     """
     before = take(state, rows)
     count = np.asarray(count, float)[:, None, None]
-    cells = cell_covariance(before.extent, noise, model)                        # Y
+    cells = cell_covariance(before.extent, noise, model)  # Y
     innovation = centroid - before.mean[:, :2]
     mean, covariance, inverse, _ = kalman_update(
-        before.mean, before.covariance, innovation, cells / count, (0, 1))
+        before.mean, before.covariance, innovation, cells / count, (0, 1)
+    )
     root = root_2x2(before.extent)
-    by_centroid = root @ root_2x2(inverse)                                      # X^.5 S^-.5
-    by_cells = root @ root_2x2(invert_2x2(cells)[0])                            # X^.5 Y^-.5
+    by_centroid = root @ root_2x2(inverse)  # X^.5 S^-.5
+    by_cells = root @ root_2x2(invert_2x2(cells)[0])  # X^.5 Y^-.5
     pulled = by_centroid @ innovation[..., None]
     weight = before.weight + count[:, 0, 0]
-    extent = (before.weight[:, None, None] * before.extent + pulled @ pulled.swapaxes(1, 2)
-              + by_cells @ scatter @ by_cells.swapaxes(1, 2)) / weight[:, None, None]
+    extent = (
+        before.weight[:, None, None] * before.extent
+        + pulled @ pulled.swapaxes(1, 2)
+        + by_cells @ scatter @ by_cells.swapaxes(1, 2)
+    ) / weight[:, None, None]
     return put(state, rows, RandomMatrixState(before.time, mean, covariance, extent, weight))
 
 
@@ -142,15 +154,18 @@ def cell_covariance(extent, noise, model: Model = SHIP):
 
 def root_2x2(matrix):
     """The symmetric root [..., 2, 2] of symmetric positive definite 2 x 2 matrices."""
-    root = np.sqrt(np.maximum(matrix[..., 0, 0] * matrix[..., 1, 1]
-                              - matrix[..., 0, 1] * matrix[..., 1, 0], 0.0))
+    root = np.sqrt(
+        np.maximum(
+            matrix[..., 0, 0] * matrix[..., 1, 1] - matrix[..., 0, 1] * matrix[..., 1, 0], 0.0
+        )
+    )
     trace = matrix[..., 0, 0] + matrix[..., 1, 1]
-    return (matrix + root[..., None, None] * np.eye(2)) / np.sqrt(
-        trace + 2 * root)[..., None, None]
+    return (matrix + root[..., None, None] * np.eye(2)) / np.sqrt(trace + 2 * root)[..., None, None]
 
 
-def measures(state: RandomMatrixState, noise, model: Model = SHIP,
-             size: float = BOX_SPREAD) -> Measures:
+def measures(
+    state: RandomMatrixState, noise, model: Model = SHIP, size: float = BOX_SPREAD
+) -> Measures:
     """Length, beam and axis of all rows; size: BOX for hulls, ELLIPSE.
 
     noise [N, 2, 2] m^2: R of a single cell, which widens the deviations. These are what `weight`
@@ -170,9 +185,14 @@ def measures(state: RandomMatrixState, noise, model: Model = SHIP,
     share = model.spread * np.sqrt(state.weight)
     length, beam = size * np.sqrt(along), size * np.sqrt(across)
     turn = np.sqrt(lengthwise * abeam + between(cells, line, side) ** 2) / share
-    return Measures(length, length * np.sqrt(0.5) * lengthwise / (share * along),
-                    beam, beam * np.sqrt(0.5) * abeam / (share * across),
-                    axis, np.minimum(turn / np.maximum(along - across, 1e-9), AXIS_UNKNOWN))
+    return Measures(
+        length,
+        length * np.sqrt(0.5) * lengthwise / (share * along),
+        beam,
+        beam * np.sqrt(0.5) * abeam / (share * across),
+        axis,
+        np.minimum(turn / np.maximum(along - across, 1e-9), AXIS_UNKNOWN),
+    )
 
 
 def axis_of(extent):

@@ -15,10 +15,10 @@ from .random_matrix import Measures, RandomMatrixState
 
 PRIOR = contour(24, 0.03, 0.01, np.pi / 8, folds=2, mean=1.0, power=4.0)
 SHIP = Model(PRIOR, 'gp_q15', noise=0.0025, turn_noise=1e-7, gate=16.0)
-SLENDER = 6.3                       # length over beam of ships
-ALONG, ACROSS = 0.015, 0.25         # deviations of the first centre, of length and half beam
-HEADING_SD = np.radians(2.0)        # at least, of the first heading
-RATE_SD = np.radians(0.1)           # rad/s
+SLENDER = 6.3  # length over beam of ships
+ALONG, ACROSS = 0.015, 0.25  # deviations of the first centre, of length and half beam
+HEADING_SD = np.radians(2.0)  # at least, of the first heading
+RATE_SD = np.radians(0.1)  # rad/s
 
 
 def from_random_matrix(matrix: RandomMatrixState, found: Measures, own) -> GpState:
@@ -39,9 +39,10 @@ def from_random_matrix(matrix: RandomMatrixState, found: Measures, own) -> GpSta
         off = deviation[:, None] * axis
         covariance[:, :2, :2] += off[:, :, None] * off[:, None, :]
     covariance[:, 4, 4] = np.maximum(found.axis_sd, HEADING_SD) ** 2
-    covariance[:, 5, 5] = RATE_SD ** 2
-    return start(SHIP, matrix.time, motion, covariance, np.ones((len(bow), len(PRIOR.angle))),
-                 semi_axes)
+    covariance[:, 5, 5] = RATE_SD**2
+    return start(
+        SHIP, matrix.time, motion, covariance, np.ones((len(bow), len(PRIOR.angle))), semi_axes
+    )
 
 
 def heading_of(matrix: RandomMatrixState, found: Measures):

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry import unit_vector
 
-ALONG, ACROSS = 0.55, 0.4       # of the range resolution, of the beam's width
+ALONG, ACROSS = 0.55, 0.4  # of the range resolution, of the beam's width
 
 
 def smear(range_, bearing, range_resolution: float, beam_width: float):

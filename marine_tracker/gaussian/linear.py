@@ -34,10 +34,10 @@ def kalman_update(mean, covariance, innovation, noise, position):
     indices of the position in the state. Returns mean, covariance and the inverse
     [..., 2, 2] and determinant [...] of the innovation covariance.
     """
-    cross = covariance.take(position, -2)                           # H P
-    spread = cross.take(position, -1) + noise                       # S = H P H' + R
+    cross = covariance.take(position, -2)  # H P
+    spread = cross.take(position, -1) + noise  # S = H P H' + R
     inverse, determinant = invert_2x2(spread)
-    gain = np.matmul(inverse, cross)                                # K'
+    gain = np.matmul(inverse, cross)  # K'
     mean = mean + np.matmul(innovation[..., None, :], gain)[..., 0, :]
     covariance = covariance - np.matmul(gain.swapaxes(-1, -2), cross)
     return mean, covariance, inverse, determinant
@@ -49,12 +49,17 @@ def weighted_fusion(first, first_noise, second, second_noise):
     Weighted by their accuracy. A Kalman update with the result is that with both in turn.
     """
     gain = np.matmul(first_noise, invert_2x2(first_noise + second_noise)[0])
-    return (first + np.matmul(gain, (second - first)[..., None])[..., 0],
-            first_noise - np.matmul(gain, first_noise))
+    return (
+        first + np.matmul(gain, (second - first)[..., None])[..., 0],
+        first_noise - np.matmul(gain, first_noise),
+    )
 
 
 def squared_distance(innovation, inverse):
     """Squared Mahalanobis distance [...] of innovations [..., 2] by the inverse [..., 2, 2]."""
     east, north = innovation[..., 0], innovation[..., 1]
-    return (inverse[..., 0, 0] * east * east + 2 * inverse[..., 0, 1] * east * north
-            + inverse[..., 1, 1] * north * north)
+    return (
+        inverse[..., 0, 0] * east * east
+        + 2 * inverse[..., 0, 1] * east * north
+        + inverse[..., 1, 1] * north * north
+    )

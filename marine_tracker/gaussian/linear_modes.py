@@ -21,7 +21,7 @@ ROW, COLUMN = np.triu_indices(4)
 PACKED = ROW * 4 + COLUMN
 UNPACKED = np.zeros((4, 4), int)
 UNPACKED[ROW, COLUMN] = UNPACKED[COLUMN, ROW] = np.arange(10)
-LEAST_WEIGHT = 1e-12            # no mode is ruled out for ever
+LEAST_WEIGHT = 1e-12  # no mode is ruled out for ever
 
 
 class Chain(NamedTuple):
@@ -56,8 +56,9 @@ def bank(noise, turn_rate, chains) -> Bank:
     """A bank from plain sequences."""
     turn_rate = np.array(turn_rate, float)
     rates, size = np.unique(np.abs(turn_rate), return_inverse=True)
-    return Bank(np.array(noise, float)[:, None], turn_rate[:, None], tuple(chains),
-                rates[:, None], size)
+    return Bank(
+        np.array(noise, float)[:, None], turn_rate[:, None], tuple(chains), rates[:, None], size
+    )
 
 
 def straight(noise) -> Bank:
@@ -82,8 +83,10 @@ def transition_power(stay, period, entered=None):
     np.fill_diagonal(matrix, stay)
     values, vectors = np.linalg.eigh(matrix)
     if values.min() <= 0:
-        raise ValueError(f'stay probabilities {tuple(stay)} are too small for a chain in '
-                         'continuous time; they must be well above 1 / number of modes')
+        raise ValueError(
+            f'stay probabilities {tuple(stay)} are too small for a chain in '
+            'continuous time; they must be well above 1 / number of modes'
+        )
     scale = np.sqrt(rate / share)[:, None]
     vectors, inverse = scale * vectors, vectors.T / scale.T
     decay = np.log(values) / period
@@ -93,6 +96,7 @@ def transition_power(stay, period, entered=None):
         powers = np.exp(np.abs(step)[:, None] * decay)
         found = (powers @ outer).reshape(-1, count, count)
         return np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
+
     return over
 
 
@@ -127,7 +131,7 @@ def _shares(chain: Chain, weight, step):
 
     step [N] s, or [1] for all.
     """
-    joint = chain.over(step).swapaxes(1, 2) * weight[:, None, :]    # to j from i
+    joint = chain.over(step).swapaxes(1, 2) * weight[:, None, :]  # to j from i
     ahead = joint.sum(2)
     joint /= ahead[:, :, None]
     return ahead, joint
@@ -140,7 +144,7 @@ def mix(bank: Bank, rows, weight, step):
     those of a mixture are the mixture of those of its parts.
     """
     columns = columns_of(rows)
-    centre = columns[:4, :1].copy()             # keeps the squares small
+    centre = columns[:4, :1].copy()  # keeps the squares small
     columns[:4] -= centre
     _add_squares(columns, np.add)
     moments = rows_of(columns)
@@ -184,8 +188,14 @@ def move_means(bank: Bank, mean, step):
     """Means [4, J, N] moved by the steps [N] s, or [1] for all."""
     sin, cos, along, across = _turn(bank, step)
     e, n, ve, vn = mean
-    return np.stack([e + along * ve + across * vn, n - across * ve + along * vn,
-                     cos * ve + sin * vn, cos * vn - sin * ve])
+    return np.stack(
+        [
+            e + along * ve + across * vn,
+            n - across * ve + along * vn,
+            cos * ve + sin * vn,
+            cos * vn - sin * ve,
+        ]
+    )
 
 
 def move(bank: Bank, columns, step):
@@ -237,8 +247,8 @@ def correct(columns, plot, noise):
     """
     (de, dn), distance, (see, sen, snn, determinant) = innovate(columns, plot, noise)
     iee, ien, inn = snn / determinant, -sen / determinant, see / determinant
-    ye, yn = iee * de + ien * dn, ien * de + inn * dn               # inv(S) innovation
-    first, second = columns[[4, 5, 6, 7]], columns[[5, 8, 9, 10]]   # rows of H P
+    ye, yn = iee * de + ien * dn, ien * de + inn * dn  # inv(S) innovation
+    first, second = columns[[4, 5, 6, 7]], columns[[5, 8, 9, 10]]  # rows of H P
     out = np.empty_like(columns)
     out[:4] = columns[:4] + first * ye + second * yn
     gain_first, gain_second = iee * first + ien * second, ien * first + inn * second

@@ -19,12 +19,12 @@ from ..types import Plots, take
 
 HELP = 'CV, IMM and CS-Kalman on a straight run, in turns and on a fast boat'
 RUNS = 100
-PERIOD = 60 / 22                            # s
-RANGE_SIGMA = 15.0                          # m
+PERIOD = 60 / 22  # s
+RANGE_SIGMA = 15.0  # m
 BEARING_SIGMA = float(np.radians(0.5))
 SCANS, SETTLED = 400, 40
-FIRST_TURN, SECOND_TURN = 80, 200           # scan
-START, COURSE = np.array([-4000.0, 3000.0]), np.radians(80)     # m east and north; rad
+FIRST_TURN, SECOND_TURN = 80, 200  # scan
+START, COURSE = np.array([-4000.0, 3000.0]), np.radians(80)  # m east and north; rad
 
 
 class Leg(NamedTuple):
@@ -50,8 +50,11 @@ def cv(noise: float) -> Estimator:
 def filters() -> dict[str, Estimator]:
     """The rows of the table."""
     two_cv = imm.Modes((0.0005, 0.5), (0.0, 0.0), (0.98, 0.9), PERIOD)
-    rows = {'CV q .001': cv(0.001), 'CV q .05': cv(0.05),
-            'IMM CV/CV q (.0005, .5)': imm.imm(two_cv, 30.0)}
+    rows = {
+        'CV q .001': cv(0.001),
+        'CV q .05': cv(0.05),
+        'IMM CV/CV q (.0005, .5)': imm.imm(two_cv, 30.0),
+    }
     for limit in (0.3, 1.0):
         rows[f'CS a_max {limit:g}'] = cs_kalman.cs_kalman(cs_kalman.Manoeuvre(limit, 1 / 60), 30.0)
     rows['imm, as shipped for ships'] = imm.imm(imm.PRESETS['ship'], 30.0)
@@ -61,10 +64,10 @@ def filters() -> dict[str, Estimator]:
 def truth(leg: Leg):
     """Position [SCANS, 2] m and velocity [SCANS, 2] m/s, exact along straights and arcs."""
     rate = np.zeros(SCANS)
-    rate[FIRST_TURN:FIRST_TURN + leg.turning] = leg.turn_rate
-    rate[SECOND_TURN:SECOND_TURN + leg.turning] = -leg.turn_rate
+    rate[FIRST_TURN : FIRST_TURN + leg.turning] = leg.turn_rate
+    rate[SECOND_TURN : SECOND_TURN + leg.turning] = -leg.turn_rate
     course = COURSE + np.concatenate([[0], np.cumsum(rate[:-1] * PERIOD)])
-    half = 0.5 * rate * PERIOD                  # a chord points half the turn ahead
+    half = 0.5 * rate * PERIOD  # a chord points half the turn ahead
     step = leg.speed * PERIOD * np.sinc(half / np.pi)[:, None] * unit_vector(course + half)
     position = START + np.concatenate([np.zeros((1, 2)), np.cumsum(step[:-1], 0)])
     return position, leg.speed * unit_vector(course)
@@ -87,8 +90,11 @@ def errors(estimator: Estimator, leg: Leg, runs: int, seed: int, detection: floa
         time = np.full(runs, k * PERIOD)
         plots = Plots(time, r, b, np.zeros(runs), np.zeros((runs, 2)), z, covariance)
         seen = every if detection == 1 else np.flatnonzero(rng.random(runs) < detection)
-        state = (estimator.init(plots) if state is None
-                 else estimator.update(state, take(plots, seen), seen))
+        state = (
+            estimator.init(plots)
+            if state is None
+            else estimator.update(state, take(plots, seen), seen)
+        )
         if k >= SETTLED:
             now = estimator.extrapolate(state, time)
             off.append((now.position - position[k], now.velocity - velocity[k]))
@@ -103,19 +109,33 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
         progress(done, len(filters()))
         for track, leg in TRACKS.items():
             found[name, track] = errors(estimator, leg, runs, seed)
-            for what, unit, value in zip(('position', 'velocity'), ('m', 'm/s'),
-                                         found[name, track], strict=True):
+            for what, unit, value in zip(
+                ('position', 'velocity'), ('m', 'm/s'), found[name, track], strict=True
+            ):
                 figures.append(report.Figure(f'{name}, {track}: {what}', value, unit))
     demanded = {'straight': (16.5, 1.15), 'turns': (12.0, 1.1)}
     for track, limits in demanded.items():
-        for what, unit, value, limit in zip(('position', 'velocity'), ('m', 'm/s'),
-                                            found['CS a_max 0.3', track], limits, strict=True):
-            figures.append(report.at_most(f'cs_kalman, {track}: {what}', value, limit, unit,
-                                          'prototype'))
+        for what, unit, value, limit in zip(
+            ('position', 'velocity'),
+            ('m', 'm/s'),
+            found['CS a_max 0.3', track],
+            limits,
+            strict=True,
+        ):
+            figures.append(
+                report.at_most(f'cs_kalman, {track}: {what}', value, limit, unit, 'prototype')
+            )
     leg = TRACKS['fast boat']
     half = cs_kalman.Manoeuvre(0.5 * leg.speed * leg.turn_rate, 1 / 60)
     position, _ = errors(cs_kalman.cs_kalman(half, 30.0), leg, runs, seed)
-    figures.append(report.at_most('cs_kalman, a_max half the truth: position', position, 50.0, 'm',
-                                  'prototype; 5,388 m without the variance floor'))
+    figures.append(
+        report.at_most(
+            'cs_kalman, a_max half the truth: position',
+            position,
+            50.0,
+            'm',
+            'prototype; 5,388 m without the variance floor',
+        )
+    )
     progress(len(filters()), len(filters()))
     return Result(figures)

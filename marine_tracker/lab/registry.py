@@ -17,7 +17,15 @@ from .two_radars import two_radars
 from .wavelet import wavelet
 
 EXPERIMENTS: dict[str, ModuleType] = {
-    'gwnn': gwnn, 'gwnn_paper': gwnn_paper, 'gwnn_monte_carlo': monte_carlo,
-    'marine_table': marine_table, 'rough_nn': rough_nn, 'wavelet': wavelet,
-    'alpha_beta': alpha_beta, 'two_radars': two_radars, 'extended': extended, 'hulls': hulls,
-    'compare': compare}
+    'gwnn': gwnn,
+    'gwnn_paper': gwnn_paper,
+    'gwnn_monte_carlo': monte_carlo,
+    'marine_table': marine_table,
+    'rough_nn': rough_nn,
+    'wavelet': wavelet,
+    'alpha_beta': alpha_beta,
+    'two_radars': two_radars,
+    'extended': extended,
+    'hulls': hulls,
+    'compare': compare,
+}

@@ -19,7 +19,7 @@ from .wavelets import Units, hidden, sigmoid, sigmoid_slope, slope, units
 
 # The paper draws the weights from (0, 1]; unscaled they saturate the hidden units.
 INNER_SCALE, OUTER_SCALE = 0.3, 0.1
-MAX_MOMENTUM = 0.9          # eq 7 gives 1 where one unit has all the error
+MAX_MOMENTUM = 0.9  # eq 7 gives 1 where one unit has all the error
 
 
 class Design(NamedTuple):
@@ -95,8 +95,7 @@ def gwnn(inputs: int, outputs: int, levels: int, translations: int, width: float
 
 def draw(design: Design, count: int, rng) -> Weights:
     """Random weights of `count` networks."""
-    inner = INNER_SCALE * (1 - rng.random((count, design.groups * design.group,
-                                           design.inputs + 1)))
+    inner = INNER_SCALE * (1 - rng.random((count, design.groups * design.group, design.inputs + 1)))
     outer = OUTER_SCALE * (1 - rng.random((count, design.outputs, design.group)))
     return Weights(inner, outer, np.zeros_like(inner), np.zeros_like(outer))
 
@@ -159,8 +158,10 @@ def first_step(rule: Rule, speed):
         return np.full(len(speed), rule.step)
     # Beyond any ship's speed exp would overflow.
     speed = np.minimum(speed, 100.0)
-    return rule.step * (1 / (1 + np.exp((speed - rule.fast) / rule.fast_spread))
-                        + 1 / (1 + np.exp((speed - rule.slow) / rule.slow_spread)))
+    return rule.step * (
+        1 / (1 + np.exp((speed - rule.fast) / rule.fast_spread))
+        + 1 / (1 + np.exp((speed - rule.slow) / rule.slow_spread))
+    )
 
 
 def next_step(rule: Rule, step, error, before, far):
@@ -193,8 +194,9 @@ def learn(design: Design, weights: Weights, inputs, wanted, speed, rule: Rule, u
         error = wanted[rows] - passed.output
         radial = unit * np.hypot(error[:, 0], error[:, 1])
         if rule.variable:
-            step = np.where(np.isinf(before), step,
-                            next_step(rule, step, radial, before, far[rows]))
+            step = np.where(
+                np.isinf(before), step, next_step(rule, step, radial, before, far[rows])
+            )
             on = np.flatnonzero(radial > near[rows])
             if not len(on):
                 break

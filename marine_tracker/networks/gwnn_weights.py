@@ -32,15 +32,22 @@ def shipped(vessel_class: str) -> Path:
 
 
 def _arrays(weights: Weights) -> dict[str, np.ndarray]:
-    return {f'{name}_{array}': np.asarray(getattr(getattr(weights, name), array), np.float32)
-            for name in NETWORKS for array in ARRAYS}
+    return {
+        f'{name}_{array}': np.asarray(getattr(getattr(weights, name), array), np.float32)
+        for name in NETWORKS
+        for array in ARRAYS
+    }
 
 
 def save(path, weights: Weights) -> dict[str, Any]:
     """Write the file; returns its manifest, with format, layouts and checksum filled in."""
     arrays = _arrays(weights)
-    manifest = {**weights.manifest, 'format': FORMAT, 'checksum': weight_file.checksum(arrays),
-                'layouts': {name: list(getattr(weights, name).layout) for name in NETWORKS}}
+    manifest = {
+        **weights.manifest,
+        'format': FORMAT,
+        'checksum': weight_file.checksum(arrays),
+        'layouts': {name: list(getattr(weights, name).layout) for name in NETWORKS},
+    }
     weight_file.write(path, arrays, manifest)
     return manifest
 
@@ -53,16 +60,27 @@ def load(path, inputs: int, outputs: dict[str, int]) -> Weights:
     what = f'GWNN weights {path}'
     names = [f'{name}_{array}' for name in NETWORKS for array in ARRAYS]
     arrays, manifest = weight_file.read(path, 'GWNN', 'marine_tracker train gwnn', FORMAT, names)
-    networks = [_network(name, arrays, manifest['layouts'][name], inputs, outputs[name], what)
-                for name in NETWORKS]
+    networks = [
+        _network(name, arrays, manifest['layouts'][name], inputs, outputs[name], what)
+        for name in NETWORKS
+    ]
     return Weights(networks[0], networks[1], manifest)
 
 
 def _network(name, arrays, layout, inputs, outputs, what) -> Network:
     form = Layout(int(layout[0]), int(layout[1]), float(layout[2]), int(layout[3]), *layout[4:])
     group = group_size(form)
-    shapes = {'centre': (inputs,), 'scale': (inputs,), 'inner': (inputs + 1, outputs * group),
-              'outer': (outputs, group), 'bias': (outputs,)}
-    found = [weight_file.checked(arrays[f'{name}_{array}'].astype(np.float32), f'{name}_{array}',
-                                 shapes[array], what) for array in ARRAYS]
+    shapes = {
+        'centre': (inputs,),
+        'scale': (inputs,),
+        'inner': (inputs + 1, outputs * group),
+        'outer': (outputs, group),
+        'bias': (outputs,),
+    }
+    found = [
+        weight_file.checked(
+            arrays[f'{name}_{array}'].astype(np.float32), f'{name}_{array}', shapes[array], what
+        )
+        for array in ARRAYS
+    ]
     return Network._make([*found, form])

@@ -37,15 +37,20 @@ Shapes = tuple[tuple[int, ...], ...]
 
 def shapes(inputs: int, hidden: int, neurons: int) -> Shapes:
     """The shapes of a network's arrays."""
-    return ((inputs, neurons, hidden, neurons), (hidden, neurons), (hidden, neurons, neurons),
-            (neurons,))
+    return (
+        (inputs, neurons, hidden, neurons),
+        (hidden, neurons),
+        (hidden, neurons, neurons),
+        (neurons,),
+    )
 
 
 def from_vector(vector, form: Shapes) -> Network:
     """The network whose arrays have the shapes `form` and stand in the vector one after another."""
     ends = np.cumsum([np.prod(shape, dtype=int) for shape in form])
-    return Network._make(part.reshape(shape)
-                         for part, shape in zip(np.split(vector, ends[:-1]), form))
+    return Network._make(
+        part.reshape(shape) for part, shape in zip(np.split(vector, ends[:-1]), form)
+    )
 
 
 def to_vector(network: Network):
@@ -89,10 +94,14 @@ def jacobian(network: Network, inputs):
     hidden = _flat(np.take_along_axis(activation, order, -1))
     outer = network.outer.reshape(hidden.shape[1], -1)
     out = np.tanh(0.5 * (hidden @ outer - network.outer_theta))
-    last = 0.5 * (1 - out * out) / out.shape[1]                     # d output / d net
+    last = 0.5 * (1 - out * out) / out.shape[1]  # d output / d net
     back = np.empty_like(activation)
     np.put_along_axis(back, order, (last @ outer.T).reshape(activation.shape), -1)
     first = _flat(back * 0.5 * (1 - activation * activation))
-    parts = (_flat(inputs)[:, :, None] * first[:, None], -first,
-             hidden[:, :, None] * last[:, None], -last)
+    parts = (
+        _flat(inputs)[:, :, None] * first[:, None],
+        -first,
+        hidden[:, :, None] * last[:, None],
+        -last,
+    )
     return np.concatenate([_flat(part) for part in parts], 1)

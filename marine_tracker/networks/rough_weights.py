@@ -10,7 +10,7 @@ from . import weight_file
 from .rough_network import Network, shapes
 
 FORMAT = 1
-NEURONS = {'rough': 2, 'bp': 1}             # of a node, by kind of network
+NEURONS = {'rough': 2, 'bp': 1}  # of a node, by kind of network
 INPUTS, HIDDEN = 3, 6
 
 
@@ -27,7 +27,7 @@ class Quiet(NamedTuple):
     variance: Array
 
 
-NAMES = Network._fields + Quiet._fields     # of the arrays in a file
+NAMES = Network._fields + Quiet._fields  # of the arrays in a file
 
 
 class Weights(NamedTuple):
@@ -45,9 +45,11 @@ def shipped(kind: str) -> Path:
 
 def save(path, weights: Weights) -> dict[str, Any]:
     """Write the file; returns its manifest, with format and checksum filled in."""
-    arrays = {name: np.asarray(array, np.float32)
-              for part in (weights.network, weights.quiet)
-              for name, array in part._asdict().items()}
+    arrays = {
+        name: np.asarray(array, np.float32)
+        for part in (weights.network, weights.quiet)
+        for name, array in part._asdict().items()
+    }
     manifest = {**weights.manifest, 'format': FORMAT, 'checksum': weight_file.checksum(arrays)}
     weight_file.write(path, arrays, manifest)
     return manifest
@@ -59,11 +61,14 @@ def load(path, kind: str) -> Weights:
     Raises ValueError for a file that cannot be read, is damaged, or belongs to other networks.
     """
     what = f'rough network weights {path}'
-    arrays, manifest = weight_file.read(path, 'rough network', 'marine_tracker train rough_nn',
-                                        FORMAT, NAMES)
+    arrays, manifest = weight_file.read(
+        path, 'rough network', 'marine_tracker train rough_nn', FORMAT, NAMES
+    )
     gammas, ys = arrays['log_gamma'].size, arrays['log_y'].size
     form = (*shapes(INPUTS, HIDDEN, NEURONS[kind]), (gammas,), (ys,), (gammas, ys, INPUTS))
-    found = [weight_file.checked(arrays[name].astype(float), name, shape, what)
-             for name, shape in zip(NAMES, form)]
+    found = [
+        weight_file.checked(arrays[name].astype(float), name, shape, what)
+        for name, shape in zip(NAMES, form)
+    ]
     parts = len(Network._fields)
     return Weights(Network._make(found[:parts]), Quiet._make(found[parts:]), manifest)

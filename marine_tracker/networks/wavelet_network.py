@@ -16,7 +16,7 @@ import numpy as np
 from ..types import Array
 from . import wavelets
 
-BLOCK = 128                     # rows at once: their hidden units fit the processor's cache
+BLOCK = 128  # rows at once: their hidden units fit the processor's cache
 WAVELET, TANH = 'wavelet', 'tanh'
 
 
@@ -69,8 +69,9 @@ def units(layout: Layout, dtype=np.float64) -> Form:
         return Sigmoids(0.5 / layout.q)
     if layout.units != WAVELET:
         raise ValueError(f'hidden units are {layout.units!r}; they must be {WAVELET!r} or {TANH!r}')
-    return wavelets.units(layout.levels, layout.translations, layout.q, groups=layout.outputs,
-                          dtype=dtype)
+    return wavelets.units(
+        layout.levels, layout.translations, layout.q, groups=layout.outputs, dtype=dtype
+    )
 
 
 def hidden(form: Form, net):
@@ -101,8 +102,8 @@ def forward(network: Network, inputs):
     form, outer = units(network.layout, network.inner.dtype), connect(network.outer)
     out = np.empty((len(inputs), network.layout.outputs), network.inner.dtype)
     for i in range(0, len(inputs), BLOCK):
-        value, _ = hidden(form, squash(network, inputs[i:i + BLOCK]) @ network.inner)
-        np.matmul(value, outer, out=out[i:i + BLOCK])
+        value, _ = hidden(form, squash(network, inputs[i : i + BLOCK]) @ network.inner)
+        np.matmul(value, outer, out=out[i : i + BLOCK])
     out += network.bias
     return out
 

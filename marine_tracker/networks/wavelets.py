@@ -19,10 +19,10 @@ from scipy.optimize import minimize_scalar
 
 from ..types import Array
 
-D = P = 1.0                 # half widths of phi and psi
-DILATION = 2.0              # a
-MAX_SPACING = 3.5           # b, the paper's limit of a frame
-MIN_Q = 0.2                 # narrower, S(2) is so near 1 that the quotients lose their digits
+D = P = 1.0  # half widths of phi and psi
+DILATION = 2.0  # a
+MAX_SPACING = 3.5  # b, the paper's limit of a frame
+MIN_Q = 0.2  # narrower, S(2) is so near 1 that the quotients lose their digits
 
 
 def sigmoid(t, q: float):
@@ -59,8 +59,12 @@ def steepest(q: float, d: float = D, p: float = P) -> float:
     """max |psi'|; for d = p = 1 it is tanh(1/q)^2 / q, below S's own 1 / 2q iff 1/q < .8814."""
     t = np.linspace(0, d + p + 6 * q, 2001)
     best = t[np.argmax(np.abs(wavelet_slope(t, q, d, p)))]
-    near = minimize_scalar(lambda x: -abs(wavelet_slope(x, q, d, p)), method='bounded',
-                           bounds=(best - t[1], best + t[1]), options={'xatol': 1e-10})
+    near = minimize_scalar(
+        lambda x: -abs(wavelet_slope(x, q, d, p)),
+        method='bounded',
+        bounds=(best - t[1], best + t[1]),
+        options={'xatol': 1e-10},
+    )
     return float(-near.fun)
 
 
@@ -77,28 +81,42 @@ class Units(NamedTuple):
     pole: Array
 
 
-def units(levels: int, translations: int, q: float, spacing: float = 1.0, groups: int = 1,
-          dtype=np.float64) -> Units:
+def units(
+    levels: int,
+    translations: int,
+    q: float,
+    spacing: float = 1.0,
+    groups: int = 1,
+    dtype=np.float64,
+) -> Units:
     """`groups` equal groups of n (M + 2) units for M = `levels`, n = `translations`, b = `spacing`.
 
     A group is phi_Mk for all k, then psi_0k, psi_1k, ... psi_Mk. ValueError where a figure is
     outside its limits.
     """
     if levels < 0 or translations < 1:
-        raise ValueError(f'a wavelet family of {levels} levels and {translations} translations; '
-                         'there must be at least 0 and 1')
+        raise ValueError(
+            f'a wavelet family of {levels} levels and {translations} translations; '
+            'there must be at least 0 and 1'
+        )
     if not q >= MIN_Q:
         raise ValueError(f'wavelet width q is {q:g}; it must be at least {MIN_Q:g}')
     if not 0 < spacing <= MAX_SPACING:
-        raise ValueError(f'wavelet spacing b is {spacing:g}; it must be above 0 and at most '
-                         f'{MAX_SPACING:g}')
+        raise ValueError(
+            f'wavelet spacing b is {spacing:g}; it must be above 0 and at most {MAX_SPACING:g}'
+        )
     level = np.repeat([levels, *range(levels + 1)], translations).astype(float)
     shift = np.tile((np.arange(translations) - (translations - 1) / 2) * spacing, levels + 2)
     is_scaling = np.arange(len(level)) < translations
     g, h = sigmoid(D, q), sigmoid(D + P, q)
     height = DILATION ** (-level / 2)
-    group = (DILATION ** -level / (2 * q), shift / (2 * q), np.where(is_scaling, 2 * g, 0) * height,
-             np.where(is_scaling, 0, -2 * h * h) * height, np.where(is_scaling, g * g, h * h))
+    group = (
+        DILATION**-level / (2 * q),
+        shift / (2 * q),
+        np.where(is_scaling, 2 * g, 0) * height,
+        np.where(is_scaling, 0, -2 * h * h) * height,
+        np.where(is_scaling, g * g, h * h),
+    )
     return Units(*(np.tile(column, groups).astype(dtype) for column in group))
 
 

@@ -27,8 +27,9 @@ def write(path, arrays: dict[str, np.ndarray], manifest: dict[str, Any]) -> None
         np.savez(file, manifest=np.array(json.dumps(manifest)), **arrays)  # type: ignore[arg-type]
 
 
-def read(path, kind: str, command: str, form: int, names: Iterable[str]
-         ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+def read(
+    path, kind: str, command: str, form: int, names: Iterable[str]
+) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """The arrays of the given names and the manifest.
 
     kind: what the weights are of; command: what writes such files; form: their format. Raises
@@ -41,14 +42,22 @@ def read(path, kind: str, command: str, form: int, names: Iterable[str]
             arrays = {name: file[name] for name in file.files if name != 'manifest'}
     except OSError as error:
         raise ValueError(f'{what} cannot be read: {error.strerror or error}') from error
-    except (ValueError, KeyError, EOFError, TypeError, RuntimeError, MemoryError,
-            zipfile.BadZipFile) as error:       # a wrong bit anywhere, or another kind of file
+    except (
+        ValueError,
+        KeyError,
+        EOFError,
+        TypeError,
+        RuntimeError,
+        MemoryError,
+        zipfile.BadZipFile,
+    ) as error:  # a wrong bit anywhere, or another kind of file
         raise ValueError(f'{what}: this is no file of `{command}`, or it is damaged') from error
     if not isinstance(manifest, dict) or 'format' not in manifest:
         raise ValueError(f'{what}: this is no file of `{command}`')
     if manifest['format'] != form:
-        raise ValueError(f'{what} has format {manifest["format"]}; this version reads '
-                         f'{form}: train anew')
+        raise ValueError(
+            f'{what} has format {manifest["format"]}; this version reads {form}: train anew'
+        )
     wanted = set(names)
     if set(arrays) != wanted:
         odd = ', '.join(sorted(set(arrays) ^ wanted))
@@ -61,8 +70,10 @@ def read(path, kind: str, command: str, form: int, names: Iterable[str]
 def checked(values, name: str, shape: tuple[int, ...], what: str):
     """The array, if it has the shape and is finite; else ValueError."""
     if values.shape != shape:
-        raise ValueError(f'{what} belongs to another network: {name} has shape '
-                         f'{values.shape}; it must be {shape}')
+        raise ValueError(
+            f'{what} belongs to another network: {name} has shape '
+            f'{values.shape}; it must be {shape}'
+        )
     if not np.isfinite(values).all():
         raise ValueError(f'{what}: {name} holds values that are not finite')
     return values

@@ -24,11 +24,18 @@ class RunnableNode(Node):
         the tracking of forty ships. A subscriber that asks for too much is told on its own side.
         """
         return self.create_publisher(
-            kind, topic, quality,
-            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False))
+            kind,
+            topic,
+            quality,
+            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
+        )
 
     def subscription(self, kind, topic: str, callback, quality) -> Subscription:
         """A subscription without event handlers, for the same reason."""
         return self.create_subscription(
-            kind, topic, callback, quality,
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False))
+            kind,
+            topic,
+            callback,
+            quality,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+        )

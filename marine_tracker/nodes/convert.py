@@ -28,14 +28,34 @@ from .topics import FRAME, OWN_SHIP_FRAME
 
 PLOT_FIELDS = ('x', 'y', 'z', 'range', 'bearing', 'amplitude', 'time_offset')
 NEEDED = ('range', 'bearing', 'amplitude', 'time_offset')
-RADIAL_SPEED = 'radial_speed'       # of a radar with Doppler
+RADIAL_SPEED = 'radial_speed'  # of a radar with Doppler
 FLOATS = {PointField.FLOAT32: 'f4', PointField.FLOAT64: 'f8'}
 
 TRACK_TYPE = np.dtype(
     [('id', '<u4'), ('number', '<u4'), ('status', '<u4'), ('time_offset', '<f4')]
-    + [(name, '<f4') for name in (
-        'x', 'y', 'z', 'vx', 'vy', 'xx', 'xy', 'yy', 'vxvx', 'vxvy', 'vyvy',
-        'xvx', 'xvy', 'yvx', 'yvy', 'course', 'speed')])
+    + [
+        (name, '<f4')
+        for name in (
+            'x',
+            'y',
+            'z',
+            'vx',
+            'vy',
+            'xx',
+            'xy',
+            'yy',
+            'vxvx',
+            'vxvy',
+            'vyvy',
+            'xvx',
+            'xvy',
+            'yvx',
+            'yvy',
+            'course',
+            'speed',
+        )
+    ]
+)
 
 
 class ConversionError(ValueError):
@@ -61,7 +81,7 @@ def nanoseconds(stamp: Time) -> int:
 def time_message(time_ns: int) -> Time:
     """A stamp from integer nanoseconds, held to what the message can carry."""
     sec, nanosec = divmod(int(time_ns), 1_000_000_000)
-    return Time(sec=min(max(sec, -2 ** 31), 2 ** 31 - 1), nanosec=nanosec)
+    return Time(sec=min(max(sec, -(2**31)), 2**31 - 1), nanosec=nanosec)
 
 
 def header(time_ns: int, frame: str = FRAME) -> Header:
@@ -77,9 +97,16 @@ def cloud_message(rows, time_ns: int) -> PointCloud2:
         kind, offset = rows.dtype.fields[name]
         fields.append(PointField(name=name, offset=offset, datatype=kinds[kind.str[1:]], count=1))
     return PointCloud2(
-        header=header(time_ns), height=1, width=len(rows), fields=fields, is_bigendian=False,
-        point_step=rows.dtype.itemsize, row_step=rows.nbytes, is_dense=True,
-        data=array.array('B', rows.tobytes()))
+        header=header(time_ns),
+        height=1,
+        width=len(rows),
+        fields=fields,
+        is_bigendian=False,
+        point_step=rows.dtype.itemsize,
+        row_step=rows.nbytes,
+        is_dense=True,
+        data=array.array('B', rows.tobytes()),
+    )
 
 
 def plots_positions(scan: Scan) -> Array:
@@ -128,28 +155,38 @@ def cloud_to_plots(message: PointCloud2) -> PolarPlots:
             raise ConversionError(MISSING_FIELD, name)
         field = fields[name]
         if field.datatype not in FLOATS or field.count > 1:
-            raise ConversionError(MISTYPED_FIELD, f'{name} has datatype {field.datatype}, count '
-                                  f'{field.count}; it must be one FLOAT32 or FLOAT64')
+            raise ConversionError(
+                MISTYPED_FIELD,
+                f'{name} has datatype {field.datatype}, count '
+                f'{field.count}; it must be one FLOAT32 or FLOAT64',
+            )
         kind = np.dtype(order + FLOATS[field.datatype])
         if field.offset + kind.itemsize > message.point_step:
-            raise ConversionError(BAD_LAYOUT, f'{name} ends at byte {field.offset + kind.itemsize}'
-                                  f' of a point of {message.point_step}')
+            raise ConversionError(
+                BAD_LAYOUT,
+                f'{name} ends at byte {field.offset + kind.itemsize}'
+                f' of a point of {message.point_step}',
+            )
         kinds.append(kind)
         offsets.append(field.offset)
     used = message.width * message.point_step
     if message.row_step < used:
-        raise ConversionError(BAD_LAYOUT, f'row_step is {message.row_step}; {message.width} points '
-                              f'of {message.point_step} bytes need {used}')
+        raise ConversionError(
+            BAD_LAYOUT,
+            f'row_step is {message.row_step}; {message.width} points '
+            f'of {message.point_step} bytes need {used}',
+        )
     whole = message.row_step * message.height
     if len(message.data) < whole:
         raise ConversionError(TRUNCATED, f'{len(message.data)} bytes of {whole}')
     if len(message.data) > whole:
         raise ConversionError(BAD_LAYOUT, f'{len(message.data)} bytes; {whole} announced')
     raw = np.frombuffer(message.data, np.uint8).reshape(message.height, message.row_step)[:, :used]
-    point = np.dtype({'names': list(names), 'formats': kinds, 'offsets': offsets,
-                      'itemsize': message.point_step})
+    point = np.dtype(
+        {'names': list(names), 'formats': kinds, 'offsets': offsets, 'itemsize': message.point_step}
+    )
     rows = np.ascontiguousarray(raw).reshape(-1).view(point)
-    with np.errstate(invalid='ignore'):                 # signalling NaNs from a torn buffer
+    with np.errstate(invalid='ignore'):  # signalling NaNs from a torn buffer
         range_, bearing, amplitude, offset, *speed = (rows[name].astype(float) for name in names)
     return PolarPlots(offset, range_, bearing, amplitude, *speed)
 
@@ -163,13 +200,18 @@ def plots_to_readable(scan: Scan, start_ns: int) -> PointCloud:
     """
     plots = scan.plots
     points = [Point32(x=x, y=y) for x, y in _rounded(plots_positions(scan), 2).tolist()]
-    columns = [('range_m', plots.range, 2), ('bearing_deg', np.degrees(plots.bearing), 8),
-               ('amplitude_db', plots.amplitude, 2), ('time_offset_s', plots.time - scan.start, 8)]
+    columns = [
+        ('range_m', plots.range, 2),
+        ('bearing_deg', np.degrees(plots.bearing), 8),
+        ('amplitude_db', plots.amplitude, 2),
+        ('time_offset_s', plots.time - scan.start, 8),
+    ]
     if plots.radial_speed is not None:
         columns.append(('radial_speed_mps', plots.radial_speed, 16))
     channels = [
         ChannelFloat32(name=name, values=array.array('f', _rounded(values, parts).tolist()))
-        for name, values, parts in columns]
+        for name, values, parts in columns
+    ]
     return PointCloud(header=header(start_ns), points=points, channels=channels)
 
 
@@ -180,8 +222,13 @@ def _rounded(values, parts: int):
 def own_ship_to_odometry(time_ns: int, position, velocity) -> Odometry:
     """Own ship's position and velocity [2], m and m/s east and north; yaw is its course."""
     pool = OdometryPool()
-    message = pool.fill(np.array([time_ns]), [OWN_SHIP_FRAME], np.reshape(position, (1, 2)),
-                        np.reshape(velocity, (1, 2)), np.zeros((1, 4, 4)))[0]
+    message = pool.fill(
+        np.array([time_ns]),
+        [OWN_SHIP_FRAME],
+        np.reshape(position, (1, 2)),
+        np.reshape(velocity, (1, 2)),
+        np.zeros((1, 4, 4)),
+    )[0]
     return message
 
 
@@ -206,8 +253,11 @@ def yaw_of(q: Quaternion) -> float:
 
 def fix_message(time_ns: int, latitude_deg: float, longitude_deg: float) -> NavSatFix:
     """Own ship's geodetic position."""
-    fix = NavSatFix(header=header(time_ns, OWN_SHIP_FRAME), latitude=float(latitude_deg),
-                    longitude=float(longitude_deg))
+    fix = NavSatFix(
+        header=header(time_ns, OWN_SHIP_FRAME),
+        latitude=float(latitude_deg),
+        longitude=float(longitude_deg),
+    )
     fix.status.status = NavSatStatus.STATUS_FIX
     fix.status.service = NavSatStatus.SERVICE_GPS
     return fix
@@ -246,12 +296,12 @@ class OdometryPool:
         course_variance = twist[:, 1, 1] / np.maximum(speed, 1e-3) ** 2
         pose_rows, twist_rows = np.zeros((count, 36)), np.zeros((count, 36))
         pose_rows[:, [0, 1, 6, 7]] = covariance[:, :2, :2].reshape(count, 4)
-        pose_rows[:, 35] = np.minimum(course_variance, np.pi ** 2 / 3)   # that of no idea at all
+        pose_rows[:, 35] = np.minimum(course_variance, np.pi**2 / 3)  # that of no idea at all
         twist_rows[:, [0, 1, 6, 7]] = twist.reshape(count, 4)
         columns = np.column_stack([position, np.sin(yaw / 2), np.cos(yaw / 2), speed]).tolist()
         for message, time_ns, child, (x, y, z, w, v), of_pose, of_twist in zip(
-                messages, np.asarray(times_ns).tolist(), child_frames, columns, pose_rows,
-                twist_rows):
+            messages, np.asarray(times_ns).tolist(), child_frames, columns, pose_rows, twist_rows
+        ):
             stamp = message.header.stamp
             stamp.sec, stamp.nanosec = divmod(time_ns, 1_000_000_000)
             message.child_frame_id = child

@@ -31,8 +31,11 @@ def declare(node: Node, *kinds: type) -> tuple[Any, ...]:
     """
     fields = {field.name: field for kind in kinds for field in dataclasses.fields(kind)}
     # Parameters that rclpy itself declared (use_sim_time, ...) and QoS overrides are not ours.
-    given = {name: override.value for name, override in node._parameter_overrides.items()
-             if not node.has_parameter(name) and not name.startswith('qos_overrides.')}
+    given = {
+        name: override.value
+        for name, override in node._parameter_overrides.items()
+        if not node.has_parameter(name) and not name.startswith('qos_overrides.')
+    }
     for name, value in given.items():
         if name in fields:
             _check_type(name, value, fields[name].type)
@@ -49,26 +52,31 @@ def descriptor(field) -> ParameterDescriptor:
     described = ParameterDescriptor(
         name=field.name,
         description=about['text'] + (f' [{about["unit"]}]' if about['unit'] else ''),
-        additional_constraints=limits(field), read_only=not about['live'])
+        additional_constraints=limits(field),
+        read_only=not about['live'],
+    )
     if about['low'] is not None and about['high'] is not None:
         if field.type is float:
-            described.floating_point_range = [FloatingPointRange(
-                from_value=float(about['low']), to_value=float(about['high']), step=0.0)]
+            described.floating_point_range = [
+                FloatingPointRange(
+                    from_value=float(about['low']), to_value=float(about['high']), step=0.0
+                )
+            ]
         else:
-            described.integer_range = [IntegerRange(
-                from_value=int(about['low']), to_value=int(about['high']), step=1)]
+            described.integer_range = [
+                IntegerRange(from_value=int(about['low']), to_value=int(about['high']), step=1)
+            ]
     return described
 
 
-def follow(node: Node, kind: type[P], make: Callable[[P], M],
-           apply: Callable[[M], None]) -> None:
+def follow(node: Node, kind: type[P], make: Callable[[P], M], apply: Callable[[M], None]) -> None:
     """Whenever live parameters were changed, `apply` what `make` made of them.
 
     A change that the dataclass or `make` refuses with a ValueError is refused with that reason.
     `make` must have no side effect: another callback may still refuse the same change.
     """
-    made: list[M] = []          # of the last change that was accepted here
-    names = [field.name for field in dataclasses.fields(kind)]           # type: ignore[arg-type]
+    made: list[M] = []  # of the last change that was accepted here
+    names = [field.name for field in dataclasses.fields(kind)]  # type: ignore[arg-type]
 
     def values(changed: list[Parameter]) -> dict[str, Any]:
         now = {name: node.get_parameter(name).value for name in names}
@@ -92,10 +100,12 @@ def follow(node: Node, kind: type[P], make: Callable[[P], M],
 
 def _check_type(name: str, value: Any, wanted: Any) -> None:
     if value is None:
-        raise ValueError(f'parameter {name} has no value (an empty entry or list); '
-                         f'it must be {WORDS[wanted]}')
+        raise ValueError(
+            f'parameter {name} has no value (an empty entry or list); it must be {WORDS[wanted]}'
+        )
     if type(value) is not wanted:
         hint = f' (write {value}.0)' if wanted is float and type(value) is int else ''
         found = WORDS.get(type(value), 'a list')
-        raise ValueError(f'parameter {name} is {value!r}, {found}; '
-                         f'it must be {WORDS[wanted]}{hint}')
+        raise ValueError(
+            f'parameter {name} is {value!r}, {found}; it must be {WORDS[wanted]}{hint}'
+        )

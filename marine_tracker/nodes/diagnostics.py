@@ -10,10 +10,14 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from .convert import header
 
-OK, WARN, ERROR, STALE = (DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR,
-                          DiagnosticStatus.STALE)
+OK, WARN, ERROR, STALE = (
+    DiagnosticStatus.OK,
+    DiagnosticStatus.WARN,
+    DiagnosticStatus.ERROR,
+    DiagnosticStatus.STALE,
+)
 FAILED = 'callbacks failed'
-FRESH_S = 10.0      # a fault counts as present for so long after it was last seen
+FRESH_S = 10.0  # a fault counts as present for so long after it was last seen
 
 
 class Tally:
@@ -42,28 +46,38 @@ class Tally:
 def guarded(callback):
     """A method as callback: no exception leaves it; it is counted in `self.failures`, and told
     once for each kind."""
+
     @functools.wraps(callback)
     def run_guarded(self, *arguments):
         try:
             callback(self, *arguments)
         except Exception as error:
-            self.failures.add(f'{FAILED}: {type(error).__name__} in {callback.__name__}',
-                              time.monotonic(), detail=str(error))
+            self.failures.add(
+                f'{FAILED}: {type(error).__name__} in {callback.__name__}',
+                time.monotonic(),
+                detail=str(error),
+            )
+
     return run_guarded
 
 
 def answered(callback):
     """A method that returns what to answer, as callback of a service: `guarded` likewise."""
+
     @functools.wraps(callback)
     def run_answered(self, request, response):
         try:
             response.message = callback(self, request)
             response.success = True
         except Exception as error:
-            self.failures.add(f'{FAILED}: {type(error).__name__} in {callback.__name__}',
-                              time.monotonic(), detail=str(error))
+            self.failures.add(
+                f'{FAILED}: {type(error).__name__} in {callback.__name__}',
+                time.monotonic(),
+                detail=str(error),
+            )
             response.success, response.message = False, str(error)
         return response
+
     return run_answered
 
 
@@ -84,12 +98,17 @@ class Durations:
         return sorted(self._last)[round(percent / 100 * (len(self._last) - 1))]
 
 
-def status(name: str, hardware_id: str, level: bytes, message: str,
-           values: Mapping[str, Any]) -> DiagnosticStatus:
+def status(
+    name: str, hardware_id: str, level: bytes, message: str, values: Mapping[str, Any]
+) -> DiagnosticStatus:
     """One entry of /diagnostics."""
     return DiagnosticStatus(
-        level=level, name=name, message=message, hardware_id=hardware_id,
-        values=[KeyValue(key=key, value=str(value)) for key, value in values.items()])
+        level=level,
+        name=name,
+        message=message,
+        hardware_id=hardware_id,
+        values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
+    )
 
 
 def array(time_ns: int, statuses: list[DiagnosticStatus]) -> DiagnosticArray:

@@ -8,8 +8,8 @@ from collections.abc import Iterator, MutableMapping
 
 from ..config import path
 
-LOCK_PORT = 32768           # + domain: bound while a domain is in use, as domain_coordinator does
-DDS_PORT = 7410             # + 250 * domain: the first participant's port for discovery
+LOCK_PORT = 32768  # + domain: bound while a domain is in use, as domain_coordinator does
+DDS_PORT = 7410  # + 250 * domain: the first participant's port for discovery
 DOMAINS = range(1, 101)
 
 
@@ -37,5 +37,4 @@ def set_local(environment: MutableMapping[str, str], domain: int) -> None:
     """Set the variables for nodes of one machine; what the user has set stays, but the domain."""
     environment['ROS_DOMAIN_ID'] = str(domain)
     environment.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    environment.setdefault('FASTRTPS_DEFAULT_PROFILES_FILE',
-                           os.fspath(path('fastdds_local.xml')))
+    environment.setdefault('FASTRTPS_DEFAULT_PROFILES_FILE', os.fspath(path('fastdds_local.xml')))

@@ -23,7 +23,7 @@ from . import topics
 NODE = 'marine_tracker_doctor'
 NEEDED = (topics.PLOTS, topics.ODOMETRY, topics.TRACKS)
 CLOUD = 'sensor_msgs/msg/PointCloud2'
-NOT_YET_NAMED = '_NODE_NAME_UNKNOWN_'       # of an end whose node is still being discovered
+NOT_YET_NAMED = '_NODE_NAME_UNKNOWN_'  # of an end whose node is still being discovered
 
 
 class Ends(NamedTuple):
@@ -56,22 +56,35 @@ def look(seconds: float, namespace: str = '/', names: Iterable[str] = NEEDED) ->
     context = Context()
     rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
     try:
-        node = Node(NODE, context=context, namespace=namespace, enable_rosout=False,
-                    start_parameter_services=False)
+        node = Node(
+            NODE,
+            context=context,
+            namespace=namespace,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
         try:
             deadline = time.monotonic() + seconds
             while (left := deadline - time.monotonic()) > 0 and not _all_published(
-                    node, _full_names(node, names)):
+                node, _full_names(node, names)
+            ):
                 executor.spin_once(timeout_sec=min(0.1, left))
             return Graph(
                 get_rmw_implementation_identifier(),
-                tuple(sorted(f'{where.rstrip("/")}/{name}'
-                             for name, where in node.get_node_names_and_namespaces()
-                             if name != NODE and not name.startswith('_'))),
-                {name: Ends(node.count_publishers(name), node.count_subscribers(name))
-                 for name in _full_names(node, names)})
+                tuple(
+                    sorted(
+                        f'{where.rstrip("/")}/{name}'
+                        for name, where in node.get_node_names_and_namespaces()
+                        if name != NODE and not name.startswith('_')
+                    )
+                ),
+                {
+                    name: Ends(node.count_publishers(name), node.count_subscribers(name))
+                    for name in _full_names(node, names)
+                },
+            )
         finally:
             executor.shutdown()
             node.destroy_node()
@@ -89,11 +102,19 @@ def _full_names(node: Node, names: Iterable[str]) -> list[str]:
 
 def _heard_by_trackers(node: Node) -> list[str]:
     """Topics of clouds that whoever publishes tracks listens to: one of each radar."""
-    trackers = {_name(end) for end in node.get_publishers_info_by_topic(
-        node.resolve_topic_name(topics.TRACKS))}
-    return sorted(topic for topic, kinds in node.get_topic_names_and_types() if CLOUD in kinds
-                  and any(_name(end) in trackers and end.node_name != NOT_YET_NAMED
-                          for end in node.get_subscriptions_info_by_topic(topic)))
+    trackers = {
+        _name(end)
+        for end in node.get_publishers_info_by_topic(node.resolve_topic_name(topics.TRACKS))
+    }
+    return sorted(
+        topic
+        for topic, kinds in node.get_topic_names_and_types()
+        if CLOUD in kinds
+        and any(
+            _name(end) in trackers and end.node_name != NOT_YET_NAMED
+            for end in node.get_subscriptions_info_by_topic(topic)
+        )
+    )
 
 
 def _name(end: TopicEndpointInfo) -> tuple[str, str]:
@@ -102,8 +123,9 @@ def _name(end: TopicEndpointInfo) -> tuple[str, str]:
 
 def _all_published(node: Node, names: list[str]) -> bool:
     publishers = [node.get_publishers_info_by_topic(name) for name in names]
-    return all(publishers) and all(end.node_name != NOT_YET_NAMED
-                                   for ends in publishers for end in ends)
+    return all(publishers) and all(
+        end.node_name != NOT_YET_NAMED for ends in publishers for end in ends
+    )
 
 
 if __name__ == '__main__':

@@ -6,9 +6,17 @@ from ..arpa.view import HullView
 from ..extent.hulls import METHODS, SOURCES
 from ..geometry import NAUTICAL_MILE
 
-COLUMNS = ('length_m', 'length_sd_m', 'beam_max_m', 'heading_deg', 'heading_sd_deg', 'heading_from',
-           'hull_clearance_nm', 'extent_method')
-POINT = 'point'             # too small for a size
+COLUMNS = (
+    'length_m',
+    'length_sd_m',
+    'beam_max_m',
+    'heading_deg',
+    'heading_sd_deg',
+    'heading_from',
+    'hull_clearance_nm',
+    'extent_method',
+)
+POINT = 'point'  # too small for a size
 
 
 def columns(hulls: HullView, degrees, figure) -> list[list[str]]:
@@ -24,13 +32,21 @@ def columns(hulls: HullView, degrees, figure) -> list[list[str]]:
 
     heading = np.where(shown, np.degrees(shapes.heading), np.nan).tolist()
     return [
-        numbers(shapes.length, 0), numbers(shapes.length_sd, 0), numbers(shapes.beam, 0),
-        [degrees(value) for value in heading], numbers(np.degrees(shapes.heading_sd), 1),
-        [SOURCES[source] if known else '' for source, known in zip(
-            shapes.source.tolist(), shown.tolist())],
+        numbers(shapes.length, 0),
+        numbers(shapes.length_sd, 0),
+        numbers(shapes.beam, 0),
+        [degrees(value) for value in heading],
+        numbers(np.degrees(shapes.heading_sd), 1),
+        [
+            SOURCES[source] if known else ''
+            for source, known in zip(shapes.source.tolist(), shown.tolist())
+        ],
         numbers(hulls.clearance / NAUTICAL_MILE, 3),
-        [METHODS[method] if known else POINT for method, known in zip(
-            shapes.method.tolist(), shown.tolist())]]
+        [
+            METHODS[method] if known else POINT
+            for method, known in zip(shapes.method.tolist(), shown.tolist())
+        ],
+    ]
 
 
 def outlines(hulls: HullView, alive):

@@ -21,7 +21,7 @@ from ..types import row_of
 from .convert import header
 from .hull_columns import outlines
 
-SYMBOL_M = 60.0             # radius of a target's circle
+SYMBOL_M = 60.0  # radius of a target's circle
 ELLIPSE_SIGMA = 2.0
 CORNERS = np.linspace(0, 2 * np.pi, 17)
 GREEN, RED, GREY, WHITE = (0.2, 0.9, 0.3), (1.0, 0.2, 0.2), (0.5, 0.6, 0.5), (0.9, 0.9, 0.9)
@@ -34,8 +34,9 @@ class MarkersWriter:
     def __init__(self):
         self._labelled: set[int] = set()
 
-    def message(self, seen: View, picture: Picture, zones: Zones, parameters: ArpaParameters,
-                time_ns: int) -> MarkerArray:
+    def message(
+        self, seen: View, picture: Picture, zones: Zones, parameters: ArpaParameters, time_ns: int
+    ) -> MarkerArray:
         """All targets of a view: dangerous ones red, acquired ones that have no number yet grey."""
         alive = (seen.status != LOST) & np.isfinite(seen.motion.position).all(1)
         ids, position = seen.id[alive], seen.motion.position[alive]
@@ -48,39 +49,62 @@ class MarkersWriter:
         # A covariance's Cholesky factor turns the unit circle into its ellipse.
         ellipse = ELLIPSE_SIGMA * np.einsum('nij,cj->nci', np.linalg.cholesky(covariance), circle)
         past = picture.past
-        dots = (past_positions.relative(past) + picture.own.position if relative
-                else past.position)[row_of(past.id, ids)].reshape(-1, 2)
+        dots = (
+            past_positions.relative(past) + picture.own.position if relative else past.position
+        )[row_of(past.id, ids)].reshape(-1, 2)
         red, number = seen.dangerous[alive], seen.number[alive]
         markers = [
             _marker('symbols', Marker.LINE_LIST, 6.0, GREEN, symbols[~red]),
-            _marker('dangerous', Marker.LINE_LIST, 10.0, RED,
-                    np.concatenate([symbols[red].reshape(-1, 2), arrows[red].reshape(-1, 2)])),
+            _marker(
+                'dangerous',
+                Marker.LINE_LIST,
+                10.0,
+                RED,
+                np.concatenate([symbols[red].reshape(-1, 2), arrows[red].reshape(-1, 2)]),
+            ),
             _marker('vectors', Marker.LINE_LIST, 6.0, GREEN, arrows[~red]),
             _marker('past_positions', Marker.POINTS, 25.0, GREY, dots[np.isfinite(dots[:, 0])]),
-            _marker('ellipses', Marker.LINE_LIST, 3.0, GREY,
-                    _outline(position[:, None] + ellipse)),
+            _marker('ellipses', Marker.LINE_LIST, 3.0, GREY, _outline(position[:, None] + ellipse)),
         ]
         if seen.hulls is not None:
             hulls, rows = outlines(seen.hulls, alive)
-            hull = _marker('hulls', Marker.LINE_LIST, 4.0, WHITE,
-                           _outline(seen.motion.position[rows][:, None] + hulls))
-            hull.lifetime.sec = 10          # gone some scans after extents were switched off
+            hull = _marker(
+                'hulls',
+                Marker.LINE_LIST,
+                4.0,
+                WHITE,
+                _outline(seen.motion.position[rows][:, None] + hulls),
+            )
+            hull.lifetime.sec = 10  # gone some scans after extents were switched off
             markers.append(hull)
         for guard, color in ((True, AMBER), (False, MAGENTA)):
-            markers.append(_marker(
-                'guard_zones' if guard else 'exclusion_zones', Marker.LINE_LIST, 5.0, color,
-                zone_outlines(zones, guard, picture.own.position, picture.own.heading)))
+            markers.append(
+                _marker(
+                    'guard_zones' if guard else 'exclusion_zones',
+                    Marker.LINE_LIST,
+                    5.0,
+                    color,
+                    zone_outlines(zones, guard, picture.own.position, picture.own.heading),
+                )
+            )
         names = [name for name, lives in zip(seen.name, alive.tolist()) if lives]
         for n, name, red_, (x, y) in zip(number.tolist(), names, red.tolist(), position.tolist()):
             if n:
-                label = _marker('labels', Marker.TEXT_VIEW_FACING, 120.0, RED if red_ else WHITE,
-                                np.empty((0, 2)), n)
+                label = _marker(
+                    'labels',
+                    Marker.TEXT_VIEW_FACING,
+                    120.0,
+                    RED if red_ else WHITE,
+                    np.empty((0, 2)),
+                    n,
+                )
                 label.text = name
                 label.pose.position.x, label.pose.position.y = x + 2 * SYMBOL_M, y + 2 * SYMBOL_M
                 markers.append(label)
         shown = set(number.tolist()) - {0}
-        markers += [Marker(ns='labels', id=n, action=Marker.DELETE)
-                    for n in sorted(self._labelled - shown)]
+        markers += [
+            Marker(ns='labels', id=n, action=Marker.DELETE) for n in sorted(self._labelled - shown)
+        ]
         self._labelled = shown
         stamp = header(time_ns)
         for marker in markers:
@@ -96,9 +120,14 @@ def _outline(corners):
 
 def _marker(namespace: str, kind: int, size: float, color, points, number: int = 0) -> Marker:
     red, green, blue = color
-    marker = Marker(ns=namespace, id=number, type=kind, action=Marker.ADD,
-                    color=ColorRGBA(r=red, g=green, b=blue, a=1.0),
-                    points=[Point(x=x, y=y) for x, y in points.reshape(-1, 2).tolist()])
+    marker = Marker(
+        ns=namespace,
+        id=number,
+        type=kind,
+        action=Marker.ADD,
+        color=ColorRGBA(r=red, g=green, b=blue, a=1.0),
+        points=[Point(x=x, y=y) for x, y in points.reshape(-1, 2).tolist()],
+    )
     marker.pose.orientation.w = 1.0
     marker.scale.x = marker.scale.y = marker.scale.z = size
     return marker

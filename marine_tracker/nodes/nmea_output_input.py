@@ -24,9 +24,15 @@ from ..types import Array
 from .convert import nanoseconds, odometry_to_own_ship, yaw_of
 
 NAMED = re.compile(r'(TT|Q)([0-9]{1,9})')
-STATUS = {'LOST': LOST, 'ACQUIRING': ACQUIRING}                 # all others are tracked
-FIGURES = {'range_nm': NAUTICAL_MILE, 'bearing_deg': math.radians(1), 'speed_kn': KNOT,
-           'course_deg': math.radians(1), 'cpa_nm': NAUTICAL_MILE, 'tcpa_min': 60.0}
+STATUS = {'LOST': LOST, 'ACQUIRING': ACQUIRING}  # all others are tracked
+FIGURES = {
+    'range_nm': NAUTICAL_MILE,
+    'bearing_deg': math.radians(1),
+    'speed_kn': KNOT,
+    'course_deg': math.radians(1),
+    'cpa_nm': NAUTICAL_MILE,
+    'tcpa_min': 60.0,
+}
 
 
 def read_targets(message: DiagnosticArray) -> Targets:
@@ -41,15 +47,25 @@ def read_targets(message: DiagnosticArray) -> Targets:
         if named is None:
             continue
         values = {pair.key: pair.value for pair in entry.values}
-        rows.append((
-            int(named[2]) * (1 if named[1] == 'TT' else -1), STATUS.get(entry.message, TRACKING),
-            MANUAL if values.get('acquired') == MANUAL else AUTOMATIC,
-            values.get('name') or entry.name,
-            *(_figure(values.get(key, ''), unit) for key, unit in FIGURES.items())))
+        rows.append(
+            (
+                int(named[2]) * (1 if named[1] == 'TT' else -1),
+                STATUS.get(entry.message, TRACKING),
+                MANUAL if values.get('acquired') == MANUAL else AUTOMATIC,
+                values.get('name') or entry.name,
+                *(_figure(values.get(key, ''), unit) for key, unit in FIGURES.items()),
+            )
+        )
     number, status, acquired, name, *figures = zip(*rows) if rows else ((),) * 10
-    return as_acquired(Targets(
-        np.array(number, np.int64), np.array(status, 'U1'), np.array(acquired, 'U1'),
-        np.array(name, str), *(np.array(column, float) for column in figures)))
+    return as_acquired(
+        Targets(
+            np.array(number, np.int64),
+            np.array(status, 'U1'),
+            np.array(acquired, 'U1'),
+            np.array(name, str),
+            *(np.array(column, float) for column in figures),
+        )
+    )
 
 
 def _figure(text: str, unit: float) -> float:
@@ -70,8 +86,10 @@ def read_origin(text: str) -> tuple[float, float] | None:
     except ValueError:
         latitude = longitude = math.nan
     if not (abs(latitude) <= 90 and abs(longitude) <= 180):
-        raise ValueError(f'parameter origin is {text!r}; it must be latitude and longitude in '
-                         'degrees, as "54.1 10.9"')
+        raise ValueError(
+            f'parameter origin is {text!r}; it must be latitude and longitude in '
+            'degrees, as "54.1 10.9"'
+        )
     return latitude, longitude
 
 
@@ -92,7 +110,7 @@ class OwnShipInput:
     def __init__(self, origin: tuple[float, float] | None):
         self._from_fixes = origin is None
         self.anchor = None if origin is None else Anchor(np.zeros(2), *origin)
-        self.time_ns: int | None = None         # of the last odometry
+        self.time_ns: int | None = None  # of the last odometry
         self._position = self._velocity = np.full(2, np.nan)
         self._heading = math.nan
 
@@ -108,8 +126,9 @@ class OwnShipInput:
 
     def hear_fix(self, message: NavSatFix) -> bool:
         """Whether it could be taken; before the first odometry it cannot be placed, yet is good."""
-        if (message.status.status < NavSatStatus.STATUS_FIX
-                or not (abs(message.latitude) <= 90 and abs(message.longitude) <= 180)):
+        if message.status.status < NavSatStatus.STATUS_FIX or not (
+            abs(message.latitude) <= 90 and abs(message.longitude) <= 180
+        ):
             return False
         if self._from_fixes and self.time_ns is not None:
             at = self.position(nanoseconds(message.header.stamp))
@@ -128,13 +147,15 @@ class OwnShipInput:
             return OwnShipData()
         speed, course = to_range_bearing(self._velocity)
         latitude, longitude = self.place(self.position(time_ns))
-        return OwnShipData(float(latitude), float(longitude), float(speed), float(course),
-                           self._heading)
+        return OwnShipData(
+            float(latitude), float(longitude), float(speed), float(course), self._heading
+        )
 
     def place(self, position) -> tuple[Array, Array]:
         """Degrees of latitude and longitude [...] of positions [..., 2] m; nan if not known."""
         if self.anchor is None:
             nowhere = np.full(np.shape(position)[:-1], np.nan)
             return nowhere, nowhere
-        return geodetic_from_local(position - self.anchor.position, self.anchor.latitude,
-                                   self.anchor.longitude)
+        return geodetic_from_local(
+            position - self.anchor.position, self.anchor.latitude, self.anchor.longitude
+        )

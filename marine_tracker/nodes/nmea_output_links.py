@@ -3,8 +3,8 @@
 import socket
 from typing import NamedTuple
 
-PENDING = 1 << 18           # bytes that may wait for a slow TCP client before it is dropped
-CLIENTS = 50                # TCP clients at a time
+PENDING = 1 << 18  # bytes that may wait for a slow TCP client before it is dropped
+CLIENTS = 50  # TCP clients at a time
 
 
 class Endpoint(NamedTuple):
@@ -24,11 +24,14 @@ def endpoints(name: str, text: str) -> list[Endpoint]:
     for word in text.split():
         host, colon, port = word.rpartition(':')
         if not (colon and host and port.isdecimal() and 0 < int(port) < 65536):
-            raise ValueError(f'parameter {name} has {word!r}; it must be host:port, as '
-                             '127.0.0.1:10110, with a port from 1 to 65535')
+            raise ValueError(
+                f'parameter {name} has {word!r}; it must be host:port, as '
+                '127.0.0.1:10110, with a port from 1 to 65535'
+            )
         try:
             family, _, _, _, address = socket.getaddrinfo(
-                host.strip('[]'), int(port), type=socket.SOCK_DGRAM)[0]
+                host.strip('[]'), int(port), type=socket.SOCK_DGRAM
+            )[0]
         except (OSError, UnicodeError) as error:
             raise ValueError(f'parameter {name} has {word!r}: {error}') from error
         found.append(Endpoint(family, address, word))
@@ -41,7 +44,7 @@ class Datagrams:
     def __init__(self, name: str, text: str):
         self.destinations = endpoints(name, text)
         self.sent = 0
-        self.error = ''                 # what the last failure said
+        self.error = ''  # what the last failure said
         self._sockets: dict[int, socket.socket] = {}
         for family in {destination.family for destination in self.destinations}:
             self._sockets[family] = socket.socket(family, socket.SOCK_DGRAM)
@@ -83,8 +86,9 @@ class Clients:
             try:
                 self._listener = socket.create_server(endpoint.address[:2], family=endpoint.family)
             except OSError as error:
-                raise ValueError(f'parameter {name} is {text!r}: cannot listen there: '
-                                 f'{error.strerror}') from error
+                raise ValueError(
+                    f'parameter {name} is {text!r}: cannot listen there: {error.strerror}'
+                ) from error
             self._listener.setblocking(False)
 
     def __len__(self):
@@ -104,7 +108,7 @@ class Clients:
         while self._listener is not None:
             try:
                 client, _ = self._listener.accept()
-            except OSError:             # nobody is waiting, or one has gone again
+            except OSError:  # nobody is waiting, or one has gone again
                 break
             if len(self._pending) >= CLIENTS:
                 client.close()
@@ -115,12 +119,12 @@ class Clients:
         for client, pending in list(self._pending.items()):
             try:
                 while pending:
-                    del pending[:client.send(pending)]
+                    del pending[: client.send(pending)]
             except BlockingIOError:
                 if len(pending) > PENDING:
                     self.dropped += 1
                     self._drop(client)
-            except OSError:             # it has gone
+            except OSError:  # it has gone
                 self._drop(client)
 
     def close(self) -> None:

@@ -28,8 +28,8 @@ from .nmea_output_input import OwnShipInput, read_origin, read_targets
 from .nmea_output_links import Clients, Datagrams
 
 SENTENCES = ('RMC', 'HDT', 'OSD', 'RSD', 'TTM', 'TLL')
-SILENT_S = 10.0             # s of the wall without own ship or targets: they count as missing
-SERVE_S = 0.2               # s between two looks for new TCP clients
+SILENT_S = 10.0  # s of the wall without own ship or targets: they count as missing
+SERVE_S = 0.2  # s between two looks for new TCP clients
 BAD_ODOMETRY, BAD_FIX = 'own-ship messages not finite', 'fixes without a position'
 NOT_SENT = 'datagrams not sent'
 
@@ -39,34 +39,35 @@ class NmeaOutputNode(RunnableNode):
 
     def __init__(self, **node_arguments):
         super().__init__('nmea_output', **node_arguments)
-        p, = declare(self, NmeaOutputParameters)
+        (p,) = declare(self, NmeaOutputParameters)
         self._settings = p
         self._wanted = p.sentences.split()
         for kind in self._wanted:
             if kind not in SENTENCES:
-                raise ValueError(f'parameter sentences has {kind!r}; it must be of '
-                                 f'{", ".join(SENTENCES)}')
+                raise ValueError(
+                    f'parameter sentences has {kind!r}; it must be of {", ".join(SENTENCES)}'
+                )
         for talker in (p.talker, p.own_ship_talker):
-            nmea.sentence(talker, 'HDT', ())            # ValueError for a wrong one
+            nmea.sentence(talker, 'HDT', ())  # ValueError for a wrong one
         self._own = OwnShipInput(read_origin(p.origin))
         self._udp, self._signalk = Datagrams('udp', p.udp), Datagrams('signalk_udp', p.signalk_udp)
         self._tcp = Clients('tcp', p.tcp)
         self._told = nothing_told()
-        self._heard = {topics.ODOMETRY: -np.inf, topics.TARGETS: -np.inf}       # s of the wall
+        self._heard = {topics.ODOMETRY: -np.inf, topics.TARGETS: -np.inf}  # s of the wall
         self._said_own = -np.inf
-        self._last_ns: int | None = None                # stamp of the last `targets`
+        self._last_ns: int | None = None  # stamp of the last `targets`
         self._count = {'targets': 0, 'targets waiting for a number': 0, 'sentences': 0}
         self._bad = diagnostics.Tally((BAD_ODOMETRY, BAD_FIX, NOT_SENT), self._tell)
         # Targets of two radars, or of two runs of different nodes, are different vessels.
         self._vessels = uuid.uuid5(uuid.NAMESPACE_OID, self.get_fully_qualified_name())
 
         self._topic = self.publisher(String, topics.NMEA, topics.reliable(topics.BURST))
-        self._diagnostics = self.publisher(
-            DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
+        self._diagnostics = self.publisher(DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
         for kind, topic, callback, quality in (
-                (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
-                (NavSatFix, topics.FIX, self._on_fix, topics.best_effort()),
-                (DiagnosticArray, topics.TARGETS, self._on_targets, topics.latched())):
+            (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
+            (NavSatFix, topics.FIX, self._on_fix, topics.best_effort()),
+            (DiagnosticArray, topics.TARGETS, self._on_targets, topics.latched()),
+        ):
             self.create_subscription(kind, topic, callback, quality)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(1.0, self._on_second, clock=steady)
@@ -97,7 +98,7 @@ class NmeaOutputNode(RunnableNode):
 
     def _on_targets(self, message: DiagnosticArray) -> None:
         time_ns = nanoseconds(message.header.stamp)
-        if time_ns == self._last_ns:                    # the same once more
+        if time_ns == self._last_ns:  # the same once more
             return
         self._last_ns = time_ns
         self._heard[topics.TARGETS] = time.monotonic()
@@ -114,13 +115,26 @@ class NmeaOutputNode(RunnableNode):
             lines += nmea.ttm(now.targets, seconds, p.talker)
         latitude, longitude = self._own.place(
             self._own.position(time_ns)
-            + now.targets.range[:, None] * unit_vector(now.targets.bearing))
+            + now.targets.range[:, None] * unit_vector(now.targets.bearing)
+        )
         if 'TLL' in self._wanted:
             lines += nmea.tll(now.targets, latitude, longitude, seconds, p.talker)
         self._send(lines)
         if self._signalk.destinations:
-            self._send_datagrams(self._signalk, [delta.encode() for delta in signalk.deltas(
-                now.targets, now.numbers.tolist(), latitude, longitude, seconds, self._vessels)])
+            self._send_datagrams(
+                self._signalk,
+                [
+                    delta.encode()
+                    for delta in signalk.deltas(
+                        now.targets,
+                        now.numbers.tolist(),
+                        latitude,
+                        longitude,
+                        seconds,
+                        self._vessels,
+                    )
+                ],
+            )
 
     # -- out -----------------------------------------------------------------------------------
 
@@ -157,26 +171,43 @@ class NmeaOutputNode(RunnableNode):
     # -- how it fares --------------------------------------------------------------------------
 
     def _tell(self, reason: str, detail: str) -> None:
-        self.get_logger().warning(f'{reason}{": " + detail if detail else ""} '
-                                  '(told once; counted on /diagnostics)')
+        self.get_logger().warning(
+            f'{reason}{": " + detail if detail else ""} (told once; counted on /diagnostics)'
+        )
 
     def _on_second(self) -> None:
         wall = time.monotonic()
-        worries = [f'nothing on {topic}: {then}' for topic, then in (
-            (topics.ODOMETRY, 'RMC void, no HDT'), (topics.TARGETS, 'no TTM'))
-            if wall - self._heard[topic] > SILENT_S]
+        worries = [
+            f'nothing on {topic}: {then}'
+            for topic, then in ((topics.ODOMETRY, 'RMC void, no HDT'), (topics.TARGETS, 'no TTM'))
+            if wall - self._heard[topic] > SILENT_S
+        ]
         if not worries and self._own.anchor is None:
             worries.append(f'nothing on {topics.FIX} and no parameter origin: RMC void, no TLL')
         worries += [f'lately: {reason}' for reason in self._bad.fresh(wall)]
         if self._count['targets waiting for a number']:
             worries.append('more than 99 targets: some are not told')
-        values = {**self._count, 'datagrams': self._udp.sent,
-                  'Signal K datagrams': self._signalk.sent, 'TCP clients': len(self._tcp),
-                  'TCP clients dropped as too slow': self._tcp.dropped, **self._bad.counts}
+        values = {
+            **self._count,
+            'datagrams': self._udp.sent,
+            'Signal K datagrams': self._signalk.sent,
+            'TCP clients': len(self._tcp),
+            'TCP clients dropped as too slow': self._tcp.dropped,
+            **self._bad.counts,
+        }
         where = self.get_namespace().strip('/')
         label = f'{where}/{self.get_name()}' if where else self.get_name()
-        self._diagnostics.publish(diagnostics.array(
-            self.get_clock().now().nanoseconds, [diagnostics.status(
-                f'{label}: output', f'{where}/radar' if where else 'radar',
-                WARN if worries else OK, '; '.join(worries) or f'{self._count["targets"]} targets',
-                values)]))
+        self._diagnostics.publish(
+            diagnostics.array(
+                self.get_clock().now().nanoseconds,
+                [
+                    diagnostics.status(
+                        f'{label}: output',
+                        f'{where}/radar' if where else 'radar',
+                        WARN if worries else OK,
+                        '; '.join(worries) or f'{self._count["targets"]} targets',
+                        values,
+                    )
+                ],
+            )
+        )

@@ -32,36 +32,44 @@ from .base_node import RunnableNode
 from .diagnostics import Tally, answered, guarded
 
 REFUSED = 'commands refused'
-OVERDUE = 3                     # revolutions without plots: they are missing, not just to come
+OVERDUE = 3  # revolutions without plots: they are missing, not just to come
 
 
 class ArpaDesk:
     """Of one tracker node. ValueError where the parameters are wrong."""
 
-    def __init__(self, node: RunnableNode, parameters: ArpaParameters, tracker: TrackerParameters,
-                 hardware_id: str, failures: Tally):
+    def __init__(
+        self,
+        node: RunnableNode,
+        parameters: ArpaParameters,
+        tracker: TrackerParameters,
+        hardware_id: str,
+        failures: Tally,
+    ):
         self._node, self._hardware_id, self.failures = node, hardware_id, failures
         self.arpa = Arpa(parameters, tracker)
         self._memory = self.arpa.start()
-        self._trial_since: float | None = None      # s, when the trial manoeuvre was switched on
+        self._trial_since: float | None = None  # s, when the trial manoeuvre was switched on
         self.refused = Tally((REFUSED,), lambda reason, detail: None)
         # Of the wall, s: when each was last heard, and between the last plots of each radar.
         self._heard_heading = self._heard_position = time.monotonic()
         self._heard_plots = [self._heard_heading] * len(self.arpa.radars)
-        self._spacing = [deque([radar.parameters.scan_period_s], maxlen=9)
-                         for radar in self.arpa.radars]
+        self._spacing = [
+            deque([radar.parameters.scan_period_s], maxlen=9) for radar in self.arpa.radars
+        ]
         self._scanned = [False] * len(self.arpa.radars)
         self._heading = np.nan
-        self._end, self._end_ns = 0.0, 0            # s, and stamp, of the last scan's end
+        self._end, self._end_ns = 0.0, 0  # s, and stamp, of the last scan's end
         self.picture: Picture | None = None
 
         self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched(10))
         self._to_trial = node.publisher(DiagnosticArray, topics.TRIAL, topics.latched())
         for kind, topic, callback in (
-                (PointStamped, topics.ACQUIRE, self._on_acquire),
-                (PointStamped, topics.CLICKED_POINT, self._on_acquire),
-                (UInt32, topics.CANCEL, self._on_cancel),
-                (UInt32, topics.ACKNOWLEDGE_TARGET, self._on_acknowledge_target)):
+            (PointStamped, topics.ACQUIRE, self._on_acquire),
+            (PointStamped, topics.CLICKED_POINT, self._on_acquire),
+            (UInt32, topics.CANCEL, self._on_cancel),
+            (UInt32, topics.ACKNOWLEDGE_TARGET, self._on_acknowledge_target),
+        ):
             node.subscription(kind, topic, callback, topics.reliable())
         node.create_service(Trigger, topics.CANCEL_ALL, self._on_cancel_all)
         node.create_service(Trigger, topics.ACKNOWLEDGE, self._on_acknowledge)
@@ -90,22 +98,27 @@ class ArpaDesk:
         if self._scanned[scan.radar]:
             self._spacing[scan.radar].append(wall - self._heard_plots[scan.radar])
         self._heard_plots[scan.radar], self._scanned[scan.radar] = wall, True
-        if scan.end >= self._end or self.picture is None:   # of a slow radar they come later
+        if scan.end >= self._end or self.picture is None:  # of a slow radar they come later
             self._end, self._end_ns = scan.end, end_ns
         self._memory, self.picture = self.arpa.step(
-            self._memory, scan, report, self._heading_now(wall), fallen)
+            self._memory, scan, report, self._heading_now(wall), fallen
+        )
         self._publish_alarms(self.picture.changed)
         self._tell_of_clicks(self.picture.events)
         if self._trial_since is not None:
-            self._to_trial.publish(trial_message(
-                self.arpa, self.picture, scan.end - self._trial_since, end_ns, self._hardware_id))
+            self._to_trial.publish(
+                trial_message(
+                    self.arpa, self.picture, scan.end - self._trial_since, end_ns, self._hardware_id
+                )
+            )
         return self.picture
 
     def watch(self) -> None:
         """To be called every second: are heading, position and plots still heard?"""
         wall = time.monotonic()
-        silence = alarms.Silence(wall - self._heard_heading, wall - self._heard_position,
-                                 self._overdue(wall))
+        silence = alarms.Silence(
+            wall - self._heard_heading, wall - self._heard_position, self._overdue(wall)
+        )
         found, changed = alarms.watch(self._memory.alerts, self.arpa.alarms, silence, self._now())
         self._memory = self._memory._replace(alerts=found)
         self._publish_alarms(changed)
@@ -120,7 +133,8 @@ class ArpaDesk:
         replays differ."""
         return tuple(
             wall - heard if wall - heard > OVERDUE * median_low(spacing) else 0.0
-            for heard, spacing in zip(self._heard_plots, self._spacing, strict=True))
+            for heard, spacing in zip(self._heard_plots, self._spacing, strict=True)
+        )
 
     def _since_end(self) -> float:
         """s since the last scan's end, once the next of every radar is overdue."""
@@ -134,8 +148,9 @@ class ArpaDesk:
     @guarded
     def _on_acquire(self, message: PointStamped) -> None:
         try:
-            acquired = acquisition.acquire(self._memory.acquisition, self._point(message),
-                                           self._end)
+            acquired = acquisition.acquire(
+                self._memory.acquisition, self._point(message), self._end
+            )
         except ValueError as error:
             self._refuse(str(error))
         else:
@@ -147,12 +162,16 @@ class ArpaDesk:
         if frame in ('', topics.FRAME):
             return point
         if frame != topics.OWN_SHIP_FRAME:
-            raise ValueError(f'the point to acquire is in frame {frame!r}; it must be '
-                             f'{topics.FRAME} or {topics.OWN_SHIP_FRAME}')
+            raise ValueError(
+                f'the point to acquire is in frame {frame!r}; it must be '
+                f'{topics.FRAME} or {topics.OWN_SHIP_FRAME}'
+            )
         heading = self._heading_now(time.monotonic())
         if self.picture is None or not np.isfinite(heading):
-            raise ValueError(f'a point in {topics.OWN_SHIP_FRAME} cannot be acquired before '
-                             "plots came, or without own ship's heading")
+            raise ValueError(
+                f'a point in {topics.OWN_SHIP_FRAME} cannot be acquired before '
+                "plots came, or without own ship's heading"
+            )
         ahead = np.array([np.sin(heading), np.cos(heading)])
         port = np.array([-ahead[1], ahead[0]])
         return self.picture.own.position + point[0] * ahead + point[1] * port
@@ -206,8 +225,10 @@ class ArpaDesk:
     def _tell_of_clicks(self, events: Events) -> None:
         for kind, position in zip(events.kind.tolist(), events.position.tolist()):
             if kind in (NOTHING_THERE, NO_ROOM):
-                self._refuse(f'acquire at east {position[0]:.0f} m, north {position[1]:.0f} m: '
-                             f'{EVENTS[kind]}')
+                self._refuse(
+                    f'acquire at east {position[0]:.0f} m, north {position[1]:.0f} m: '
+                    f'{EVENTS[kind]}'
+                )
 
     def _refuse(self, reason: str) -> None:
         self.refused.add(REFUSED, time.monotonic())
@@ -218,11 +239,19 @@ class ArpaDesk:
     def _publish_alarms(self, changed: Alerts) -> None:
         if len(changed.kind):
             present = self._memory.alerts
-            shown = append(take(present, present.state != NORMAL),
-                           take(changed, changed.state == NORMAL))
-            self._to_alarms.publish(alarms_message(
-                shown, self.arpa.zones, [radar.name for radar in self.arpa.radars], self._now(),
-                self._stamp(), self._hardware_id))
+            shown = append(
+                take(present, present.state != NORMAL), take(changed, changed.state == NORMAL)
+            )
+            self._to_alarms.publish(
+                alarms_message(
+                    shown,
+                    self.arpa.zones,
+                    [radar.name for radar in self.arpa.radars],
+                    self._now(),
+                    self._stamp(),
+                    self._hardware_id,
+                )
+            )
 
     def _stamp(self) -> int:
         """ns of now; of the node's clock before the first scan."""

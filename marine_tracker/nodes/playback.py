@@ -29,14 +29,14 @@ from . import convert, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
 
-FIRST_S = 1.0                   # s, where simulated time begins
-TICK_S = 0.05                   # longest wait between two looks at the time
-AT_ONCE_S = 0.05                # longest work before the executor gets its turn
-LAG_S = 0.5                     # further behind than this, time runs slower
-LISTENER_S = 3.0                # longest wait for the first listener ...
-SETTLE_S = 0.5                  # ... and for it to know us, too, on every topic
-OWN_SHIP_PERIOD_S = 0.1         # of simulated time, and at most
-OWN_SHIP_PER_S = 25.0           # samples in a second of the wall
+FIRST_S = 1.0  # s, where simulated time begins
+TICK_S = 0.05  # longest wait between two looks at the time
+AT_ONCE_S = 0.05  # longest work before the executor gets its turn
+LAG_S = 0.5  # further behind than this, time runs slower
+LISTENER_S = 3.0  # longest wait for the first listener ...
+SETTLE_S = 0.5  # ... and for it to know us, too, on every topic
+OWN_SHIP_PERIOD_S = 0.1  # of simulated time, and at most
+OWN_SHIP_PER_S = 25.0  # samples in a second of the wall
 
 
 class Revolution(NamedTuple):
@@ -64,11 +64,20 @@ class Playback:
     `done` becomes true when the last revolution is out (never in a loop).
     """
 
-    def __init__(self, node: RunnableNode, make: Callable[[], Iterator[Revolution]], rate: float,
-                 loop: bool, origin: tuple[float, float] | None = None, begin_at: float = 0.0):
+    def __init__(
+        self,
+        node: RunnableNode,
+        make: Callable[[], Iterator[Revolution]],
+        rate: float,
+        loop: bool,
+        origin: tuple[float, float] | None = None,
+        begin_at: float = 0.0,
+    ):
         if begin_at and rate != 1:
-            raise ValueError(f'begin_at_s is {begin_at:g} s beside a rate of {rate:g}; it needs '
-                             'rate 1 (and use_sim_time beside a node that publishes /clock)')
+            raise ValueError(
+                f'begin_at_s is {begin_at:g} s beside a rate of {rate:g}; it needs '
+                'rate 1 (and use_sim_time beside a node that publishes /clock)'
+            )
         self.node, self.rate, self.origin, self.begin_at = node, rate, origin, begin_at
         self.done = False
         self._revolutions = _repeat(make) if loop else make()
@@ -77,22 +86,21 @@ class Playback:
             raise ValueError('there is no revolution to play')
         first = self._next
         self._first = min(float(first.own_ship.time[0]), first.scan.start)
-        self._sample = 0                        # of the next revolution's own-ship samples
+        self._sample = 0  # of the next revolution's own-ship samples
         reliable = topics.reliable
         self._plots = node.publisher(PointCloud2, topics.PLOTS, reliable())
         self._readable = node.publisher(PointCloud, topics.PLOTS_READABLE, reliable())
         self._odometry = node.publisher(Odometry, topics.ODOMETRY, reliable())
         self._truth = node.publisher(Odometry, topics.TRUTH, reliable(topics.BURST))
         self._fix = node.publisher(NavSatFix, topics.FIX, reliable()) if origin else None
-        self._clock = (node.publisher(ClockMessage, '/clock', reliable(1))
-                       if rate != 1 else None)
+        self._clock = node.publisher(ClockMessage, '/clock', reliable(1)) if rate != 1 else None
         self._pool = OdometryPool()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._created = self._wall()
         self._heard: float | None = None
         self._told_waiting = False
-        self._start_ns: int | None = None       # stamp of the time _first
-        self._anchor = (0.0, self._first)       # a moment of the wall and the time it stands for
+        self._start_ns: int | None = None  # stamp of the time _first
+        self._anchor = (0.0, self._first)  # a moment of the wall and the time it stands for
         self._timer = node.create_timer(TICK_S, self._tick, clock=self._steady)
 
     def close(self) -> None:
@@ -136,11 +144,13 @@ class Playback:
             if start_ns == 0:
                 if not self._told_waiting:
                     node.get_logger().warning(
-                        'use_sim_time is set and /clock is silent: waiting for it')
+                        'use_sim_time is set and /clock is silent: waiting for it'
+                    )
                     self._told_waiting = True
                 return False
-        if self._heard is None and (self._plots.get_subscription_count()
-                                    and self._odometry.get_subscription_count()):
+        if self._heard is None and (
+            self._plots.get_subscription_count() and self._odometry.get_subscription_count()
+        ):
             self._heard = wall
         settled = self._heard is not None and wall - self._heard >= SETTLE_S
         if not settled and wall - self._created < LISTENER_S:
@@ -201,9 +211,12 @@ class Playback:
         if self._truth.get_subscription_count():
             exact = np.zeros((len(truth.time), 4, 4))
             for message in self._pool.fill(
-                    [self._stamp(time) for time in truth.time],
-                    [f'target_{number}' for number in truth.target], truth.position,
-                    truth.velocity, exact):
+                [self._stamp(time) for time in truth.time],
+                [f'target_{number}' for number in truth.target],
+                truth.position,
+                truth.velocity,
+                exact,
+            ):
                 self._truth.publish(message)
         self._next = next(self._revolutions, None)
         self._sample = 0
@@ -234,8 +247,12 @@ def _moved(revolution: Revolution, shift: float) -> Revolution:
     """The same at another time, s later."""
     scan, truth, own_ship = revolution
     return Revolution(
-        Scan(scan.start + shift, scan.end + shift,
-             scan.plots._replace(time=scan.plots.time + shift),
-             scan.own_ship._replace(time=scan.own_ship.time + shift)),
+        Scan(
+            scan.start + shift,
+            scan.end + shift,
+            scan.plots._replace(time=scan.plots.time + shift),
+            scan.own_ship._replace(time=scan.own_ship.time + shift),
+        ),
         truth._replace(time=truth.time + shift),
-        own_ship._replace(time=own_ship.time + shift))
+        own_ship._replace(time=own_ship.time + shift),
+    )

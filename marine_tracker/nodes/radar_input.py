@@ -17,7 +17,7 @@ from .diagnostics import OK, WARN, Tally
 
 MISSED = 'revolutions missed'
 NO_DOPPLER = 'scans without the radial speeds that the estimator wants'
-SILENT_S = 5.0              # s of the wall, and three scans, without plots: the radar is silent
+SILENT_S = 5.0  # s of the wall, and three scans, without plots: the radar is silent
 
 
 class RadarInput:
@@ -30,14 +30,22 @@ class RadarInput:
     def __init__(self, radar: Radar, place: int, tell: Callable[[str, str], None]):
         self.radar, self._place = radar, place
         self.order = intake.TimeOrder()
-        self.bad = Tally((*convert.CLOUD_REASONS, *intake.PLOT_REASONS, *intake.SCAN_REASONS,
-                          MISSED, NO_DOPPLER), tell)
+        self.bad = Tally(
+            (
+                *convert.CLOUD_REASONS,
+                *intake.PLOT_REASONS,
+                *intake.SCAN_REASONS,
+                MISSED,
+                NO_DOPPLER,
+            ),
+            tell,
+        )
         self.taken = 0
         self._plots_in_scan = 0
         self._starts: deque[float] = deque(maxlen=10)
         self._stamped_alike = False
         self._began = time.monotonic()
-        self._heard: float | None = None            # wall time of the last plots
+        self._heard: float | None = None  # wall time of the last plots
 
     @property
     def period(self) -> float:
@@ -47,9 +55,13 @@ class RadarInput:
         starts = list(self._starts)
         return statistics.median(b - a for a, b in zip(starts, starts[1:]))
 
-    def scan_of(self, message: PointCloud2, seconds: Callable[[int], float],
-                own_log: intake.OwnShipLog, others: Sequence[intake.TimeOrder]
-                ) -> tuple[Scan, str] | None:
+    def scan_of(
+        self,
+        message: PointCloud2,
+        seconds: Callable[[int], float],
+        own_log: intake.OwnShipLog,
+        others: Sequence[intake.TimeOrder],
+    ) -> tuple[Scan, str] | None:
         """The scan in the tracker's time and the fallback for own ship; None where it is rejected.
 
         seconds  of a stamp in ns; others: the orders of the other radars
@@ -84,12 +96,16 @@ class RadarInput:
             self._stamped_alike = not plots.time.any()
         length = 0.0 if self._stamped_alike else max(period, plots.time.max(initial=0.0))
         end, shift = start + length, self.order.shift
-        own_ship, fallback = intake.own_ship_for(own_log, start, end,
-                                                 parameters.own_ship_timeout_s)
+        own_ship, fallback = intake.own_ship_for(own_log, start, end, parameters.own_ship_timeout_s)
         self.taken += 1
         self._plots_in_scan = len(plots.time)
-        return Scan(start + shift, end + shift, plots._replace(time=plots.time + start + shift),
-                    own_ship._replace(time=own_ship.time + shift), self._place), fallback
+        return Scan(
+            start + shift,
+            end + shift,
+            plots._replace(time=plots.time + start + shift),
+            own_ship._replace(time=own_ship.time + shift),
+            self._place,
+        ), fallback
 
     def state(self, wall: float) -> tuple[bytes, str, dict[str, object]]:
         """Level, message and values for /diagnostics."""
@@ -102,6 +118,13 @@ class RadarInput:
             level, message = WARN, f'no plots for {silent:.0f} s'
         elif fresh:
             level, message = WARN, 'lately: ' + ', '.join(fresh)
-        return level, message, {
-            'scans taken': self.taken, 'plots in last scan': self._plots_in_scan,
-            'period_s': f'{self.period:.3f}', **self.bad.counts}
+        return (
+            level,
+            message,
+            {
+                'scans taken': self.taken,
+                'plots in last scan': self._plots_in_scan,
+                'period_s': f'{self.period:.3f}',
+                **self.bad.counts,
+            },
+        )

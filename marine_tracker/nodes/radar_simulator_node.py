@@ -24,7 +24,7 @@ class RadarSimulatorNode(RunnableNode):
 
     def __init__(self, **node_arguments):
         super().__init__('radar_simulator', **node_arguments)
-        parameters, = declare(self, RadarSimulatorParameters)
+        (parameters,) = declare(self, RadarSimulatorParameters)
         chosen = scenario.load(parameters.scenario)
         step = own_ship_period(parameters.rate)
 
@@ -35,10 +35,17 @@ class RadarSimulatorNode(RunnableNode):
                 time = np.linspace(scan.start, scan.end, count + 1)[1:]
                 yield Revolution(scan, truth, OwnShip(time, *own_ship_at(scan.own_ship, time)))
 
-        self._playback = Playback(self, revolutions, parameters.rate, parameters.loop,
-                                  chosen.fleet.origin, parameters.begin_at_s)
+        self._playback = Playback(
+            self,
+            revolutions,
+            parameters.rate,
+            parameters.loop,
+            chosen.fleet.origin,
+            parameters.begin_at_s,
+        )
         self.get_logger().info(
-            f'scenario {parameters.scenario}, seed {parameters.seed}, rate {parameters.rate:g}')
+            f'scenario {parameters.scenario}, seed {parameters.seed}, rate {parameters.rate:g}'
+        )
 
     @property
     def done(self) -> bool:

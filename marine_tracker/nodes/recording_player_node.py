@@ -20,7 +20,7 @@ class RecordingPlayerNode(RunnableNode):
 
     def __init__(self, **node_arguments):
         super().__init__('recording_player', **node_arguments)
-        parameters, = declare(self, RecordingPlayerParameters)
+        (parameters,) = declare(self, RecordingPlayerParameters)
         if not parameters.folder:
             raise ValueError('parameter folder is empty; it must name the folder of a recording')
         recording = csv_folder.read(parameters.folder)
@@ -30,11 +30,13 @@ class RecordingPlayerNode(RunnableNode):
                 yield Revolution(scan, truth, take(recording.own_ship, slice(k, k + 1)))
 
         self._playback = Playback(self, revolutions, parameters.rate, parameters.loop)
-        self.get_logger().info(f'recording {recording.name}, {len(recording.scans)} scans, '
-                               f'rate {parameters.rate:g}')
+        self.get_logger().info(
+            f'recording {recording.name}, {len(recording.scans)} scans, rate {parameters.rate:g}'
+        )
         if recording.tracker_parameters:
-            named = ', '.join(f'{name}: {value}'
-                              for name, value in recording.tracker_parameters.items())
+            named = ', '.join(
+                f'{name}: {value}' for name, value in recording.tracker_parameters.items()
+            )
             self.get_logger().info(f'its radar.yaml has for the tracker {named}')
 
     @property

@@ -14,10 +14,14 @@ import time
 
 from ..processes import keep_freed_memory
 
-NODES = {'tracker': 'TrackerNode', 'radar_simulator': 'RadarSimulatorNode',
-         'recording_player': 'RecordingPlayerNode', 'nmea_output': 'NmeaOutputNode'}
+NODES = {
+    'tracker': 'TrackerNode',
+    'radar_simulator': 'RadarSimulatorNode',
+    'recording_player': 'RecordingPlayerNode',
+    'nmea_output': 'NmeaOutputNode',
+}
 ASKED = (signal.SIGINT, signal.SIGTERM)
-GRACE_S = 10.0          # to close in order, after a signal
+GRACE_S = 10.0  # to close in order, after a signal
 
 
 def end_in_time(name: str, stop: threading.Event) -> None:
@@ -35,9 +39,13 @@ def end_in_time(name: str, stop: threading.Event) -> None:
             pass
         stop.set()
         time.sleep(GRACE_S)
-        print(f'{name}: not closed within {GRACE_S:g} s of the signal, ended at once',
-              file=sys.stderr, flush=True)
+        print(
+            f'{name}: not closed within {GRACE_S:g} s of the signal, ended at once',
+            file=sys.stderr,
+            flush=True,
+        )
         os._exit(0)
+
     threading.Thread(target=watch, daemon=True).start()
 
 
@@ -66,9 +74,15 @@ def run(name: str) -> int:
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = make_node()
-    except (ValueError, OSError, ParameterException, NameValidationException,
-            implementation.RCLError, implementation.UnknownROSArgsError,
-            implementation.RCLInvalidROSArgsError) as error:
+    except (
+        ValueError,
+        OSError,
+        ParameterException,
+        NameValidationException,
+        implementation.RCLError,
+        implementation.UnknownROSArgsError,
+        implementation.RCLInvalidROSArgsError,
+    ) as error:
         print(f'{name}: {" ".join(str(error).split())}', file=sys.stderr, flush=True)
         rclpy.try_shutdown()
         return 1
@@ -86,6 +100,7 @@ def run(name: str) -> int:
 
 
 # The executables. `python -m marine_tracker.nodes.run NAME --ros-args ...` runs the same.
+
 
 def tracker() -> int:
     """The exit code of the tracker."""

@@ -51,11 +51,12 @@ class TargetsListener:
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
         for kind, topic, callback, quality in (
-                (DiagnosticArray, topics.TARGETS, self._on_targets, topics.latched()),
-                (DiagnosticArray, topics.ALARMS, self._on_alarms, topics.latched()),
-                (PointCloud2, topics.PLOTS, self._on_plots, topics.best_effort(1)),
-                (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort(1)),
-                (DiagnosticArray, topics.DIAGNOSTICS, self._on_diagnostics, topics.reliable())):
+            (DiagnosticArray, topics.TARGETS, self._on_targets, topics.latched()),
+            (DiagnosticArray, topics.ALARMS, self._on_alarms, topics.latched()),
+            (PointCloud2, topics.PLOTS, self._on_plots, topics.best_effort(1)),
+            (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort(1)),
+            (DiagnosticArray, topics.DIAGNOSTICS, self._on_diagnostics, topics.reliable()),
+        ):
             self._node.create_subscription(kind, topic, callback, quality)
 
     def spin(self, seconds: float) -> None:
@@ -70,18 +71,29 @@ class TargetsListener:
 
     def _on_targets(self, message: DiagnosticArray) -> None:
         targets = tuple(
-            {'name': entry.name, 'status': entry.message,
-             'danger': 'DANGER' if entry.level == ERROR else '',
-             **{pair.key: pair.value for pair in entry.values}} for entry in message.status)
+            {
+                'name': entry.name,
+                'status': entry.message,
+                'danger': 'DANGER' if entry.level == ERROR else '',
+                **{pair.key: pair.value for pair in entry.values},
+            }
+            for entry in message.status
+        )
         self.picture = self.picture._replace(
-            scans=self.picture.scans + 1, time=nanoseconds(message.header.stamp) * 1e-9,
-            targets=targets)
+            scans=self.picture.scans + 1,
+            time=nanoseconds(message.header.stamp) * 1e-9,
+            targets=targets,
+        )
 
     def _on_alarms(self, message: DiagnosticArray) -> None:
-        about = [(entry.name, next(pair.value for pair in entry.values if pair.key == 'state'))
-                 for entry in message.status if entry.level != OK]
+        about = [
+            (entry.name, next(pair.value for pair in entry.values if pair.key == 'state'))
+            for entry in message.status
+            if entry.level != OK
+        ]
         self.picture = self.picture._replace(
-            alarms=tuple(f'{name}, {state}' for name, state in about))
+            alarms=tuple(f'{name}, {state}' for name, state in about)
+        )
 
     def _on_plots(self, message: PointCloud2) -> None:
         self.picture = self.picture._replace(plots=message.width * message.height)
@@ -91,8 +103,12 @@ class TargetsListener:
         speed = math.hypot(east, north) / KNOT
         course = degrees(math.degrees(math.atan2(east, north)))
         self.picture = self.picture._replace(
-            own_ship=f'course {course}, {speed:.1f} kn' if speed >= 0.05 else 'at rest')
+            own_ship=f'course {course}, {speed:.1f} kn' if speed >= 0.05 else 'at rest'
+        )
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
-        self.picture = self.picture._replace(warnings=tuple(
-            f'{entry.name}: {entry.message}' for entry in message.status if entry.level != OK))
+        self.picture = self.picture._replace(
+            warnings=tuple(
+                f'{entry.name}: {entry.message}' for entry in message.status if entry.level != OK
+            )
+        )

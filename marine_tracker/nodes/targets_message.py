@@ -17,17 +17,37 @@ from .diagnostics import ERROR, OK, STALE, WARN
 # Values with a standard deviation: key, field of arpa.cpa.Approach, unit, digits.
 DEGREE = math.radians(1)
 MEASURED = (
-    ('range', 'nm', 'range', NAUTICAL_MILE, 3), ('bearing', 'deg', 'bearing', DEGREE, 1),
-    ('course', 'deg', 'course', DEGREE, 1), ('speed', 'kn', 'speed', KNOT, 1),
+    ('range', 'nm', 'range', NAUTICAL_MILE, 3),
+    ('bearing', 'deg', 'bearing', DEGREE, 1),
+    ('course', 'deg', 'course', DEGREE, 1),
+    ('speed', 'kn', 'speed', KNOT, 1),
     ('relative_course', 'deg', 'relative_course', DEGREE, 1),
     ('relative_speed', 'kn', 'relative_speed', KNOT, 1),
-    ('cpa', 'nm', 'cpa', NAUTICAL_MILE, 3), ('tcpa', 'min', 'tcpa', 60.0, 1),
-    ('bow_range', 'nm', 'bow_range', NAUTICAL_MILE, 2), ('bow_time', 'min', 'bow_time', 60.0, 1))
-COLUMNS = (*(f'{key}_{unit}' for key, unit, *_ in MEASURED), 'danger_probability', 'motion',
-           'motion_since_min', 'acquired', 'swap_risk', 'stabilised', 'position_sd_m',
-           *(f'{key}_sd_{unit}' for key, unit, *_ in MEASURED),
-           'estimator', 'estimator_state', 'rho', 'j', 'j_fallback', 'fallback_reason',
-           'hits_in_10', 'age_min', 'reason')
+    ('cpa', 'nm', 'cpa', NAUTICAL_MILE, 3),
+    ('tcpa', 'min', 'tcpa', 60.0, 1),
+    ('bow_range', 'nm', 'bow_range', NAUTICAL_MILE, 2),
+    ('bow_time', 'min', 'bow_time', 60.0, 1),
+)
+COLUMNS = (
+    *(f'{key}_{unit}' for key, unit, *_ in MEASURED),
+    'danger_probability',
+    'motion',
+    'motion_since_min',
+    'acquired',
+    'swap_risk',
+    'stabilised',
+    'position_sd_m',
+    *(f'{key}_sd_{unit}' for key, unit, *_ in MEASURED),
+    'estimator',
+    'estimator_state',
+    'rho',
+    'j',
+    'j_fallback',
+    'fallback_reason',
+    'hits_in_10',
+    'age_min',
+    'reason',
+)
 LEVEL = {TENTATIVE: OK, CONFIRMED: OK, COASTING: WARN, LOST: STALE}
 MESSAGE = {TENTATIVE: 'ACQUIRING', CONFIRMED: 'TRACKING', COASTING: 'COASTING', LOST: 'LOST'}
 
@@ -40,19 +60,28 @@ class TargetsWriter:
         self._keys: tuple[str, ...] = COLUMNS
         self._entries: list[DiagnosticStatus] = []
 
-    def message(self, seen: View, estimator: str, stabilised: str, time: float, time_ns: int
-                ) -> DiagnosticArray:
+    def message(
+        self, seen: View, estimator: str, stabilised: str, time: float, time_ns: int
+    ) -> DiagnosticArray:
         """The targets of a view at `time` s, stamped time_ns; valid until the next call."""
         rows = table(seen, estimator, stabilised, time)
         keys = COLUMNS if seen.hulls is None else COLUMNS + hull_columns.COLUMNS
         if keys != self._keys:
             self._keys, self._entries = keys, []
         while len(self._entries) < len(rows):
-            self._entries.append(DiagnosticStatus(
-                hardware_id=self._hardware_id, values=[KeyValue(key=key) for key in keys]))
+            self._entries.append(
+                DiagnosticStatus(
+                    hardware_id=self._hardware_id, values=[KeyValue(key=key) for key in keys]
+                )
+            )
         for entry, name, status, dangerous, fallen, row in zip(
-                self._entries, seen.name, seen.status.tolist(), seen.dangerous.tolist(),
-                seen.account.reason.tolist(), rows):
+            self._entries,
+            seen.name,
+            seen.status.tolist(),
+            seen.dangerous.tolist(),
+            seen.account.reason.tolist(),
+            rows,
+        ):
             entry.name, entry.message = name, MESSAGE[status]
             entry.level = LEVEL[status]
             if status != LOST and dangerous:
@@ -61,7 +90,7 @@ class TargetsWriter:
                 entry.level = WARN
             for pair, text in zip(entry.values, row):
                 pair.value = text
-        message = DiagnosticArray(status=self._entries[:len(rows)])
+        message = DiagnosticArray(status=self._entries[: len(rows)])
         message.header.stamp = time_message(time_ns)
         return message
 
@@ -70,36 +99,50 @@ def table(seen: View, estimator: str, stabilised: str, time: float) -> list[tupl
     """One row of texts for each target, in the order of COLUMNS; with hulls, their columns too."""
     motion, account = seen.motion, seen.account
     # Who lies still has no course.
-    approach = seen.approach._replace(**{
-        name: np.where(seen.approach.speed == 0, np.nan, getattr(seen.approach, name))
-        for name in ('course', 'course_sigma')})
+    approach = seen.approach._replace(
+        **{
+            name: np.where(seen.approach.speed == 0, np.nan, getattr(seen.approach, name))
+            for name in ('course', 'course_sigma')
+        }
+    )
     values, deviations = [], []
     for _, unit, field, size, digits in MEASURED:
         numbers = (getattr(approach, field) / size).tolist()
         angle = unit == 'deg'
-        values.append([degrees(number) if angle else figure(number, digits)
-                       for number in numbers])
-        deviations.append([figure(number, digits) for number in (
-            getattr(approach, field + '_sigma') / size).tolist()])
+        values.append([degrees(number) if angle else figure(number, digits) for number in numbers])
+        deviations.append(
+            [
+                figure(number, digits)
+                for number in (getattr(approach, field + '_sigma') / size).tolist()
+            ]
+        )
     rest = np.where(motion.stationary, 2, motion.memory).tolist()
     words = (*MEMORY_NAMES, 'at rest')
     position_sd = np.sqrt(np.trace(motion.covariance[:, :2, :2], axis1=1, axis2=2))
     columns = [
-        *values, [figure(number, 2) for number in approach.danger_probability.tolist()],
+        *values,
+        [figure(number, 2) for number in approach.danger_probability.tolist()],
         [words[which] for which in rest],
         [figure(number, 1) for number in ((time - motion.since) / 60).tolist()],
         [LETTERS[how] for how in seen.acquired.tolist()],
         ['yes' if risk else '' for risk in seen.swap_risk.tolist()],
         [stabilised] * len(rest),
-        [figure(number, 0) for number in position_sd.tolist()], *deviations,
-        [estimator] * len(rest), [account.states[state] for state in account.state.tolist()],
-        *([figure(number, 2) for number in of.tolist()] for of in (
-            account.rho, account.j, account.j_fallback)),
+        [figure(number, 0) for number in position_sd.tolist()],
+        *deviations,
+        [estimator] * len(rest),
+        [account.states[state] for state in account.state.tolist()],
+        *(
+            [figure(number, 2) for number in of.tolist()]
+            for of in (account.rho, account.j, account.j_fallback)
+        ),
         [account.reasons[reason] for reason in account.reason.tolist()],
         [str(count) for count in seen.hits.tolist()],
         [figure(number, 1) for number in (seen.age / 60).tolist()],
-        [_reason(*row) for row in zip(seen.status.tolist(), seen.reason.tolist(),
-                                      seen.misses.tolist())]]
+        [
+            _reason(*row)
+            for row in zip(seen.status.tolist(), seen.reason.tolist(), seen.misses.tolist())
+        ],
+    ]
     if seen.hulls is not None:
         columns += hull_columns.columns(seen.hulls, degrees, figure)
     return list(zip(*columns))

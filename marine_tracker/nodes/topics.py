@@ -2,7 +2,7 @@
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-FRAME = 'map'                   # ground-stabilised, east and north
+FRAME = 'map'  # ground-stabilised, east and north
 OWN_SHIP_FRAME = 'base_link'
 
 PLOTS = 'radar/plots'
@@ -24,33 +24,39 @@ CANCEL = 'cancel'
 ACKNOWLEDGE_TARGET = 'acknowledge_target'
 DIAGNOSTICS = '/diagnostics'
 
-CANCEL_ALL = 'cancel_all'               # services
+CANCEL_ALL = 'cancel_all'  # services
 ACKNOWLEDGE = 'acknowledge'
 TRIAL_MANOEUVRE = 'trial_manoeuvre'
 
-BURST = 400                     # messages published at once, one for each track or target
+BURST = 400  # messages published at once, one for each track or target
 
 
 def reliable(depth: int = 10) -> QoSProfile:
     """Every message arrives, as long as no more than `depth` wait."""
-    return QoSProfile(depth=depth, history=HistoryPolicy.KEEP_LAST,
-                      reliability=ReliabilityPolicy.RELIABLE)
+    return QoSProfile(
+        depth=depth, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE
+    )
 
 
 def latched(depth: int = 1) -> QoSProfile:
     """Reliable, and who comes late still gets the last `depth` messages."""
-    return QoSProfile(depth=depth, history=HistoryPolicy.KEEP_LAST,
-                      reliability=ReliabilityPolicy.RELIABLE,
-                      durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    return QoSProfile(
+        depth=depth,
+        history=HistoryPolicy.KEEP_LAST,
+        reliability=ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL,
+    )
 
 
 def best_available(depth: int = 10) -> QoSProfile:
     """Reliable when all who publish at the moment are, else best effort."""
-    return QoSProfile(depth=depth, history=HistoryPolicy.KEEP_LAST,
-                      reliability=ReliabilityPolicy.BEST_AVAILABLE)
+    return QoSProfile(
+        depth=depth, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.BEST_AVAILABLE
+    )
 
 
 def best_effort(depth: int = 10) -> QoSProfile:
     """Takes from every publisher; a message may get lost."""
-    return QoSProfile(depth=depth, history=HistoryPolicy.KEEP_LAST,
-                      reliability=ReliabilityPolicy.BEST_EFFORT)
+    return QoSProfile(
+        depth=depth, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.BEST_EFFORT
+    )

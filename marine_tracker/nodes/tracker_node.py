@@ -51,15 +51,17 @@ class TrackerNode(RunnableNode):
         self._tracker = Tracker(parameters)
         self._extents = Extents(parameters)
         self._memory, self._known = self._tracker.start(), self._extents.start()
-        self._base_ns: int | None = None            # stamps are seconds after this
+        self._base_ns: int | None = None  # stamps are seconds after this
         self._own_log = intake.empty_log()
         self._fallback = intake.OWN_NEVER_HEARD
         self._samples = 0
         self._status_count = np.zeros(4, int)
         self._standing = Standing({}, 0, '', np.zeros(0, bool))
         self._processing, self._lateness = Durations(), Durations()
-        self.inputs = [RadarInput(radar, place, partial(self._tell_of, radar.name))
-                       for place, radar in enumerate(radars_of(parameters))]
+        self.inputs = [
+            RadarInput(radar, place, partial(self._tell_of, radar.name))
+            for place, radar in enumerate(radars_of(parameters))
+        ]
         self.bad_own_ship = Tally(intake.OWN_REASONS, self._tell)
         self.failures = Tally((), self._tell)
 
@@ -68,17 +70,21 @@ class TrackerNode(RunnableNode):
         self._hardware_id = f'{where}/radar' if where else 'radar'
         self._desk = ArpaDesk(self, arpa_parameters, parameters, self._hardware_id, self.failures)
         follow(self, TrackerParameters, Tracker, self._change)
-        follow(self, ArpaParameters, lambda p: Arpa(p, self._tracker.parameters),
-               lambda arpa: self._desk.change(arpa.parameters, self._tracker.parameters))
+        follow(
+            self,
+            ArpaParameters,
+            lambda p: Arpa(p, self._tracker.parameters),
+            lambda arpa: self._desk.change(arpa.parameters, self._tracker.parameters),
+        )
         burst = topics.reliable(topics.BURST)
         self._to_tracks = self.publisher(Odometry, topics.TRACKS, burst)
         self._to_extrapolations = self.publisher(Odometry, topics.EXTRAPOLATIONS, burst)
-        self._to_cloud = self.publisher(
-            PointCloud2, topics.TRACKS_CLOUD, topics.reliable())
+        self._to_cloud = self.publisher(PointCloud2, topics.TRACKS_CLOUD, topics.reliable())
         self._to_targets = self.publisher(DiagnosticArray, topics.TARGETS, topics.latched())
         self._to_markers = self.publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
         self._to_diagnostics = self.publisher(
-            DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
+            DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
+        )
         self._pool = OdometryPool()
         self._targets = TargetsWriter(self._hardware_id)
         self._markers = MarkersWriter()
@@ -88,12 +94,18 @@ class TrackerNode(RunnableNode):
         self._mismatched: set[str] = set()
         self._listen(Odometry, topics.ODOMETRY, self._on_odometry, topics.best_available())
         for heard in self.inputs:
-            self._listen(PointCloud2, heard.radar.topic, partial(self._on_plots, heard),
-                         topics.best_available())
+            self._listen(
+                PointCloud2,
+                heard.radar.topic,
+                partial(self._on_plots, heard),
+                topics.best_available(),
+            )
         # The wall's second, whatever the node's clock does.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self.get_logger().info(f'estimator {parameters.estimator}, waiting for '
-                               + ', '.join(heard.radar.topic for heard in self.inputs))
+        self.get_logger().info(
+            f'estimator {parameters.estimator}, waiting for '
+            + ', '.join(heard.radar.topic for heard in self.inputs)
+        )
 
     def close(self) -> None:
         """A last word on /diagnostics."""
@@ -103,10 +115,12 @@ class TrackerNode(RunnableNode):
 
     def _listen(self, kind, topic, callback, quality):
         """Subscribe; to be repeated as best effort once a publisher asks for it (_on_second)."""
-        events = SubscriptionEventCallbacks(
-            incompatible_qos=lambda _: self._mismatched.add(topic))
-        self._inputs[topic] = (kind, callback, self.create_subscription(
-            kind, topic, callback, quality, event_callbacks=events))
+        events = SubscriptionEventCallbacks(incompatible_qos=lambda _: self._mismatched.add(topic))
+        self._inputs[topic] = (
+            kind,
+            callback,
+            self.create_subscription(kind, topic, callback, quality, event_callbacks=events),
+        )
 
     @guarded
     def _on_odometry(self, message: Odometry) -> None:
@@ -118,22 +132,30 @@ class TrackerNode(RunnableNode):
             self.bad_own_ship.add(reason, time.monotonic(), detail=f'at {position}')
         # A message without an orientation has a position, though no velocity that could be used.
         placed = bool(np.isfinite(position).all()) and reason in (
-            '', intake.OWN_NOT_FINITE, intake.OWN_REBASED)
+            '',
+            intake.OWN_NOT_FINITE,
+            intake.OWN_REBASED,
+        )
         self._desk.hear_own_ship(placed, np.pi / 2 - convert.yaw_of(message.pose.pose.orientation))
 
     @guarded
     def _on_plots(self, heard: RadarInput, message: PointCloud2) -> None:
         began = time.perf_counter()
-        found = heard.scan_of(message, self._seconds, self._own_log,
-                              [other.order for other in self.inputs if other is not heard])
+        found = heard.scan_of(
+            message,
+            self._seconds,
+            self._own_log,
+            [other.order for other in self.inputs if other is not heard],
+        )
         if found is None:
             return
         scan, self._fallback = found
         (self._memory, self._known), report, scan, shapes = self._extents.track(
-            self._tracker, self._memory, self._known, scan)
+            self._tracker, self._memory, self._known, scan
+        )
         self._publish(heard, scan, report, shapes)
         now = self.get_clock().now().nanoseconds
-        if now:                                         # 0: no /clock yet
+        if now:  # 0: no /clock yet
             end_ns = int(self._stamps(heard, scan.end))
             self._lateness.add((now - end_ns) * 1e-9)
         self._processing.add(time.perf_counter() - began)
@@ -166,14 +188,22 @@ class TrackerNode(RunnableNode):
 
     # -- out -----------------------------------------------------------------------------------
 
-    def _publish(self, heard: RadarInput, scan: Scan, report: Report,
-                 shapes: Shapes | None) -> None:
+    def _publish(
+        self, heard: RadarInput, scan: Scan, report: Report, shapes: Shapes | None
+    ) -> None:
         tracks, tracker = report.tracks, self._tracker
         self._status_count = np.bincount(tracks.status, minlength=4)
-        listeners = [publisher.get_subscription_count() for publisher in (
-            self._to_tracks, self._to_extrapolations, self._to_cloud, self._to_markers)]
+        listeners = [
+            publisher.get_subscription_count()
+            for publisher in (
+                self._to_tracks,
+                self._to_extrapolations,
+                self._to_cloud,
+                self._to_markers,
+            )
+        ]
         estimate = tracker.extrapolate(tracks, report.time)
-        if listeners[2]:            # one message, so first
+        if listeners[2]:  # one message, so first
             self._to_cloud.publish(self._cloud(heard, scan, report, estimate))
         numbered = np.flatnonzero(tracks.number > 0)
         numbered = numbered[np.argsort(tracks.number[numbered])]
@@ -182,21 +212,32 @@ class TrackerNode(RunnableNode):
         if listeners[0]:
             self._publish_each(heard, self._to_tracks, frames, take(estimate, alive))
         if listeners[1]:
-            self._publish_each(heard, self._to_extrapolations, frames, tracker.extrapolate(
-                take(tracks, alive), report.time[alive] + heard.period))
+            self._publish_each(
+                heard,
+                self._to_extrapolations,
+                frames,
+                tracker.extrapolate(take(tracks, alive), report.time[alive] + heard.period),
+            )
         end_ns, name = int(self._stamps(heard, scan.end)), tracker.parameters.estimator
         self._standing = standing(report, name)
         picture = self._desk.step(scan, report, self._standing.fallen_at, end_ns)
         seen, arpa = view(picture, report, name, shapes), self._desk.arpa
-        self._to_targets.publish(self._targets.message(
-            seen, name, arpa.stabilised, scan.end, end_ns))
+        self._to_targets.publish(
+            self._targets.message(seen, name, arpa.stabilised, scan.end, end_ns)
+        )
         if listeners[3]:
-            self._to_markers.publish(self._markers.message(
-                seen, picture, arpa.zones, arpa.parameters, end_ns))
+            self._to_markers.publish(
+                self._markers.message(seen, picture, arpa.zones, arpa.parameters, end_ns)
+            )
 
     def _publish_each(self, heard, publisher, frames, estimate: Extrapolation) -> None:
-        for message in self._pool.fill(self._stamps(heard, estimate.time), frames,
-                                       estimate.position, estimate.velocity, estimate.covariance):
+        for message in self._pool.fill(
+            self._stamps(heard, estimate.time),
+            frames,
+            estimate.position,
+            estimate.velocity,
+            estimate.covariance,
+        ):
             publisher.publish(message)
 
     def _cloud(self, heard, scan: Scan, report: Report, estimate: Extrapolation) -> PointCloud2:
@@ -207,8 +248,17 @@ class TrackerNode(RunnableNode):
         rows['x'], rows['y'] = estimate.position.T
         rows['vx'], rows['vy'] = velocity.T
         for name, row, column in (
-                ('xx', 0, 0), ('xy', 0, 1), ('yy', 1, 1), ('vxvx', 2, 2), ('vxvy', 2, 3),
-                ('vyvy', 3, 3), ('xvx', 0, 2), ('xvy', 0, 3), ('yvx', 1, 2), ('yvy', 1, 3)):
+            ('xx', 0, 0),
+            ('xy', 0, 1),
+            ('yy', 1, 1),
+            ('vxvx', 2, 2),
+            ('vxvy', 2, 3),
+            ('vyvy', 3, 3),
+            ('xvx', 0, 2),
+            ('xvy', 0, 3),
+            ('yvx', 1, 2),
+            ('yvy', 1, 3),
+        ):
             rows[name] = covariance[:, row, column]
         rows['course'] = wrap_bearing(np.arctan2(velocity[:, 0], velocity[:, 1]))
         rows['speed'] = np.hypot(velocity[:, 0], velocity[:, 1])
@@ -221,8 +271,9 @@ class TrackerNode(RunnableNode):
 
     def _tell(self, reason: str, detail: str) -> None:
         """Log the first of its kind; /diagnostics counts the rest."""
-        self.get_logger().warning(f'{reason}{": " + detail if detail else ""} '
-                                  '(told once; counted on /diagnostics)')
+        self.get_logger().warning(
+            f'{reason}{": " + detail if detail else ""} (told once; counted on /diagnostics)'
+        )
 
     @guarded
     def _on_second(self) -> None:
@@ -234,9 +285,16 @@ class TrackerNode(RunnableNode):
             self.get_logger().info(f'{topic} is published best effort: taken so')
         wall, now = time.monotonic(), self.get_clock().now().nanoseconds
         self._desk.watch()
-        self._to_diagnostics.publish(diagnostics.array(
-            now, [*(self._input_status(heard, wall, now) for heard in self.inputs),
-                  self._tracking_status(wall), self._own_ship_status(wall)]))
+        self._to_diagnostics.publish(
+            diagnostics.array(
+                now,
+                [
+                    *(self._input_status(heard, wall, now) for heard in self.inputs),
+                    self._tracking_status(wall),
+                    self._own_ship_status(wall),
+                ],
+            )
+        )
 
     def _input_status(self, heard: RadarInput, wall: float, now: int) -> DiagnosticStatus:
         level, message, values = heard.state(wall)
@@ -264,7 +322,8 @@ class TrackerNode(RunnableNode):
             'estimator': parameters.estimator,
             **{f'confirmed in {state}': count for state, count in states.items()},
             'fallback reason': reason,
-            'confirmed': confirmed, 'coasting': self._status_count[COASTING],
+            'confirmed': confirmed,
+            'coasting': self._status_count[COASTING],
             'tentative': self._status_count[TENTATIVE],
             **({} if parameters.extent == 'off' else {'clusters of land': self._known.shores}),
             'at max_tracks': len(self._memory.tracks.id) >= parameters.max_tracks,
@@ -273,7 +332,9 @@ class TrackerNode(RunnableNode):
             'lateness_p50_ms': f'{1e3 * self._lateness.percentile(50):.1f}',
             'lateness_p99_ms': f'{1e3 * self._lateness.percentile(99):.1f}',
             **self._desk.refused.counts,
-            FAILED: sum(self.failures.counts.values()), **self.failures.counts}
+            FAILED: sum(self.failures.counts.values()),
+            **self.failures.counts,
+        }
         return self._status('tracking', level, message, values)
 
     def _own_ship_status(self, wall: float) -> DiagnosticStatus:
@@ -284,9 +345,11 @@ class TrackerNode(RunnableNode):
         taken = any(heard.taken for heard in self.inputs)
         if self._fallback and taken or not self._samples:
             level, message = WARN, self._fallback
-        return self._status('own ship', level, message,
-                            {'samples': self._samples, **self.bad_own_ship.counts})
+        return self._status(
+            'own ship', level, message, {'samples': self._samples, **self.bad_own_ship.counts}
+        )
 
     def _status(self, task, level, message, values):
-        return diagnostics.status(f'{self._label}: {task}', self._hardware_id, level, message,
-                                  values)
+        return diagnostics.status(
+            f'{self._label}: {task}', self._hardware_id, level, message, values
+        )

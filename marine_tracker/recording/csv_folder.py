@@ -67,25 +67,38 @@ def read(folder) -> Recording:
     numbers, own_ship, end = _read_own_ship(folder / 'own_ship.csv')
     plots = _read_plots(folder / 'plots.csv', numbers)
     has_truth = (folder / 'truth.csv').exists()
-    truths = (_read_truth(folder / 'truth.csv', numbers) if has_truth
-              else (_no_truth(),) * len(numbers))
+    truths = (
+        _read_truth(folder / 'truth.csv', numbers) if has_truth else (_no_truth(),) * len(numbers)
+    )
     scans: list[Scan] = []
     spans = _spans(own_ship.time, end, [of_scan.time for of_scan in plots])
     for k, (of_scan, (start, last)) in enumerate(zip(plots, spans)):
         around = slice(max(k - 1, 0), k + 2)
         if scans and start < scans[-1].start:
-            raise ValueError(f'{folder / "plots.csv"}: scan {numbers[k]} begins at {start:g} s, '
-                             f'before the scan ahead of it, {scans[-1].start:g} s')
-        scans.append(Scan(float(start), float(last), of_scan,
-                          take(own_ship, around)))
+            raise ValueError(
+                f'{folder / "plots.csv"}: scan {numbers[k]} begins at {start:g} s, '
+                f'before the scan ahead of it, {scans[-1].start:g} s'
+            )
+        scans.append(Scan(float(start), float(last), of_scan, take(own_ship, around)))
     radar, notes = folder / 'radar.yaml', folder / 'notes.json'
-    return Recording(folder.resolve().name, tuple(scans), truths,
-                     read_yaml_mapping(radar) if radar.exists() else {},
-                     _read_notes(notes) if notes.exists() else {}, numbers, own_ship)
+    return Recording(
+        folder.resolve().name,
+        tuple(scans),
+        truths,
+        read_yaml_mapping(radar) if radar.exists() else {},
+        _read_notes(notes) if notes.exists() else {},
+        numbers,
+        own_ship,
+    )
 
 
-def write(folder, name: str, pairs: Iterable[tuple[Scan, Truth]],
-          tracker_parameters: dict[str, Any], notes: dict[str, Any] | None = None) -> None:
+def write(
+    folder,
+    name: str,
+    pairs: Iterable[tuple[Scan, Truth]],
+    tracker_parameters: dict[str, Any],
+    notes: dict[str, Any] | None = None,
+) -> None:
     """Scans with their truth as a recording folder, made where it does not exist.
 
     name   goes into notes.json, for people
@@ -102,19 +115,29 @@ def write(folder, name: str, pairs: Iterable[tuple[Scan, Truth]],
         position, velocity = own_ship_at(scan.own_ship, scan.start)
         own_ship.append((k, *_metres(scan.start, *position[::-1], *velocity[::-1], scan.end)))
         degrees = np.degrees(scan.plots.bearing)
-        plots += [(k, *_metres(time, range_), f'{bearing:.9f}', f'{amplitude:.3f}')
-                  for time, range_, bearing, amplitude in zip(
-                      scan.plots.time, scan.plots.range, degrees, scan.plots.amplitude)]
-        speeds.append(np.full(len(degrees), np.nan) if scan.plots.radial_speed is None
-                      else scan.plots.radial_speed)
-        truth += [(k, *_metres(time), target, *_metres(*position[::-1], *velocity[::-1]))
-                  for time, target, position, velocity in zip(*targets)]
+        plots += [
+            (k, *_metres(time, range_), f'{bearing:.9f}', f'{amplitude:.3f}')
+            for time, range_, bearing, amplitude in zip(
+                scan.plots.time, scan.plots.range, degrees, scan.plots.amplitude
+            )
+        ]
+        speeds.append(
+            np.full(len(degrees), np.nan)
+            if scan.plots.radial_speed is None
+            else scan.plots.radial_speed
+        )
+        truth += [
+            (k, *_metres(time), target, *_metres(*position[::-1], *velocity[::-1]))
+            for time, target, position, velocity in zip(*targets)
+        ]
     header: tuple[str, ...] = (*PLOTS, 'amplitude_db')
     told = np.concatenate([np.empty(0), *speeds])
     if np.isfinite(told).any():
         header = (*header, RADIAL_SPEED)
-        plots = [(*plot, '' if np.isnan(speed) else f'{speed:.6f}')
-                 for plot, speed in zip(plots, told.tolist())]
+        plots = [
+            (*plot, '' if np.isnan(speed) else f'{speed:.6f}')
+            for plot, speed in zip(plots, told.tolist())
+        ]
     _write_table(folder / 'plots.csv', header, plots)
     _write_table(folder / 'own_ship.csv', (*OWN_SHIP, *VELOCITY, 'end_s'), own_ship)
     _write_table(folder / 'truth.csv', (*TRUTH, *VELOCITY), truth)
@@ -134,8 +157,10 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
         if len(back):
             row = int(back[0]) + 1
             cells = table.columns[column]
-            raise ValueError(f'{table.where(row)}: {column} is {cells[row]} after '
-                             f'{cells[row - 1]}; it must increase')
+            raise ValueError(
+                f'{table.where(row)}: {column} is {cells[row]} after '
+                f'{cells[row - 1]}; it must increase'
+            )
     position = np.stack([table.numbers('east_m'), table.numbers('north_m')], -1)
     velocity = np.zeros_like(position)
     if len(time) > 1:
@@ -148,8 +173,10 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
         early = np.flatnonzero(end < time)
         if len(early):
             row = int(early[0])
-            raise ValueError(f'{table.where(row)}: end_s is {end[row]:g}; it must not lie before '
-                             f'time_s, {time[row]:g}')
+            raise ValueError(
+                f'{table.where(row)}: end_s is {end[row]:g}; it must not lie before '
+                f'time_s, {time[row]:g}'
+            )
     return numbers, OwnShip(time, position, velocity), end
 
 
@@ -171,13 +198,19 @@ def _spans(begin: Array, end: Array, plots: list[Array]) -> Iterator[tuple[float
 
 def _read_plots(path, numbers) -> tuple[PolarPlots, ...]:
     table = tables.read(path, PLOTS)
-    amplitude = (table.numbers('amplitude_db', missing=True) if 'amplitude_db' in table.columns
-                 else np.zeros(len(table)))
+    amplitude = (
+        table.numbers('amplitude_db', missing=True)
+        if 'amplitude_db' in table.columns
+        else np.zeros(len(table))
+    )
     bearing = wrap_bearing(np.radians(table.numbers('bearing_deg', low=-360.0, high=360.0)))
-    plots = PolarPlots(table.numbers('time_s'), table.numbers('range_m', low=0.0), bearing,
-                       np.nan_to_num(amplitude),
-                       (table.numbers(RADIAL_SPEED, missing=True)
-                        if RADIAL_SPEED in table.columns else None))
+    plots = PolarPlots(
+        table.numbers('time_s'),
+        table.numbers('range_m', low=0.0),
+        bearing,
+        np.nan_to_num(amplitude),
+        (table.numbers(RADIAL_SPEED, missing=True) if RADIAL_SPEED in table.columns else None),
+    )
     return tuple(take(plots, rows) for rows in _rows_of_scans(table, numbers))
 
 
@@ -190,8 +223,10 @@ def _read_truth(path, numbers) -> tuple[Truth, ...]:
         back = np.flatnonzero(np.diff(truth.time[rows]) <= 0)
         if len(back):
             before, row = rows[back[0]], rows[back[0] + 1]
-            raise ValueError(f'{table.where(row)}: target {target} is at {truth.time[row]:g} s '
-                             f'after {truth.time[before]:g} s; its time must increase')
+            raise ValueError(
+                f'{table.where(row)}: target {target} is at {truth.time[row]:g} s '
+                f'after {truth.time[before]:g} s; its time must increase'
+            )
     return tuple(take(truth, rows) for rows in _rows_of_scans(table, numbers))
 
 
@@ -208,8 +243,15 @@ def _rows_of_scans(table: tables.Table, numbers) -> list[NDArray[np.intp]]:
 
 def _velocity(table: tables.Table) -> Array:
     """[R, 2] m/s, east and north; nan where the table does not tell."""
-    return np.stack([table.numbers(name, missing=True) if name in table.columns
-                     else np.full(len(table), np.nan) for name in reversed(VELOCITY)], -1)
+    return np.stack(
+        [
+            table.numbers(name, missing=True)
+            if name in table.columns
+            else np.full(len(table), np.nan)
+            for name in reversed(VELOCITY)
+        ],
+        -1,
+    )
 
 
 def _no_truth() -> Truth:

@@ -28,8 +28,9 @@ class Table(NamedTuple):
         """The row's place, as an error names it."""
         return f'{self.path}, line {self.line[row]}'
 
-    def numbers(self, name: str, *, missing: bool = False, low: float = -np.inf,
-                high: float = np.inf) -> Array:
+    def numbers(
+        self, name: str, *, missing: bool = False, low: float = -np.inf, high: float = np.inf
+    ) -> Array:
         """A column [R] as finite numbers between `low` and `high`.
 
         missing  an empty cell, or `nan`, is allowed and becomes nan
@@ -41,8 +42,9 @@ class Table(NamedTuple):
             try:
                 values[row] = float(cell or 'nan') if missing else float(cell)
             except ValueError:
-                raise ValueError(f'{self.where(row)}: {name} is {cell!r}; '
-                                 'it must be a number') from None
+                raise ValueError(
+                    f'{self.where(row)}: {name} is {cell!r}; it must be a number'
+                ) from None
         wrong = ~(np.isfinite(values) | (missing & np.isnan(values)))
         if wrong.any():
             row = int(wrong.argmax())
@@ -50,18 +52,19 @@ class Table(NamedTuple):
         wrong = (values < low) | (values > high)
         if wrong.any():
             row = int(wrong.argmax())
-            limit = (f'between {low:g} and {high:g}' if np.isfinite(high) else f'at least {low:g}')
+            limit = f'between {low:g} and {high:g}' if np.isfinite(high) else f'at least {low:g}'
             raise ValueError(f'{self.where(row)}: {name} is {cells[row]}; it must be {limit}')
         return values
 
     def integers(self, name: str):
         """A column [R] as whole numbers, int64 (`3` and `3.0` are the same)."""
-        values = self.numbers(name, low=-2.0 ** 53, high=2.0 ** 53)
+        values = self.numbers(name, low=-(2.0**53), high=2.0**53)
         wrong = values != np.rint(values)
         if wrong.any():
             row = int(wrong.argmax())
-            raise ValueError(f'{self.where(row)}: {name} is {self.columns[name][row]}; '
-                             'it must be a whole number')
+            raise ValueError(
+                f'{self.where(row)}: {name} is {self.columns[name][row]}; it must be a whole number'
+            )
         return values.astype(np.int64)
 
 
@@ -90,9 +93,12 @@ def read(path, required=()) -> Table:
         raise ValueError(f'{path} names a column twice: {", ".join(header)}')
     for number, cells in lines[1:]:
         if len(cells) != len(header):
-            raise ValueError(f'{path}, line {number} has {len(cells)} cells; '
-                             f'it must have {len(header)}')
+            raise ValueError(
+                f'{path}, line {number} has {len(cells)} cells; it must have {len(header)}'
+            )
     columns = zip(*(cells for _, cells in lines[1:])) if lines[1:] else ([] for _ in header)
-    return Table(path, {name: [cell.strip() for cell in column]
-                        for name, column in zip(header, columns)},
-                 [number for number, _ in lines[1:]])
+    return Table(
+        path,
+        {name: [cell.strip() for cell in column] for name, column in zip(header, columns)},
+        [number for number, _ in lines[1:]],
+    )

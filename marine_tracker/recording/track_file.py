@@ -10,9 +10,25 @@ from ..types import Array, Extrapolation, OwnShip
 from . import tables
 
 COLUMNS = (
-    'time_s', 'track', 'status', 'north_m', 'east_m', 'vel_north_mps', 'vel_east_mps',
-    'pred_north_m', 'pred_east_m', 'scan', 'sd_north_m', 'sd_east_m', 'course_deg', 'speed_kn',
-    'range_m', 'bearing_deg', 'plot', 'estimator')
+    'time_s',
+    'track',
+    'status',
+    'north_m',
+    'east_m',
+    'vel_north_mps',
+    'vel_east_mps',
+    'pred_north_m',
+    'pred_east_m',
+    'scan',
+    'sd_north_m',
+    'sd_east_m',
+    'course_deg',
+    'speed_kn',
+    'range_m',
+    'bearing_deg',
+    'plot',
+    'estimator',
+)
 REQUIRED = COLUMNS[:7]
 
 
@@ -42,8 +58,17 @@ def write_header(file: IO[str]) -> None:
     file.write(','.join(COLUMNS) + '\n')
 
 
-def write_scan(file: IO[str], scan: int, tracks: Extrapolation, track, status, predicted, plot,
-               own_ship: OwnShip, estimator: str) -> None:
+def write_scan(
+    file: IO[str],
+    scan: int,
+    tracks: Extrapolation,
+    track,
+    status,
+    predicted,
+    plot,
+    own_ship: OwnShip,
+    estimator: str,
+) -> None:
     """One row for each of N tracks.
 
     tracks     where they are, N rows        track      [N] id
@@ -64,7 +89,8 @@ def write_scan(file: IO[str], scan: int, tracks: Extrapolation, track, status, p
             f'{time:.4f},{track[n]},{status[n]},{north:.4f},{east:.4f},'
             f'{vel_north:.4f},{vel_east:.4f},{expected},{scan},{sd[n, 1]:.3f},{sd[n, 0]:.3f},'
             f'{_degrees(course[n])},{speed[n] / KNOT:.3f},{range_[n]:.2f},'
-            f'{_degrees(bearing[n])},{taken},{estimator}\n')
+            f'{_degrees(bearing[n])},{taken},{estimator}\n'
+        )
 
 
 def read(path) -> TrackRows:
@@ -80,10 +106,14 @@ def read(path) -> TrackRows:
         if name in table.columns:
             predicted[:, axis] = table.numbers(name, missing=True)
     return TrackRows(
-        table.numbers('time_s'), np.array(table.columns['track'], dtype=np.str_),
-        np.array(table.columns['status'], dtype=np.str_), east_north('', 'm'),
-        east_north('vel_', 'mps'), predicted,
-        table.integers('scan') if 'scan' in table.columns else None)
+        table.numbers('time_s'),
+        np.array(table.columns['track'], dtype=np.str_),
+        np.array(table.columns['status'], dtype=np.str_),
+        east_north('', 'm'),
+        east_north('vel_', 'mps'),
+        predicted,
+        table.integers('scan') if 'scan' in table.columns else None,
+    )
 
 
 def _degrees(bearing) -> str:

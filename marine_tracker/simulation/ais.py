@@ -18,9 +18,9 @@ from ..types import Array
 from .motion import Piece
 
 COLUMNS = ('time_s', 'vessel', 'lat_deg', 'lon_deg')
-SMOOTHED_PERIOD = 40.0        # s: slower motion is followed, faster motion is taken for jitter
-MAX_SPEED = 100 * KNOT        # m/s, between two reports
-CLOCK_ERROR = 10.0            # s, of a report's time, as seen in recorded traffic
+SMOOTHED_PERIOD = 40.0  # s: slower motion is followed, faster motion is taken for jitter
+MAX_SPEED = 100 * KNOT  # m/s, between two reports
+CLOCK_ERROR = 10.0  # s, of a report's time, as seen in recorded traffic
 
 
 class Reports(NamedTuple):
@@ -54,13 +54,16 @@ def read(path: Path, start: float, duration: float, max_gap: float) -> dict[str,
                     raise ValueError(f'AIS file {path} has no column {column}')
             for row in table:
                 place = f'AIS file {path} line {table.line_num}'
-                time, latitude, longitude = (_number(row, column, place) for column in
-                                             ('time_s', 'lat_deg', 'lon_deg'))
+                time, latitude, longitude = (
+                    _number(row, column, place) for column in ('time_s', 'lat_deg', 'lon_deg')
+                )
                 if abs(latitude) > 90 or abs(longitude) > 180:
-                    raise ValueError(f'{place}: no place on Earth: lat_deg {latitude:g}, lon_deg '
-                                     f'{longitude:g}')
+                    raise ValueError(
+                        f'{place}: no place on Earth: lat_deg {latitude:g}, lon_deg {longitude:g}'
+                    )
                 rows.setdefault(row['vessel'], []).append(
-                    (time - start, latitude, longitude, _length(row)))
+                    (time - start, latitude, longitude, _length(row))
+                )
     except OSError as error:
         raise ValueError(f'AIS file {path} cannot be read: {error.strerror}') from error
     vessels = {}
@@ -69,8 +72,9 @@ def read(path: Path, start: float, duration: float, max_gap: float) -> dict[str,
         if reports is not None:
             vessels[vessel] = reports
     if not vessels:
-        raise ValueError(f'AIS file {path} has no vessel between {start:g} s and '
-                         f'{start + duration:g} s')
+        raise ValueError(
+            f'AIS file {path} has no vessel between {start:g} s and {start + duration:g} s'
+        )
     return vessels
 
 
@@ -87,7 +91,7 @@ def _number(row, column, place):
 def _length(row):
     try:
         return float(row.get('length_m') or 'nan')
-    except ValueError:          # '<NA>' and the like
+    except ValueError:  # '<NA>' and the like
         return math.nan
 
 
@@ -100,13 +104,16 @@ def _reports(found, duration, max_gap, place):
     time, latitude, longitude = time[useful], latitude[useful], longitude[useful]
     if len(time) < 2 or time[-1] <= 0 or time[0] >= duration:
         return None
-    step = np.hypot(*np.diff(local_from_geodetic(
-        latitude, longitude, latitude[0], longitude[0]), axis=0).T)
+    step = np.hypot(
+        *np.diff(local_from_geodetic(latitude, longitude, latitude[0], longitude[0]), axis=0).T
+    )
     jump = step > MAX_SPEED * (np.diff(time) + CLOCK_ERROR)
     if jump.any():
         k = int(np.argmax(jump))
-        raise ValueError(f'{place} moves {step[k]:.0f} m in {time[k + 1] - time[k]:g} s; that is '
-                         'more than 100 kn')
+        raise ValueError(
+            f'{place} moves {step[k]:.0f} m in {time[k + 1] - time[k]:g} s; that is '
+            'more than 100 kn'
+        )
     lengths = found[:, 3][np.isfinite(found[:, 3])]
     return Reports(time, latitude, longitude, lengths[0] if len(lengths) else math.nan, max_gap)
 
@@ -119,23 +126,26 @@ def way(reports: Reports, origin: tuple[float, float]) -> list[Piece]:
     for time, place in zip(np.split(reports.time, ends), np.split(position, ends), strict=True):
         if len(time) > 1:
             curve = _spline(time, place)
-            pieces += [Piece(start, tuple(c[3]), cubic=(tuple(c[2]), tuple(c[1]), tuple(c[0])))
-                       for start, c in zip(curve.x[:-1], np.moveaxis(curve.c, 1, 0), strict=True)
-                       if start < time[-1]]
+            pieces += [
+                Piece(start, tuple(c[3]), cubic=(tuple(c[2]), tuple(c[1]), tuple(c[0])))
+                for start, c in zip(curve.x[:-1], np.moveaxis(curve.c, 1, 0), strict=True)
+                if start < time[-1]
+            ]
         pieces.append(Piece(time[-1], tuple(place[-1]), exists=False))
     return pieces
 
 
 def _spline(time, place):
     """A piecewise cubic [4, pieces, 2] over the reports of one run."""
-    if len(time) < 5:                           # too few to smooth: straight from one to the next
+    if len(time) < 5:  # too few to smooth: straight from one to the next
         slope = np.diff(place, axis=0) / np.diff(time)[:, None]
         zero = np.zeros_like(slope)
         return PPoly(np.stack([zero, zero, slope, place[:-1]]), time)
     # Reports T apart, smoothed with this weight, pass slow motion w as 1 / (1 + weight T w^4).
     weight = (SMOOTHED_PERIOD / (2 * np.pi)) ** 4 / np.diff(time).mean()
-    columns = [PPoly.from_spline(make_smoothing_spline(time, column, lam=weight))
-               for column in place.T]
+    columns = [
+        PPoly.from_spline(make_smoothing_spline(time, column, lam=weight)) for column in place.T
+    ]
     curve = PPoly(np.stack([column.c for column in columns], -1), columns[0].x)
-    inside = np.flatnonzero(np.diff(curve.x) > 0)           # without the spline's repeated ends
+    inside = np.flatnonzero(np.diff(curve.x) > 0)  # without the spline's repeated ends
     return PPoly(curve.c[:, inside], np.append(curve.x[inside], curve.x[inside[-1] + 1]))

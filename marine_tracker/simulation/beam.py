@@ -15,10 +15,10 @@ from ..types import Array, Truth, take
 from . import motion
 from .scenario import Scenario
 
-NEAR_SEAM = 0.25        # of a revolution: how near to north a passage may be doubled
-SEAM = 1e-9             # s: a passage this little before north belongs to the next revolution
-REVOLUTIONS = 64        # solved at once, as array operations cost the same for few rows and for
-ROWS = 8192             # many; but no more rows than this
+NEAR_SEAM = 0.25  # of a revolution: how near to north a passage may be doubled
+SEAM = 1e-9  # s: a passage this little before north belongs to the next revolution
+REVOLUTIONS = 64  # solved at once, as array operations cost the same for few rows and for
+ROWS = 8192  # many; but no more rows than this
 
 
 class Passages(NamedTuple):
@@ -89,15 +89,20 @@ def _solve(scenario, numbers):
     best = best[there[best]]
     met = np.flatnonzero(inside & there)
     second = ~_is_first(number[met], target[met])
-    passages = Passages(target[met], second.astype(np.int64), time[met], offset[met],
-                        velocity[met])
+    passages = Passages(target[met], second.astype(np.int64), time[met], offset[met], velocity[met])
     truth = Truth(time[best], target[best], position[best], velocity[best])
-    edges = [np.searchsorted(number[rows], np.append(numbers, numbers[-1] + 1))
-             for rows in (met, best)]
+    edges = [
+        np.searchsorted(number[rows], np.append(numbers, numbers[-1] + 1)) for rows in (met, best)
+    ]
     for k, revolution in enumerate(numbers.tolist()):
-        yield Revolution(revolution * period, (revolution + 1) * period,
-                         *(take(rows, slice(edge[k], edge[k + 1]))
-                           for rows, edge in zip((passages, truth), edges, strict=True)))
+        yield Revolution(
+            revolution * period,
+            (revolution + 1) * period,
+            *(
+                take(rows, slice(edge[k], edge[k + 1]))
+                for rows, edge in zip((passages, truth), edges, strict=True)
+            ),
+        )
 
 
 def _is_first(number, target):
@@ -114,8 +119,9 @@ def _meet(scenario, target, time, start):
     for _ in range(3):
         offset, _, velocity = _from_own_ship(scenario, target, time, relative=True)
         distance, bearing = to_range_bearing(offset)
-        rate = ((offset[:, 1] * velocity[:, 0] - offset[:, 0] * velocity[:, 1])
-                / np.maximum(distance, 1e-3) ** 2)
+        rate = (offset[:, 1] * velocity[:, 0] - offset[:, 0] * velocity[:, 1]) / np.maximum(
+            distance, 1e-3
+        ) ** 2
         # A bearing that outruns half the beam's turn occurs only within metres of own ship.
         rate = np.clip(rate, -0.5 * turn, 0.5 * turn)
         time = time + wrap_angle(bearing - turn * (time - start)) / (turn - rate)
@@ -126,7 +132,11 @@ def _from_own_ship(scenario, target, time, relative=False):
     """Offset from own ship, position, and velocity (or that relative to own ship) [N, 2]."""
     count = len(target)
     position, velocity = motion.locate_ships(
-        scenario.fleet.paths, np.concatenate([target, np.zeros_like(target)]), np.tile(time, 2))
+        scenario.fleet.paths, np.concatenate([target, np.zeros_like(target)]), np.tile(time, 2)
+    )
     offset = position[:count] - position[count:]
-    return (offset, position[:count],
-            velocity[:count] - velocity[count:] if relative else velocity[:count])
+    return (
+        offset,
+        position[:count],
+        velocity[:count] - velocity[count:] if relative else velocity[:count],
+    )

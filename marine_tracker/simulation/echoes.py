@@ -12,12 +12,18 @@ from ..geometry import wrap_bearing
 from ..types import Array, PolarPlots, take
 from .scenario import ScenarioRadar
 
-THRESHOLD = 20.0                 # power over noise at which a plot is declared: 13 dB
-NEAR = np.arange(-2, 3)          # cells; two off, pulse and beam are 48 dB down or more
+THRESHOLD = 20.0  # power over noise at which a plot is declared: 13 dB
+NEAR = np.arange(-2, 3)  # cells; two off, pulse and beam are 48 dB down or more
 
 
-def cells(radar: ScenarioRadar, start: float, distance: Array, bearing: Array, echo,
-          random: np.random.Generator) -> PolarPlots:
+def cells(
+    radar: ScenarioRadar,
+    start: float,
+    distance: Array,
+    bearing: Array,
+    echo,
+    random: np.random.Generator,
+) -> PolarPlots:
     """The cells over the threshold in the revolution that begins at `start` s.
 
     distance [S] m, bearing [S] rad of the scatterers when the beam passes them; echo [S] complex,
@@ -30,15 +36,19 @@ def cells(radar: ScenarioRadar, start: float, distance: Array, bearing: Array, e
     pulse = np.exp2(-2 * (ring[:, None] - i) ** 2)
     beam = np.exp2(-4 * ((sector[:, None] - j) * (width / radar.beam_width)) ** 2)
     field = (echo[:, None] * pulse)[:, :, None] * beam[:, None, :]
-    cell, which = np.unique((i[:, :, None] * sectors + (j % sectors)[:, None, :]).ravel(),
-                            return_inverse=True)
+    cell, which = np.unique(
+        (i[:, :, None] * sectors + (j % sectors)[:, None, :]).ravel(), return_inverse=True
+    )
     total = np.sqrt(0.5) * random.standard_normal((2, len(cell)))
     total += [np.bincount(which, part.ravel(), len(cell)) for part in (field.real, field.imag)]
     power = np.square(total).sum(0)
     distance = (cell // sectors + 0.5) * radar.range_resolution
     seen = (power > THRESHOLD) & (distance >= radar.blind_range) & (distance <= radar.max_range)
     bearing = (cell % sectors + 0.5)[seen] * width
-    plots = PolarPlots(start + bearing * (radar.scan_period / (2 * np.pi)),
-                       distance[seen] + radar.range_bias,
-                       wrap_bearing(bearing + radar.bearing_bias), 10 * np.log10(power[seen]))
+    plots = PolarPlots(
+        start + bearing * (radar.scan_period / (2 * np.pi)),
+        distance[seen] + radar.range_bias,
+        wrap_bearing(bearing + radar.bearing_bias),
+        10 * np.log10(power[seen]),
+    )
     return take(plots, plots.range > 0)

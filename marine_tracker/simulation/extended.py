@@ -9,9 +9,9 @@ from ..types import Array, PolarPlots, Truth
 from . import echoes, hull, land
 from .scenario import Scenario
 
-SHORE_SPACING = 0.5         # of the range resolution
-EDGE_SPACING = 1.0          # m
-HIDES = 2.0                 # range resolutions behind which a shore hides what is farther
+SHORE_SPACING = 0.5  # of the range resolution
+EDGE_SPACING = 1.0  # m
+HIDES = 2.0  # range resolutions behind which a shore hides what is farther
 
 
 class Scene(NamedTuple):
@@ -41,12 +41,17 @@ def scene(scenario: Scenario, random: np.random.Generator) -> Scene:
         shore.append(places)
         edge.append(hull.along(line.corners, EDGE_SPACING, random)[0])
         power.append(10 ** (0.1 * line.snr_db) * random.exponential(size=len(places)))
-    return Scene(hull.scatterers(scenario.fleet, random), np.concatenate(shore),
-                 np.concatenate(power), np.concatenate(edge))
+    return Scene(
+        hull.scatterers(scenario.fleet, random),
+        np.concatenate(shore),
+        np.concatenate(power),
+        np.concatenate(edge),
+    )
 
 
-def plots(of: Scene, scenario: Scenario, start: float, truth: Truth,
-          random: np.random.Generator) -> PolarPlots:
+def plots(
+    of: Scene, scenario: Scenario, start: float, truth: Truth, random: np.random.Generator
+) -> PolarPlots:
     """The cells of one revolution, which begins at `start` s; truth: its ships."""
     own = scenario.own_ship_at(np.append(truth.time, start + 0.5 * scenario.radar.scan_period))
     offset, power = _hulls(of.hulls, scenario, start, truth, own)
@@ -81,7 +86,8 @@ def _hulls(of, scenario, start, truth, own):
     heading = np.where(np.isnan(heading), np.arctan2(*velocity.T), heading)
     own_position = own.position[row]
     offset, shown = hull.place(
-        hull.Scatterers(*(field[there] for field in of)), middle, heading, own_position)
+        hull.Scatterers(*(field[there] for field in of)), middle, heading, own_position
+    )
     offset = (offset + middle - own_position)[shown]
     row = row[shown]
     later = _passed(scenario, start, offset) - truth.time[row]

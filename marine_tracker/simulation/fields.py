@@ -24,10 +24,12 @@ class Section:
     """
 
     def __init__(self, values: Any, where: str, keys: str):
-        values = {} if values is None else values           # `straight:` with nothing behind it
+        values = {} if values is None else values  # `straight:` with nothing behind it
         if not isinstance(values, Mapping):
-            raise ValueError(f'{where or "the scenario"} is {values!r}; it must be a mapping with '
-                             f'keys like {", ".join(keys.split()[:3])}')
+            raise ValueError(
+                f'{where or "the scenario"} is {values!r}; it must be a mapping with '
+                f'keys like {", ".join(keys.split()[:3])}'
+            )
         self.values, self.where, self.keys = values, where, keys.split()
         known = keys.replace('|', ' ').split()
         for key in values:
@@ -58,13 +60,15 @@ class Section:
             return default
         value = self.values[key]
         if type(value) not in (int, float):
-            raise ValueError(f'{self.place(key)} is {value!r}; it must be a number (the unit '
-                             'stands in the key)')
+            raise ValueError(
+                f'{self.place(key)} is {value!r}; it must be a number (the unit stands in the key)'
+            )
         if not math.isfinite(value):
             raise ValueError(f'{self.place(key)} is {value}; it must be finite')
         if not low <= value <= high:
-            raise ValueError(f'{self.place(key)} is {value:g}; it must be between {low:g} and '
-                             f'{high:g}')
+            raise ValueError(
+                f'{self.place(key)} is {value:g}; it must be between {low:g} and {high:g}'
+            )
         return float(value)
 
     def length(self, stem: str, low: float, high: float, default: float | None = None) -> float:
@@ -79,8 +83,7 @@ class Section:
         spellings = [f'{stem}_{unit}' for unit in units]
         given = [key for key in spellings if key in self.values]
         if len(given) == 2:
-            raise ValueError(f'{self.owner} has both {given[0]} and {given[1]}; '
-                             'give one')
+            raise ValueError(f'{self.owner} has both {given[0]} and {given[1]}; give one')
         if not given:
             if default is None:
                 raise ValueError(f'{self.owner} has no {" or ".join(spellings)}')
@@ -103,8 +106,9 @@ class Section:
         """One of the stated words."""
         value = self.values.get(key, default)
         if value not in choices:
-            raise ValueError(f'{self.place(key)} is {value!r}; it must be one of '
-                             f'{", ".join(choices)}')
+            raise ValueError(
+                f'{self.place(key)} is {value!r}; it must be one of {", ".join(choices)}'
+            )
         return value
 
     def items(self, key: str) -> list[Any]:
@@ -122,11 +126,16 @@ class Section:
         """The only one of the alternatives that is there, each named by its key or stem."""
         given = [a for a in alternatives if a in self.values or self.has(a)]
         if len(given) != 1:
-            spelled = {a: next(k for k in self.keys if k == a or k.startswith(f'{a}_')
-                               ).replace('|', ' or ') for a in alternatives}
+            spelled = {
+                a: next(k for k in self.keys if k == a or k.startswith(f'{a}_')).replace(
+                    '|', ' or '
+                )
+                for a in alternatives
+            }
             what = ' and '.join(given) if given else f'none of {"; ".join(spelled.values())}'
-            raise ValueError(f'{self.where} has {what}; it must have one of '
-                             f'{", ".join(alternatives)}')
+            raise ValueError(
+                f'{self.where} has {what}; it must have one of {", ".join(alternatives)}'
+            )
         return given[0]
 
 

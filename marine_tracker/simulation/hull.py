@@ -15,11 +15,11 @@ from ..geometry import unit_vector
 from ..types import Array
 from .ships import Fleet
 
-SPACING = 4.0               # m, of scatterers along the outline
-DECK_SPACING = 6.0          # m, along the middle line
-DECK_POWER = 0.3            # of a scatterer's on the outline
-DECK_WIDTH = 0.5            # of the beam, in which they lie
-MIDDLE_LINE = np.array([[0.45, 0.0], [-0.45, 0.0]])     # lengths forward
+SPACING = 4.0  # m, of scatterers along the outline
+DECK_SPACING = 6.0  # m, along the middle line
+DECK_POWER = 0.3  # of a scatterer's on the outline
+DECK_WIDTH = 0.5  # of the beam, in which they lie
+MIDDLE_LINE = np.array([[0.45, 0.0], [-0.45, 0.0]])  # lengths forward
 # Outline in half lengths forward and half beams to starboard, clockwise from the bow.
 OUTLINE = np.array([[1.0, 0.0], [0.6, 1.0], [-1.0, 1.0], [-1.0, -1.0], [0.6, -1.0], [1.0, 0.0]])
 
@@ -55,9 +55,16 @@ def scatterers(fleet: Fleet, random: np.random.Generator) -> Scatterers:
         deck = len(on_deck)
         on_deck[:, 1] = beam * DECK_WIDTH * (random.random(deck) - 0.5)
         power = 10 ** (0.1 * fleet.hulls.snr_db[ship]) * np.repeat(
-            [1.0, DECK_POWER], [len(place), deck])
-        parts.append(Scatterers(np.full(len(power), ship + 1), np.concatenate([place, on_deck]),
-                                np.concatenate([normal, np.zeros((deck, 2))]), power))
+            [1.0, DECK_POWER], [len(place), deck]
+        )
+        parts.append(
+            Scatterers(
+                np.full(len(power), ship + 1),
+                np.concatenate([place, on_deck]),
+                np.concatenate([normal, np.zeros((deck, 2))]),
+                power,
+            )
+        )
     return Scatterers(*map(np.concatenate, zip(*parts, strict=True)))
 
 

@@ -11,8 +11,8 @@ from .fields import Section
 
 SHORE_KEYS = 'name corners_m|corners_nm closed snr_db'
 SNR_DB = 30.0
-MAX_COORDINATE = 200_000.0      # m
-SECTORS = 1800                  # of the horizon, in each of which the nearest shore is looked for
+MAX_COORDINATE = 200_000.0  # m
+SECTORS = 1800  # of the horizon, in each of which the nearest shore is looked for
 
 
 class Shore(NamedTuple):
@@ -29,39 +29,59 @@ class Shore(NamedTuple):
 
 def read(top: Section) -> tuple[Shore, ...]:
     """The shores under `land` of a scenario file; ValueError names place, value and limit."""
-    return tuple(_shore(Section(item, f'land[{number}]', SHORE_KEYS), number)
-                 for number, item in enumerate(top.items('land')))
+    return tuple(
+        _shore(Section(item, f'land[{number}]', SHORE_KEYS), number)
+        for number, item in enumerate(top.items('land'))
+    )
 
 
 def _shore(section, number):
     key = section.one_of('corners')
-    key, unit = next((f'{key}_{u}', size) for u, size in (('m', 1.0), ('nm', NAUTICAL_MILE))
-                     if f'{key}_{u}' in section)
+    key, unit = next(
+        (f'{key}_{u}', size)
+        for u, size in (('m', 1.0), ('nm', NAUTICAL_MILE))
+        if f'{key}_{u}' in section
+    )
     closed = section.values.get('closed', False)
     if not isinstance(closed, bool):
         raise ValueError(f'{section.place("closed")} is {closed!r}; it must be true or false')
-    corners = [_corner(corner, section.place(f'{key}[{place}]'), unit)
-               for place, corner in enumerate(section.items(key))]
+    corners = [
+        _corner(corner, section.place(f'{key}[{place}]'), unit)
+        for place, corner in enumerate(section.items(key))
+    ]
     least = 3 if closed else 2
     if len(corners) < least:
-        raise ValueError(f'{section.place(key)} has {len(corners)} corners; it must have at least '
-                         f'{least}')
+        raise ValueError(
+            f'{section.place(key)} has {len(corners)} corners; it must have at least {least}'
+        )
     if closed:
         corners.append(corners[0])
     for place, (first, second) in enumerate(zip(corners, corners[1:])):
         if first == second:
             raise ValueError(f'{section.place(key)}[{place}] is the same as the corner after it')
-    return Shore(section.text('name', f'land {number + 1}'), np.array(corners),
-                 section.number('snr_db', 0.0, 60.0, SNR_DB))
+    return Shore(
+        section.text('name', f'land {number + 1}'),
+        np.array(corners),
+        section.number('snr_db', 0.0, 60.0, SNR_DB),
+    )
 
 
 def _corner(corner, where, unit):
     """(east, north) m of a pair [north, east]."""
-    if not (isinstance(corner, list) and len(corner) == 2
-            and all(type(value) in (int, float) and math.isfinite(value)
-                    and abs(value) * unit <= MAX_COORDINATE for value in corner)):
-        raise ValueError(f'{where} is {corner!r}; it must be [north, east], numbers within '
-                         f'{MAX_COORDINATE / unit:g}')
+    if not (
+        isinstance(corner, list)
+        and len(corner) == 2
+        and all(
+            type(value) in (int, float)
+            and math.isfinite(value)
+            and abs(value) * unit <= MAX_COORDINATE
+            for value in corner
+        )
+    ):
+        raise ValueError(
+            f'{where} is {corner!r}; it must be [north, east], numbers within '
+            f'{MAX_COORDINATE / unit:g}'
+        )
     north, east = corner
     return east * unit, north * unit
 

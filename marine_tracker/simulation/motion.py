@@ -16,8 +16,8 @@ from scipy.optimize import brentq
 from ..geometry import unit_vector
 from ..types import Array
 
-MAX_TURN_RATE = np.radians(45.0)          # rad/s
-MAX_ACCELERATION = 10.0                   # m/s^2
+MAX_TURN_RATE = np.radians(45.0)  # rad/s
+MAX_ACCELERATION = 10.0  # m/s^2
 
 
 class Straight(NamedTuple):
@@ -116,18 +116,25 @@ def locate_ships(paths: Paths, ship: NDArray[np.int64], time) -> tuple[Array, Ar
     t = time - paths.start[row]
     speed, acceleration = paths.speed[row], paths.acceleration[row]
     wave, rate, phase = paths.wave[row], paths.wave_rate[row], paths.wave_phase[row]
-    run = (t * (speed + 0.5 * acceleration * t)
-           + wave / rate * (np.cos(phase) - np.cos(rate * t + phase)))
+    run = t * (speed + 0.5 * acceleration * t) + wave / rate * (
+        np.cos(phase) - np.cos(rate * t + phase)
+    )
     now = speed + acceleration * t + wave * np.sin(rate * t + phase)
     half_turn = 0.5 * paths.curvature[row] * run
     course = paths.course[row]
     chord = run * np.sinc(half_turn / np.pi)
     first, second, third = np.moveaxis(paths.cubic[row], -2, 0)
     t = t[..., None]
-    position = (paths.position[row] + chord[..., None] * unit_vector(course + half_turn)
-                + t * (first + t * (second + t * third)))
-    velocity = (now[..., None] * unit_vector(course + 2 * half_turn)
-                + first + t * (2 * second + 3 * t * third))
+    position = (
+        paths.position[row]
+        + chord[..., None] * unit_vector(course + half_turn)
+        + t * (first + t * (second + t * third))
+    )
+    velocity = (
+        now[..., None] * unit_vector(course + 2 * half_turn)
+        + first
+        + t * (2 * second + 3 * t * third)
+    )
     return position, velocity
 
 
@@ -141,8 +148,9 @@ def _row(paths, ship, time):
     return np.searchsorted(paths.key, ship * paths.span + inside, 'right') - 1
 
 
-def sail(position, course: float, speed: float, legs: Sequence[Leg] = (),
-         wave: Wave | None = None) -> list[Piece]:
+def sail(
+    position, course: float, speed: float, legs: Sequence[Leg] = (), wave: Wave | None = None
+) -> list[Piece]:
     """The pieces of a ship that starts at time 0 and runs its legs, then holds course and speed.
 
     position [2] m, east and north; course rad; speed m/s, the mean where there is a wave.
@@ -153,8 +161,10 @@ def sail(position, course: float, speed: float, legs: Sequence[Leg] = (),
     # The wave runs on through all legs: its phase is that of the time since the start.
     amplitude, wave_rate = (wave.amplitude, 2 * np.pi / wave.period) if wave else (0.0, 1.0)
     if speed < amplitude:
-        raise ValueError(f'speed_wave has an amplitude of {amplitude:g} m/s; it must not exceed '
-                         f'the speed, {speed:g} m/s')
+        raise ValueError(
+            f'speed_wave has an amplitude of {amplitude:g} m/s; it must not exceed '
+            f'the speed, {speed:g} m/s'
+        )
     for number, leg in enumerate(legs):
         here = f'legs[{number}]'
         curvature = acceleration = 0.0
@@ -162,43 +172,66 @@ def sail(position, course: float, speed: float, legs: Sequence[Leg] = (),
         if isinstance(leg, Straight):
             if leg.duration is None:
                 if number + 1 < len(legs):
-                    raise ValueError(f'{here}.straight has no duration_s; only the last leg may '
-                                     'go on to the end')
+                    raise ValueError(
+                        f'{here}.straight has no duration_s; only the last leg may go on to the end'
+                    )
                 break
             duration = leg.duration
         elif isinstance(leg, SpeedChange):
             after = leg.speed
             if after < amplitude:
-                raise ValueError(f'{here}.speed ends at {after:g} m/s; it must not be below the '
-                                 f'amplitude of speed_wave, {amplitude:g} m/s')
-            duration = (abs(after - speed) / leg.acceleration if leg.acceleration
-                        else leg.duration or 0.0)
+                raise ValueError(
+                    f'{here}.speed ends at {after:g} m/s; it must not be below the '
+                    f'amplitude of speed_wave, {amplitude:g} m/s'
+                )
+            duration = (
+                abs(after - speed) / leg.acceleration if leg.acceleration else leg.duration or 0.0
+            )
             acceleration = (after - speed) / duration if duration else 0.0
             if abs(acceleration) > MAX_ACCELERATION:
-                raise ValueError(f'{here}.speed changes by {abs(acceleration):.3g} m/s each '
-                                 f'second; it must not exceed {MAX_ACCELERATION:g}')
+                raise ValueError(
+                    f'{here}.speed changes by {abs(acceleration):.3g} m/s each '
+                    f'second; it must not exceed {MAX_ACCELERATION:g}'
+                )
         else:
             if speed <= amplitude:
-                raise ValueError(f'{here}.turn begins at a mean speed of {speed:g} m/s; a ship '
-                                 'that stops cannot turn')
-            radius = leg.radius if leg.radius else speed / leg.rate         # type: ignore[operator]
+                raise ValueError(
+                    f'{here}.turn begins at a mean speed of {speed:g} m/s; a ship '
+                    'that stops cannot turn'
+                )
+            radius = leg.radius if leg.radius else speed / leg.rate  # type: ignore[operator]
             if speed / radius > MAX_TURN_RATE:
-                raise ValueError(f'{here}.turn has a radius of {radius:g} m; at {speed:.3g} m/s '
-                                 f'that is {np.degrees(speed / radius):.3g} deg/s, more than '
-                                 f'{np.degrees(MAX_TURN_RATE):g}')
+                raise ValueError(
+                    f'{here}.turn has a radius of {radius:g} m; at {speed:.3g} m/s '
+                    f'that is {np.degrees(speed / radius):.3g} deg/s, more than '
+                    f'{np.degrees(MAX_TURN_RATE):g}'
+                )
             curvature = np.sign(leg.angle) / radius
-            duration = _time_to_run(radius * abs(leg.angle), speed, amplitude, wave_rate,
-                                    wave_rate * time)
-        piece = Piece(time, tuple(position), course, curvature, speed, acceleration,
-                      amplitude, wave_rate, wave_rate * time)
+            duration = _time_to_run(
+                radius * abs(leg.angle), speed, amplitude, wave_rate, wave_rate * time
+            )
+        piece = Piece(
+            time,
+            tuple(position),
+            course,
+            curvature,
+            speed,
+            acceleration,
+            amplitude,
+            wave_rate,
+            wave_rate * time,
+        )
         way.append(piece)
         if isinstance(leg, Turn):
             course += leg.angle
         time, speed = time + duration, after
         ended = locate_ships(table([[piece]], time), np.array(0), time)
         position = ended[0]
-    way.append(Piece(time, tuple(position), course, 0.0, speed, 0.0,
-                     amplitude, wave_rate, wave_rate * time))
+    way.append(
+        Piece(
+            time, tuple(position), course, 0.0, speed, 0.0, amplitude, wave_rate, wave_rate * time
+        )
+    )
     return way
 
 
@@ -206,6 +239,14 @@ def _time_to_run(distance, speed, amplitude, wave_rate, phase):
     """Time in which the ship runs the distance at `speed` plus the wave."""
     if amplitude == 0.0:
         return distance / speed
-    return brentq(lambda t: speed * t + amplitude / wave_rate * (
-        np.cos(phase) - np.cos(wave_rate * t + phase)) - distance,
-        0.0, (distance + 2 * amplitude / wave_rate) / speed, xtol=1e-12, rtol=1e-14)
+    return brentq(
+        lambda t: (
+            speed * t
+            + amplitude / wave_rate * (np.cos(phase) - np.cos(wave_rate * t + phase))
+            - distance
+        ),
+        0.0,
+        (distance + 2 * amplitude / wave_rate) / speed,
+        xtol=1e-12,
+        rtol=1e-14,
+    )

@@ -18,8 +18,8 @@ from . import beam, clutter, extended, sensor_errors
 from .echoes import THRESHOLD
 from .scenario import Scenario, ScenarioRadar
 
-STRONGEST = 0.9999               # probability of detection that sets the amplitude of a sure plot
-OWN_SHIP_SAMPLES = 4             # a revolution, both ends included
+STRONGEST = 0.9999  # probability of detection that sets the amplitude of a sure plot
+OWN_SHIP_SAMPLES = 4  # a revolution, both ends included
 
 
 def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
@@ -31,12 +31,13 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
     stream of random numbers: clutter or detection do not change the noise of targets.
     """
     detection, noise, uniform, sea, errors, reckoning, doppler, false_doppler, cells = (
-        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(9))
+        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(9)
+    )
     radar = scenario.radar
     imo = sensor_errors.draw(errors) if radar.sensor_errors == 'imo' else None
     drift = np.zeros(2)
     scene = extended.scene(scenario, cells) if scenario.in_cells else None
-    point = np.isnan(scenario.fleet.hulls.beam)         # targets that give one plot
+    point = np.isnan(scenario.fleet.hulls.beam)  # targets that give one plot
     for start, end, passages, truth in beam.revolutions(scenario):
         # Draws for every ship (own ship's are idle) and both possible passages, seen or not: a
         # stream's use must not depend on what another stream brought about.
@@ -50,17 +51,23 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
         passages = take(passages, point[passages.target - 1])
         distance, _ = to_range_bearing(passages.offset)
         seen, power = _detect(
-            scenario, passages.target, distance, chance[passages.turn, passages.target])
+            scenario, passages.target, distance, chance[passages.turn, passages.target]
+        )
         plots, row = _resolve(radar, take(passages, seen), distance[seen], power[seen], start)
-        range_error, bearing_error = deviation[passages.turn[seen][row],
-                                               passages.target[seen][row]].T
+        range_error, bearing_error = deviation[
+            passages.turn[seen][row], passages.target[seen][row]
+        ].T
         plots = plots._replace(
             range=plots.range + range_error + radar.range_bias,
-            bearing=wrap_bearing(plots.bearing + bearing_error + radar.bearing_bias))
+            bearing=wrap_bearing(plots.bearing + bearing_error + radar.bearing_bias),
+        )
         if radar.radial_speed_sigma is not None:
             shift = radar.radial_speed_sigma * doppler.standard_normal(shape)
-            plots = plots._replace(radial_speed=(
-                _radial_speed(passages) + shift[passages.turn, passages.target])[seen][row])
+            plots = plots._replace(
+                radial_speed=(_radial_speed(passages) + shift[passages.turn, passages.target])[
+                    seen
+                ][row]
+            )
         plots = take(plots, plots.range > 0)
         plots = append(plots, _false_plots(scenario, start, uniform, sea, false_doppler))
         if scene is not None:
@@ -82,13 +89,17 @@ def _detect(scenario, target, distance, chance):
     """
     radar, fleet = scenario.radar, scenario.fleet
     pd = radar.pd_near * (radar.pd_far / radar.pd_near) ** ((distance / radar.max_range) ** 4)
-    pd = np.where(np.isnan(fleet.pd[target - 1]), pd * fleet.pd_factor[target - 1],
-                  fleet.pd[target - 1])
+    pd = np.where(
+        np.isnan(fleet.pd[target - 1]), pd * fleet.pd_factor[target - 1], fleet.pd[target - 1]
+    )
     with np.errstate(divide='ignore'):
         mean = THRESHOLD / -np.log(np.minimum(pd, STRONGEST))
     power = chance * mean
-    seen = ((power > THRESHOLD) | (pd >= 1)) & (distance >= radar.blind_range) & (
-        distance <= radar.max_range)
+    seen = (
+        ((power > THRESHOLD) | (pd >= 1))
+        & (distance >= radar.blind_range)
+        & (distance <= radar.max_range)
+    )
     return seen, np.maximum(power, THRESHOLD)
 
 
@@ -102,8 +113,9 @@ def _resolve(radar: ScenarioRadar, passages, distance, power, start):
     turn = 2 * np.pi / radar.scan_period
     time, row = passages.time, np.arange(len(distance))
     if radar.range_resolution > 0 and radar.beam_width > 0 and len(row) > 1:
-        cells = np.column_stack([distance / radar.range_resolution,
-                                 (time - start) * turn / radar.beam_width])
+        cells = np.column_stack(
+            [distance / radar.range_resolution, (time - start) * turn / radar.beam_width]
+        )
         pairs = cKDTree(cells).query_pairs(1.0, p=np.inf, output_type='ndarray')
         if len(pairs):
             graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(row), len(row)))
@@ -126,15 +138,22 @@ def _radial_speed(passages):
 
 def _false_plots(scenario, start, uniform, sea, doppler):
     radar = scenario.radar
-    kinds = (clutter.uniform_plots(scenario.clutter, radar, uniform),
-             clutter.sea_plots(scenario.clutter, radar, sea))
+    kinds = (
+        clutter.uniform_plots(scenario.clutter, radar, uniform),
+        clutter.sea_plots(scenario.clutter, radar, sea),
+    )
     distance, bearing, excess = (np.concatenate(columns) for columns in zip(*kinds, strict=True))
     speed = None
     if radar.radial_speed_sigma is not None:
         noise, waves = (len(kind[0]) for kind in kinds)
         speed = clutter.radial_speeds(radar, noise, waves, doppler)
-    return PolarPlots(start + bearing * radar.scan_period / (2 * np.pi), distance, bearing,
-                      10 * np.log10(THRESHOLD + excess), speed)
+    return PolarPlots(
+        start + bearing * radar.scan_period / (2 * np.pi),
+        distance,
+        bearing,
+        10 * np.log10(THRESHOLD + excess),
+        speed,
+    )
 
 
 def _imo(scenario, imo, passages, random, shape):
@@ -143,13 +162,11 @@ def _imo(scenario, imo, passages, random, shape):
     velocity = np.zeros(shape + (2,))
     relative, time = np.zeros(shape), np.zeros(shape)
     heading = scenario.own_ship_at(passages.time).velocity
-    relative[row] = (to_range_bearing(passages.offset)[1]
-                     - np.arctan2(heading[:, 0], heading[:, 1]))
+    relative[row] = to_range_bearing(passages.offset)[1] - np.arctan2(heading[:, 0], heading[:, 1])
     time[row], velocity[row] = passages.time, passages.velocity
     length = np.concatenate([[0.0], scenario.fleet.length])
     glint = sensor_errors.glint(velocity, np.broadcast_to(length, shape), random)[row]
     errors = np.stack(sensor_errors.measurement_errors(imo, time, relative, random), -1)
     moved = passages.offset + glint
-    errors[*row, 1] += wrap_angle(to_range_bearing(moved)[1]
-                                  - to_range_bearing(passages.offset)[1])
+    errors[*row, 1] += wrap_angle(to_range_bearing(moved)[1] - to_range_bearing(passages.offset)[1])
     return passages._replace(offset=moved), errors

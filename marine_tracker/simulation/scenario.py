@@ -57,14 +57,16 @@ from . import land, motion, sensor_errors, ships
 from .fields import Section
 from .standard_scenarios import STANDARD
 
-MAX_RANGE = 200_000.0                     # m
+MAX_RANGE = 200_000.0  # m
 
 TOP_KEYS = 'description duration_s origin radar clutter tracker ais own_ship targets land'
-RADAR_KEYS = ('rotation_rpm max_range_m|max_range_nm blind_range_m|blind_range_nm '
-              'range_sigma_m|range_sigma_nm bearing_sigma_deg range_bias_m|range_bias_nm '
-              'bearing_bias_deg range_resolution_m|range_resolution_nm beam_width_deg '
-              'pd_near pd_far sensor_errors radial_speed_sigma_mps|radial_speed_sigma_kn '
-              'max_radial_speed_mps|max_radial_speed_kn')
+RADAR_KEYS = (
+    'rotation_rpm max_range_m|max_range_nm blind_range_m|blind_range_nm '
+    'range_sigma_m|range_sigma_nm bearing_sigma_deg range_bias_m|range_bias_nm '
+    'bearing_bias_deg range_resolution_m|range_resolution_nm beam_width_deg '
+    'pd_near pd_far sensor_errors radial_speed_sigma_mps|radial_speed_sigma_kn '
+    'max_radial_speed_mps|max_radial_speed_kn'
+)
 CLUTTER_KEYS = 'uniform sea sea_scale_m|sea_scale_nm'
 TRACKER_KEYS = 'max_target_speed_kn|max_target_speed_mps vessel_class'
 
@@ -157,7 +159,8 @@ class Scenario:
         """Own ship's true motion at the times [K]."""
         times = np.atleast_1d(np.asarray(times, dtype=float))
         position, velocity = motion.locate_ships(
-            self.fleet.paths, np.zeros(len(times), np.int64), times)
+            self.fleet.paths, np.zeros(len(times), np.int64), times
+        )
         return OwnShip(times, position, velocity)
 
     def truth_at(self, time: float) -> Truth:
@@ -180,15 +183,18 @@ class Scenario:
         if self.radar.sensor_errors == 'imo':
             range_sigma, bearing_sigma = sensor_errors.IMO_SIGMAS
             glint = TrackerParameters.glint_sigma_m
-        return {'range_sigma_m': max(range_sigma, 0.1),
-                'bearing_sigma_deg': max(math.degrees(bearing_sigma), 0.01),
-                'glint_sigma_m': glint,
-                'range_resolution_m': max(self.radar.range_resolution, 1.0),
-                'beam_width_deg': max(math.degrees(self.radar.beam_width), 0.1),
-                'min_range_m': self.radar.blind_range,
-                'max_range_m': self.radar.max_range,
-                'scan_period_s': self.radar.scan_period,
-                **doppler, **self.stated}
+        return {
+            'range_sigma_m': max(range_sigma, 0.1),
+            'bearing_sigma_deg': max(math.degrees(bearing_sigma), 0.01),
+            'glint_sigma_m': glint,
+            'range_resolution_m': max(self.radar.range_resolution, 1.0),
+            'beam_width_deg': max(math.degrees(self.radar.beam_width), 0.1),
+            'min_range_m': self.radar.blind_range,
+            'max_range_m': self.radar.max_range,
+            'scan_period_s': self.radar.scan_period,
+            **doppler,
+            **self.stated,
+        }
 
 
 def detectable(scenario: Scenario, truth: Truth) -> NDArray[np.bool_]:
@@ -213,9 +219,11 @@ def load(name_or_path) -> Scenario:
         names = shipped()
         if path.name not in names:
             near = difflib.get_close_matches(path.name, names, 1)
-            raise ValueError(f'no scenario {path.name}'
-                             + (f'; did you mean {near[0]}?' if near else '')
-                             + f' Shipped: {", ".join(names)}; or name a .yaml file')
+            raise ValueError(
+                f'no scenario {path.name}'
+                + (f'; did you mean {near[0]}?' if near else '')
+                + f' Shipped: {", ".join(names)}; or name a .yaml file'
+            )
         if path.name in STANDARD:
             return build(STANDARD[path.name](), path.name)
         path = config.path('scenarios', f'{path.name}.yaml')
@@ -237,12 +245,20 @@ def build(values: dict[str, Any], name: str, folder=Path()) -> Scenario:
     duration = top.number('duration_s', 1.0, ships.MAX_DURATION)
     radar = _radar(top.section('radar', RADAR_KEYS))
     if duration < radar.scan_period:
-        raise ValueError(f'duration_s is {duration:g}; it must not be less than a revolution, '
-                         f'{radar.scan_period:.3g} s')
-    made = Scenario(name, top.text('description', ''), duration, radar,
-                    _clutter(top.section('clutter', CLUTTER_KEYS), radar),
-                    ships.read(top, folder, duration), land.read(top),
-                    _stated(top.section('tracker', TRACKER_KEYS)))
+        raise ValueError(
+            f'duration_s is {duration:g}; it must not be less than a revolution, '
+            f'{radar.scan_period:.3g} s'
+        )
+    made = Scenario(
+        name,
+        top.text('description', ''),
+        duration,
+        radar,
+        _clutter(top.section('clutter', CLUTTER_KEYS), radar),
+        ships.read(top, folder, duration),
+        land.read(top),
+        _stated(top.section('tracker', TRACKER_KEYS)),
+    )
     if made.in_cells:
         _check_cells(radar)
     return made
@@ -251,17 +267,25 @@ def build(values: dict[str, Any], name: str, folder=Path()) -> Scenario:
 def _check_cells(radar):
     """ValueError unless the radar has cells, and no errors but those of cells."""
     if radar.sensor_errors != 'none':
-        raise ValueError(f'radar.sensor_errors is {radar.sensor_errors!r} in a scenario with hulls '
-                         'or land; these are seen as cells, which have no other error: it must be '
-                         "'none'")
+        raise ValueError(
+            f'radar.sensor_errors is {radar.sensor_errors!r} in a scenario with hulls '
+            'or land; these are seen as cells, which have no other error: it must be '
+            "'none'"
+        )
     if radar.radial_speed_sigma is not None:
-        raise ValueError('radar has radial_speed_sigma in a scenario with hulls or land: cells '
-                         'tell no radial speed; leave it out')
-    for key, value, least in (('range_resolution', radar.range_resolution, 1.0),
-                              ('beam_width', math.degrees(radar.beam_width), 0.1)):
+        raise ValueError(
+            'radar has radial_speed_sigma in a scenario with hulls or land: cells '
+            'tell no radial speed; leave it out'
+        )
+    for key, value, least in (
+        ('range_resolution', radar.range_resolution, 1.0),
+        ('beam_width', math.degrees(radar.beam_width), 0.1),
+    ):
         if value < least:
-            raise ValueError(f'radar.{key} is {value:g} in a scenario with hulls or land; it must '
-                             f'be at least {least:g}')
+            raise ValueError(
+                f'radar.{key} is {value:g} in a scenario with hulls or land; it must '
+                f'be at least {least:g}'
+            )
 
 
 def _radar(section):
@@ -269,8 +293,10 @@ def _radar(section):
     if errors == 'imo':
         for key in ('range_sigma', 'bearing_sigma'):
             if any(k.startswith(key) for k in section.values):
-                raise ValueError(f'radar has {key} beside sensor_errors: imo, which states all '
-                                 'noise; leave one out')
+                raise ValueError(
+                    f'radar has {key} beside sensor_errors: imo, which states all '
+                    'noise; leave one out'
+                )
     pd_near = section.number('pd_near', 0.01, 1.0, 0.98)
     radar = ScenarioRadar(
         section.number('rotation_rpm', 1.0, 300.0, 22.0),
@@ -285,25 +311,33 @@ def _radar(section):
         pd_near,
         section.number('pd_far', 0.01, 1.0, min(0.8, pd_near)),
         errors,
-        (section.speed('radial_speed_sigma', 0.0, 10.0) if section.has('radial_speed_sigma')
-         else None),
-        section.speed('max_radial_speed', 1.0, 100.0, 25.0))
+        (
+            section.speed('radial_speed_sigma', 0.0, 10.0)
+            if section.has('radial_speed_sigma')
+            else None
+        ),
+        section.speed('max_radial_speed', 1.0, 100.0, 25.0),
+    )
     if radar.blind_range >= radar.max_range:
-        raise ValueError(f'radar.blind_range is {radar.blind_range:g} m; it must be below '
-                         f'max_range, {radar.max_range:g} m')
+        raise ValueError(
+            f'radar.blind_range is {radar.blind_range:g} m; it must be below '
+            f'max_range, {radar.max_range:g} m'
+        )
     if section.has('max_radial_speed') and radar.radial_speed_sigma is None:
         raise ValueError('radar has max_radial_speed, but no radial_speed_sigma: give both or none')
     if radar.pd_far > radar.pd_near:
-        raise ValueError(f'radar.pd_far is {radar.pd_far:g}; it must not exceed pd_near, '
-                         f'{radar.pd_near:g}')
+        raise ValueError(
+            f'radar.pd_far is {radar.pd_far:g}; it must not exceed pd_near, {radar.pd_near:g}'
+        )
     return radar
 
 
 def _clutter(section, radar):
-    return Clutter(section.number('uniform', 0.0, 100000.0, 0.0),
-                   section.number('sea', 0.0, 100000.0, 0.0),
-                   section.length('sea_scale', 10.0, radar.max_range, min(
-                       NAUTICAL_MILE, radar.max_range)))
+    return Clutter(
+        section.number('uniform', 0.0, 100000.0, 0.0),
+        section.number('sea', 0.0, 100000.0, 0.0),
+        section.length('sea_scale', 10.0, radar.max_range, min(NAUTICAL_MILE, radar.max_range)),
+    )
 
 
 def _stated(section):

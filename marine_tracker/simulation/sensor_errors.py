@@ -7,27 +7,36 @@ import numpy as np
 from ..geometry import KNOT, NAUTICAL_MILE, unit_vector
 from ..types import Array, OwnShip
 
-ROLL_BEARING = np.radians(0.22)           # mean and sine of the quadrantal error at 10 deg of roll
-ROLL_PERIODS = (8.0, 15.0)                # s, drawn for each run
-BEAM_SHAPE = np.radians(0.05)             # sigma
-PULSE_SHAPE = 20.0                        # m, sigma
-BACKLASH = np.radians(0.05)               # +-, rectangular
-ENCODER = np.radians(0.03)                # sigma
-BEARING_STEP = np.radians(0.1)            # +-, rectangular
-RANGE_STEP = 0.01 * NAUTICAL_MILE         # +-, rectangular
-GLINT_ALONG = 30.0 / 200.0                # sigma along the ship, of its length
-GLINT_ACROSS = 1.0                        # m, sigma
-GYRO_BIAS = np.radians(0.5)               # of either sign, drawn for each run
-GYRO = np.radians(0.12)                   # sigma
-LOG_BIAS = 0.5 * KNOT                     # of either sign, drawn for each run
-LOG = 0.2 * KNOT / 3                      # sigma
+ROLL_BEARING = np.radians(0.22)  # mean and sine of the quadrantal error at 10 deg of roll
+ROLL_PERIODS = (8.0, 15.0)  # s, drawn for each run
+BEAM_SHAPE = np.radians(0.05)  # sigma
+PULSE_SHAPE = 20.0  # m, sigma
+BACKLASH = np.radians(0.05)  # +-, rectangular
+ENCODER = np.radians(0.03)  # sigma
+BEARING_STEP = np.radians(0.1)  # +-, rectangular
+RANGE_STEP = 0.01 * NAUTICAL_MILE  # +-, rectangular
+GLINT_ALONG = 30.0 / 200.0  # sigma along the ship, of its length
+GLINT_ACROSS = 1.0  # m, sigma
+GYRO_BIAS = np.radians(0.5)  # of either sign, drawn for each run
+GYRO = np.radians(0.12)  # sigma
+LOG_BIAS = 0.5 * KNOT  # of either sign, drawn for each run
+LOG = 0.2 * KNOT / 3  # sigma
 
 # What a tracker may be told: the part of range (m) and bearing (rad) that changes from scan to
 # scan, without glint; of rolling the mean over all bearings.
 IMO_SIGMAS = (
-    float(np.sqrt(PULSE_SHAPE ** 2 + RANGE_STEP ** 2 / 3)),
-    float(np.sqrt(BEAM_SHAPE ** 2 + BACKLASH ** 2 / 3 + ENCODER ** 2 + BEARING_STEP ** 2 / 3
-                  + GYRO ** 2 + ROLL_BEARING ** 2 / 4)))
+    float(np.sqrt(PULSE_SHAPE**2 + RANGE_STEP**2 / 3)),
+    float(
+        np.sqrt(
+            BEAM_SHAPE**2
+            + BACKLASH**2 / 3
+            + ENCODER**2
+            + BEARING_STEP**2 / 3
+            + GYRO**2
+            + ROLL_BEARING**2 / 4
+        )
+    ),
+)
 
 
 class ImoErrors(NamedTuple):
@@ -44,8 +53,12 @@ class ImoErrors(NamedTuple):
 
 def draw(random: np.random.Generator) -> ImoErrors:
     """The errors that stay the same during a run."""
-    return ImoErrors(random.uniform(*ROLL_PERIODS), random.uniform(0, 2 * np.pi),
-                     random.choice([-GYRO_BIAS, GYRO_BIAS]), random.choice([-LOG_BIAS, LOG_BIAS]))
+    return ImoErrors(
+        random.uniform(*ROLL_PERIODS),
+        random.uniform(0, 2 * np.pi),
+        random.choice([-GYRO_BIAS, GYRO_BIAS]),
+        random.choice([-LOG_BIAS, LOG_BIAS]),
+    )
 
 
 def glint(velocity: Array, length: Array, random: np.random.Generator) -> Array:
@@ -56,30 +69,40 @@ def glint(velocity: Array, length: Array, random: np.random.Generator) -> Array:
     along = unit_vector(np.arctan2(velocity[..., 0], velocity[..., 1]))
     across = np.stack([along[..., 1], -along[..., 0]], -1)
     draws = random.standard_normal(velocity.shape)
-    return (draws[..., :1] * (GLINT_ALONG * length)[..., None] * along
-            + draws[..., 1:] * GLINT_ACROSS * across)
+    return (
+        draws[..., :1] * (GLINT_ALONG * length)[..., None] * along
+        + draws[..., 1:] * GLINT_ACROSS * across
+    )
 
 
-def measurement_errors(errors: ImoErrors, time: Array, relative_bearing: Array,
-                       random: np.random.Generator) -> tuple[Array, Array]:
+def measurement_errors(
+    errors: ImoErrors, time: Array, relative_bearing: Array, random: np.random.Generator
+) -> tuple[Array, Array]:
     """Errors of range m and bearing rad [...] of plots at time [...] s.
 
     relative_bearing [...] rad is counted from own ship's heading: rolling turns the antenna's plane
     by an amount that is nil ahead, astern and abeam.
     """
     shape = relative_bearing.shape
-    roll = ROLL_BEARING * np.sin(2 * relative_bearing) * (
-        1 + np.sin(4 * np.pi * time / errors.roll_period + errors.roll_phase))
-    bearing = (roll + errors.gyro_bias
-               + random.normal(0, np.hypot(np.hypot(BEAM_SHAPE, ENCODER), GYRO), shape)
-               + random.uniform(-BACKLASH, BACKLASH, shape)
-               + random.uniform(-BEARING_STEP, BEARING_STEP, shape))
+    roll = (
+        ROLL_BEARING
+        * np.sin(2 * relative_bearing)
+        * (1 + np.sin(4 * np.pi * time / errors.roll_period + errors.roll_phase))
+    )
+    bearing = (
+        roll
+        + errors.gyro_bias
+        + random.normal(0, np.hypot(np.hypot(BEAM_SHAPE, ENCODER), GYRO), shape)
+        + random.uniform(-BACKLASH, BACKLASH, shape)
+        + random.uniform(-BEARING_STEP, BEARING_STEP, shape)
+    )
     distance = random.normal(0, PULSE_SHAPE, shape) + random.uniform(-RANGE_STEP, RANGE_STEP, shape)
     return distance, bearing
 
 
-def reckon(errors: ImoErrors, true: OwnShip, drift: Array, random: np.random.Generator
-           ) -> tuple[OwnShip, Array]:
+def reckon(
+    errors: ImoErrors, true: OwnShip, drift: Array, random: np.random.Generator
+) -> tuple[OwnShip, Array]:
     """Own ship as gyro and log tell it: its velocity is wrong, and its place is dead-reckoned.
 
     true   K samples of the true motion
@@ -89,8 +112,9 @@ def reckon(errors: ImoErrors, true: OwnShip, drift: Array, random: np.random.Gen
     count = len(true.time)
     course = np.arctan2(true.velocity[:, 0], true.velocity[:, 1])
     speed = np.hypot(*true.velocity.T)
-    velocity = ((speed + errors.log_bias + random.normal(0, LOG, count))[:, None]
-                * unit_vector(course + errors.gyro_bias + random.normal(0, GYRO, count)))
+    velocity = (speed + errors.log_bias + random.normal(0, LOG, count))[:, None] * unit_vector(
+        course + errors.gyro_bias + random.normal(0, GYRO, count)
+    )
     wrong = velocity - true.velocity
     steps = 0.5 * (wrong[1:] + wrong[:-1]) * np.diff(true.time)[:, None]
     drifts = drift + np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])

@@ -11,20 +11,22 @@ from ..types import Array
 from . import ais, motion
 from .fields import Section
 
-MAX_SPEED = 100 * KNOT                    # m/s: the fastest relative speed an ARPA has to know
-MAX_LENGTH = 200 * NAUTICAL_MILE          # m
-MAX_DURATION = 7 * 86400.0                # s
-SHIP_LENGTH = 100.0                       # m, where it is not stated
-HULL_SNR_DB = 25.0                        # likewise
+MAX_SPEED = 100 * KNOT  # m/s: the fastest relative speed an ARPA has to know
+MAX_LENGTH = 200 * NAUTICAL_MILE  # m
+MAX_DURATION = 7 * 86400.0  # s
+SHIP_LENGTH = 100.0  # m, where it is not stated
+HULL_SNR_DB = 25.0  # likewise
 NO_HULL = (math.nan,) * 3
 
 AIS_KEYS = 'file vessels start_s max_gap_s pd pd_factor'
 SHIP_KEYS = 'start course_deg speed_kn|speed_mps speed_wave legs'
 TARGET_KEYS = 'name ' + SHIP_KEYS + ' length_m|length_nm hull pd pd_factor'
 HULL_KEYS = 'beam_m|beam_nm heading_deg snr_db'
-START_KEYS = {'range': 'range_m|range_nm bearing_deg',
-              'north': 'north_m|north_nm east_m|east_nm',
-              'lat_deg': 'lat_deg lon_deg'}
+START_KEYS = {
+    'range': 'range_m|range_nm bearing_deg',
+    'north': 'north_m|north_nm east_m|east_nm',
+    'lat_deg': 'lat_deg lon_deg',
+}
 
 
 class Hulls(NamedTuple):
@@ -65,14 +67,20 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
     """The ships of the file whose mapping is `top`; AIS files are looked for from its `folder`."""
     traffic, options = None, top.section('ais', AIS_KEYS)
     if 'ais' in top:
-        traffic = ais.read(folder / options.text('file'),
-                           options.number('start_s', 0.0, 1e9, 0.0), duration,
-                           options.number('max_gap_s', 1.0, 3600.0, 120.0))
+        traffic = ais.read(
+            folder / options.text('file'),
+            options.number('start_s', 0.0, 1e9, 0.0),
+            duration,
+            options.number('max_gap_s', 1.0, 3600.0, 120.0),
+        )
     own = top.section('own_ship', SHIP_KEYS + ' vessel')
     own_vessel = str(own.values['vessel']) if 'vessel' in own else None
     origin = _origin(top, own, traffic, own_vessel)
-    own_way = (_way(own, origin, None) if own_vessel is None
-               else _driven_own_ship(own, origin, traffic, own_vessel, duration))
+    own_way = (
+        _way(own, origin, None)
+        if own_vessel is None
+        else _driven_own_ship(own, origin, traffic, own_vessel, duration)
+    )
     own_start, _ = motion.locate_ships(motion.table([own_way], duration), np.array(0), 0.0)
 
     ways, names, chances, lengths, hulls = [own_way], [], [], [], []
@@ -94,8 +102,15 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
     if not names:
         raise ValueError('the scenario has no targets; give targets: or ais:')
     pd, pd_factor = np.array(chances).T
-    return Fleet(origin, motion.table(ways, duration), tuple(names), pd, pd_factor,
-                 np.array(lengths), Hulls(*np.array(hulls).T))
+    return Fleet(
+        origin,
+        motion.table(ways, duration),
+        tuple(names),
+        pd,
+        pd_factor,
+        np.array(lengths),
+        Hulls(*np.array(hulls).T),
+    )
 
 
 def _origin(top, own, traffic, own_vessel):
@@ -121,14 +136,18 @@ def _driven_own_ship(own, origin, traffic, vessel, duration):
     if len(own.values) > 1:
         raise ValueError('own_ship.vessel drives own ship; it must be the only key of own_ship')
     if vessel not in traffic:
-        raise ValueError(f'own_ship.vessel is {vessel}; the AIS file has no such vessel in the '
-                         'time of the scenario')
+        raise ValueError(
+            f'own_ship.vessel is {vessel}; the AIS file has no such vessel in the '
+            'time of the scenario'
+        )
     way = ais.way(traffic[vessel], origin)
     ends = [piece.start for piece in way[1:]] + [duration]
     for piece, end in zip(way, ends, strict=True):
         if not piece.exists and piece.start < duration and end > 0:
-            raise ValueError(f'own_ship.vessel {vessel} has no reports from {piece.start:g} s to '
-                             f'{end:g} s; own ship must be known throughout')
+            raise ValueError(
+                f'own_ship.vessel {vessel} has no reports from {piece.start:g} s to '
+                f'{end:g} s; own ship must be known throughout'
+            )
     return way
 
 
@@ -136,8 +155,10 @@ def _chosen_vessels(options, traffic, own_vessel):
     asked = [str(vessel) for vessel in options.items('vessels')]
     for vessel in asked:
         if vessel not in traffic:
-            raise ValueError(f'ais.vessels names {vessel}; the AIS file has no such vessel in the '
-                             'time of the scenario')
+            raise ValueError(
+                f'ais.vessels names {vessel}; the AIS file has no such vessel in the '
+                'time of the scenario'
+            )
     return [vessel for vessel in asked or traffic if vessel != own_vessel]
 
 
@@ -155,31 +176,42 @@ def _hull(section, length):
         return NO_HULL
     for key in ('pd', 'pd_factor'):
         if key in section:
-            raise ValueError(f'{section.where} has {key} beside hull, whose cells are seen or not '
-                             'by their own echo; leave it out')
+            raise ValueError(
+                f'{section.where} has {key} beside hull, whose cells are seen or not '
+                'by their own echo; leave it out'
+            )
     if not section.has('length'):
         raise ValueError(f'{section.where} has a hull, but no length_m')
     values = section.section('hull', HULL_KEYS)
-    heading = (math.radians(values.number('heading_deg', -360.0, 360.0))
-               if 'heading_deg' in values else math.nan)
-    return (values.length('beam', 2.0, length), heading,
-            values.number('snr_db', 0.0, 60.0, HULL_SNR_DB))
+    heading = (
+        math.radians(values.number('heading_deg', -360.0, 360.0))
+        if 'heading_deg' in values
+        else math.nan
+    )
+    return (
+        values.length('beam', 2.0, length),
+        heading,
+        values.number('snr_db', 0.0, 60.0, HULL_SNR_DB),
+    )
 
 
 def _way(section, origin, own_start):
     """The way of a target, or of own ship itself, which has no `own_start` and may lie at rest."""
     if own_start is not None and 'start' not in section:
         raise ValueError(f'{section.where} has no start')
-    position = (_start(section, origin, own_start) if 'start' in section else np.zeros(2))
+    position = _start(section, origin, own_start) if 'start' in section else np.zeros(2)
     speed = section.speed('speed', 0.0, MAX_SPEED, None if own_start is not None else 0.0)
     course = section.number('course_deg', -360.0, 360.0, 0.0 if speed == 0.0 else None)
     wave = None
     if 'speed_wave' in section:
         swing = section.section('speed_wave', 'amplitude_kn|amplitude_mps period_s')
-        wave = motion.Wave(swing.speed('amplitude', 0.0, MAX_SPEED),
-                           swing.number('period_s', 1.0, MAX_DURATION))
-    legs = [_leg(item, f'{section.where}.legs[{number}]')
-            for number, item in enumerate(section.items('legs'))]
+        wave = motion.Wave(
+            swing.speed('amplitude', 0.0, MAX_SPEED), swing.number('period_s', 1.0, MAX_DURATION)
+        )
+    legs = [
+        _leg(item, f'{section.where}.legs[{number}]')
+        for number, item in enumerate(section.items('legs'))
+    ]
     try:
         return motion.sail(position, math.radians(course), speed, legs, wave)
     except ValueError as error:
@@ -191,17 +223,25 @@ def _start(ship, origin, own_start):
     section = ship.section('start', START_KEYS[kind])
     if kind == 'range':
         if own_start is None:
-            raise ValueError(f'{section.where} gives range and bearing, which count from own ship; '
-                             'give north and east, or lat_deg and lon_deg')
+            raise ValueError(
+                f'{section.where} gives range and bearing, which count from own ship; '
+                'give north and east, or lat_deg and lon_deg'
+            )
         distance = section.length('range', 0.0, MAX_LENGTH)
         return own_start + distance * unit_vector(
-            math.radians(section.number('bearing_deg', -360.0, 360.0)))
+            math.radians(section.number('bearing_deg', -360.0, 360.0))
+        )
     if kind == 'north':
-        return np.array([section.length('east', -MAX_LENGTH, MAX_LENGTH),
-                         section.length('north', -MAX_LENGTH, MAX_LENGTH)])
+        return np.array(
+            [
+                section.length('east', -MAX_LENGTH, MAX_LENGTH),
+                section.length('north', -MAX_LENGTH, MAX_LENGTH),
+            ]
+        )
     if origin is None:
-        raise ValueError(f'{section.where} gives lat_deg and lon_deg, but the scenario has no '
-                         'origin')
+        raise ValueError(
+            f'{section.where} gives lat_deg and lon_deg, but the scenario has no origin'
+        )
     return local_from_geodetic(*_geodetic(section), *origin)
 
 
@@ -210,18 +250,24 @@ def _leg(item, where):
     kind = leg.one_of('straight', 'turn', 'speed')
     if kind == 'straight':
         values = leg.section('straight', 'duration_s')
-        return motion.Straight(values.number('duration_s', 0.0, MAX_DURATION)
-                               if 'duration_s' in values else None)
+        return motion.Straight(
+            values.number('duration_s', 0.0, MAX_DURATION) if 'duration_s' in values else None
+        )
     if kind == 'turn':
         values = leg.section('turn', 'angle_deg radius_m|radius_nm rate_deg_per_s')
         angle = math.radians(values.number('angle_deg', -3600.0, 3600.0))
         if values.one_of('radius', 'rate_deg_per_s') == 'radius':
             return motion.Turn(angle, radius=values.length('radius', 1.0, MAX_LENGTH))
-        return motion.Turn(angle, rate=math.radians(
-            values.number('rate_deg_per_s', 1e-3, math.degrees(motion.MAX_TURN_RATE))))
+        return motion.Turn(
+            angle,
+            rate=math.radians(
+                values.number('rate_deg_per_s', 1e-3, math.degrees(motion.MAX_TURN_RATE))
+            ),
+        )
     values = leg.section('speed', 'to_kn|to_mps duration_s acceleration_mps2')
     speed = values.speed('to', 0.0, MAX_SPEED)
     if values.one_of('duration_s', 'acceleration_mps2') == 'duration_s':
         return motion.SpeedChange(speed, duration=values.number('duration_s', 0.1, MAX_DURATION))
-    return motion.SpeedChange(speed, acceleration=values.number(
-        'acceleration_mps2', 1e-6, motion.MAX_ACCELERATION))
+    return motion.SpeedChange(
+        speed, acceleration=values.number('acceleration_mps2', 1e-6, motion.MAX_ACCELERATION)
+    )

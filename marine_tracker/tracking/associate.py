@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-FEW = 32        # tracks; a matrix of so few is solved sooner than it is taken apart
+FEW = 32  # tracks; a matrix of so few is solved sooner than it is taken apart
 
 
 def associate(track, plot, gain, tracks: int, plots: int):
@@ -26,8 +26,8 @@ def associate(track, plot, gain, tracks: int, plots: int):
         plot_of[track] = plot
         return plot_of
     torn = plots_of_track[track] > 1
-    track_free = np.bincount(track, shared, tracks)[track] == 0     # nobody else wants its plots
-    plot_free = np.bincount(plot, torn, plots)[plot] == 0           # its tracks want nothing else
+    track_free = np.bincount(track, shared, tracks)[track] == 0  # nobody else wants its plots
+    plot_free = np.bincount(plot, torn, plots)[plot] == 0  # its tracks want nothing else
     for free, group in ((track_free, track), (plot_free & ~track_free, plot)):
         best = _best_of_each(group, gain, free.nonzero()[0])
         plot_of[track[best]] = plot[best]
@@ -58,9 +58,12 @@ def _solve(track, plot, gain):
     row, column, part = row_place[row], column_place[column], track_part[row]
     order = part.argsort(kind='stable')
     parts = height.nonzero()[0]
-    return np.concatenate([
-        _assign(row[pairs], column[pairs], gain[pairs], pairs, height[c], width[c])
-        for c, pairs in zip(parts, np.split(order, part[order].searchsorted(parts[1:])))])
+    return np.concatenate(
+        [
+            _assign(row[pairs], column[pairs], gain[pairs], pairs, height[c], width[c])
+            for c, pairs in zip(parts, np.split(order, part[order].searchsorted(parts[1:])))
+        ]
+    )
 
 
 def _assign(row, column, gain, pairs, height: int, width: int):
@@ -94,6 +97,7 @@ def _places(part, parts: int):
     """Members of each part [parts], and each member's place within its part."""
     size = np.bincount(part, minlength=parts)
     place = np.empty(len(part), np.int64)
-    place[np.argsort(part, kind='stable')] = (
-        np.arange(len(part)) - np.repeat(np.cumsum(size) - size, size))
+    place[np.argsort(part, kind='stable')] = np.arange(len(part)) - np.repeat(
+        np.cumsum(size) - size, size
+    )
     return size, place

@@ -10,17 +10,17 @@ import numpy as np
 
 from ..types import Array
 
-NEAREST = 50.0          # m, the first ring's inner edge; what is nearer belongs to it
+NEAREST = 50.0  # m, the first ring's inner edge; what is nearer belongs to it
 RINGS_AN_OCTAVE = 4
-RINGS = 48              # to 200 km
+RINGS = 48  # to 200 km
 SECTORS = 16
-MEMORY = 20             # scans
+MEMORY = 20  # scans
 # One plot in twenty scans over a whole ring: what an empty sea is taken to hold, at least.
 LEAST_IN_RING = 0.05
 
 _EDGES = NEAREST * 2.0 ** (np.arange(RINGS + 1) / RINGS_AN_OCTAVE)
 _EDGES[0] = 0.0
-_RING_AREA = np.pi * np.diff(_EDGES ** 2)
+_RING_AREA = np.pi * np.diff(_EDGES**2)
 
 
 class ClutterMap(NamedTuple):

@@ -6,8 +6,16 @@ from ..geometry import to_range_bearing, unit_vector
 from ..types import Extrapolation, Plots
 
 
-def agree(track, plot, ahead: Extrapolation, lone: Plots, plots: Plots, sigma: float,
-          max_speed: float, reach: float):
+def agree(
+    track,
+    plot,
+    ahead: Extrapolation,
+    lone: Plots,
+    plots: Plots,
+    sigma: float,
+    max_speed: float,
+    reach: float,
+):
     """Mask [P] of the pairs (track [P], plot [P]) of the gate that radial speeds do not rule out.
 
     track      row of `ahead`, the N tracks, and beyond them of `lone`, the lone plots of the last
@@ -28,15 +36,17 @@ def agree(track, plot, ahead: Extrapolation, lone: Plots, plots: Plots, sigma: f
     along = unit_vector(bearing)
     expected = (along * ahead.velocity[row]).sum(1)
     variance = np.einsum('pi,pij,pj->p', along, ahead.covariance[row, 2:, 2:], along)
-    off = np.abs(told[:seam] - expected) - reach * np.sqrt(variance + sigma ** 2)
+    off = np.abs(told[:seam] - expected) - reach * np.sqrt(variance + sigma**2)
 
     # Lone plots: a target that crosses at max_speed changes its radial speed by that squared
     # over range in a second.
     row = track[seam:] - count
     if lone.radial_speed is None:
         return np.append(~(off > 0), np.ones(len(row), bool))
-    turned = max_speed ** 2 / np.maximum(lone.range[row], max_speed) * np.abs(
-        plots.time[plot[seam:]] - lone.time[row])
-    first_off = (np.abs(told[seam:] - lone.radial_speed[row]) - turned
-                 - reach * np.sqrt(2) * sigma)
+    turned = (
+        max_speed**2
+        / np.maximum(lone.range[row], max_speed)
+        * np.abs(plots.time[plot[seam:]] - lone.time[row])
+    )
+    first_off = np.abs(told[seam:] - lone.radial_speed[row]) - turned - reach * np.sqrt(2) * sigma
     return np.append(~(off > 0), ~(first_off > 0))

@@ -13,8 +13,8 @@ from ..types import Plots
 from .sweep import Sweep
 
 TURN = 2 * np.pi
-HAIR = 1e-8             # rad
-OBLIQUE = 0.07          # sin^2 of the widest angle, asin(1/4), between a plot and its track afar
+HAIR = 1e-8  # rad
+OBLIQUE = 0.07  # sin^2 of the widest angle, asin(1/4), between a plot and its track afar
 PLOTS_A_RING = 256
 
 
@@ -41,8 +41,7 @@ def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
         # Rings as wide as two windows, and not so many that they hold hardly a plot. Each has a
         # line of its own to lay its bearings on, 3 turns long.
         most = plot_range.max()
-        width = max(2 * (high - low).sum() / len(low),
-                    most * (PLOTS_A_RING / len(plot_range)))
+        width = max(2 * (high - low).sum() / len(low), most * (PLOTS_A_RING / len(plot_range)))
         first = np.maximum(low / width, 0.0).astype(np.int64)
         rings = np.maximum((np.minimum(high, most) / width).astype(np.int64) - first + 1, 0)
         track = track.repeat(rings)
@@ -66,8 +65,19 @@ def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
     return track[inside], plot[inside]
 
 
-def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origin,
-         range_sigma: float, bearing_sigma: float, size: float, widest: float = 0.0):
+def gate(
+    time,
+    position,
+    velocity,
+    covariance,
+    sweep: Sweep,
+    plots: Plots,
+    origin,
+    range_sigma: float,
+    bearing_sigma: float,
+    size: float,
+    widest: float = 0.0,
+):
     """Pairs of tracks and plots inside the chi-square gate.
 
     time [N] s, position [N, 2] m, velocity [N, 2] m/s, covariance [N, 2, 2] m^2: where the
@@ -87,11 +97,11 @@ def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origi
     spread = sin * sin * a + 2 * sin * cos * b + cos * cos * d
     # What grows with a plot's range is taken at the farthest: its noise across, and the second
     # order of a coarse bearing along, shift and spread (geometry.polar_to_position).
-    most = distance + reach * np.sqrt(spread + range_sigma ** 2)
-    second = most * bearing_sigma ** 2
-    along = reach * np.sqrt(spread + range_sigma ** 2 + 1.5 * second * second) + 0.5 * second
-    noise = np.maximum(((distance + along) * bearing_sigma) ** 2, widest ** 2)
-    across = reach * np.sqrt(a + d - spread + noise + OBLIQUE * range_sigma ** 2)
+    most = distance + reach * np.sqrt(spread + range_sigma**2)
+    second = most * bearing_sigma**2
+    along = reach * np.sqrt(spread + range_sigma**2 + 1.5 * second * second) + 0.5 * second
+    noise = np.maximum(((distance + along) * bearing_sigma) ** 2, widest**2)
+    across = reach * np.sqrt(a + d - spread + noise + OBLIQUE * range_sigma**2)
     # Near own ship plots may lie in any direction, each with its noise along its own.
     radius = along + reach * np.sqrt(a + d + noise)
     near = distance < 4 * radius
@@ -112,8 +122,9 @@ def gate(time, position, velocity, covariance, sweep: Sweep, plots: Plots, origi
     # Sideways offsets lie farther out than the arc, the more the nearer the track is.
     farthest = np.hypot(distance + along, across)
 
-    track, plot = window_pairs(distance - along, farthest, bearing, half_width,
-                               plots.range, plots.bearing)
+    track, plot = window_pairs(
+        distance - along, farthest, bearing, half_width, plots.range, plots.bearing
+    )
     later = (plots.time[plot] - time[track])[:, None]
     apart = plots.position.take(plot, 0) - position.take(track, 0) - later * velocity.take(track, 0)
     de, dn = apart.T

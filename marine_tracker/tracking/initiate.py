@@ -5,7 +5,7 @@ import numpy as np
 from ..types import Plots
 from .gate import gate_size
 
-PAIRING_GATE = gate_size(0.99)      # for the noise of a new target's first two plots
+PAIRING_GATE = gate_size(0.99)  # for the noise of a new target's first two plots
 
 
 def reach(before: Plots, now: float, max_speed: float):
@@ -16,15 +16,14 @@ def reach(before: Plots, now: float, max_speed: float):
     return covariance
 
 
-def first_score(before: Plots, now: Plots, density, max_speed: float,
-                detection_probability: float):
+def first_score(before: Plots, now: Plots, density, max_speed: float, detection_probability: float):
     """Score [P] of tracks begun by two plots each, where the density [P] of false plots is known.
 
     A target's second plot may lie anywhere that max_speed, m/s, and the noise allow.
     """
     away = max_speed * (now.time - before.time)
     noise = np.sqrt(np.linalg.det(before.covariance + now.covariance))
-    area = np.pi * away ** 2 + 2 * np.pi * noise
+    area = np.pi * away**2 + 2 * np.pi * noise
     return np.log(detection_probability / (density * area))
 
 
@@ -45,12 +44,12 @@ def pair_up(before: Plots, now: Plots, first, second, free, max_speed: float, ro
     step = now.time[second] - before.time[first]
     way = now.position[second] - before.position[first]
     length = np.hypot(*way.T)
-    way[length == 0] = 1.0, 0.0         # at rest: any direction will do
+    way[length == 0] = 1.0, 0.0  # at rest: any direction will do
     unit = way / np.hypot(*way.T)[:, None]
     spread = before.covariance[first] + now.covariance[second]
-    sigma = np.sqrt((unit[:, None] @ spread @ unit[..., None])[:, 0, 0])    # along the way
+    sigma = np.sqrt((unit[:, None] @ spread @ unit[..., None])[:, 0, 0])  # along the way
     excess = np.maximum(length - max_speed * step, 0.0) / sigma
-    fits = ((excess ** 2 <= PAIRING_GATE) & (step > 0)).nonzero()[0]
+    fits = ((excess**2 <= PAIRING_GATE) & (step > 0)).nonzero()[0]
     return _greedy(first[fits], second[fits], (length / sigma)[fits], room)
 
 

@@ -25,16 +25,16 @@ import numpy as np
 from ..geometry import KNOT, own_ship_at, wrap_bearing
 from ..types import Array, OwnShip, PolarPlots, append, take
 
-MAX_RANGE = 500e3               # m; no surface radar measures farther
-MAX_RADIAL_SPEED = 100.0        # m/s, over ground; no target that a tracker is told of is faster
-REBASE_AFTER = 3                # scans
+MAX_RANGE = 500e3  # m; no surface radar measures farther
+MAX_RADIAL_SPEED = 100.0  # m/s, over ground; no target that a tracker is told of is faster
+REBASE_AFTER = 3  # scans
 AHEAD_SCANS, AHEAD_S = 10, 30.0
-OFFSET_SCANS = 4                # a plot's time lies in its revolution; slow radars get some room
-MAX_OWN_SPEED = 100 * KNOT      # m/s
-OWN_JITTER = 50.0               # m that a position may jump at any time step
-REBASE_OWN_AFTER = 5            # samples
+OFFSET_SCANS = 4  # a plot's time lies in its revolution; slow radars get some room
+MAX_OWN_SPEED = 100 * KNOT  # m/s
+OWN_JITTER = 50.0  # m that a position may jump at any time step
+REBASE_OWN_AFTER = 5  # samples
 MAX_OWN_SAMPLES = 2000
-MAX_COORDINATE = 1e7            # m from the origin of the local plane
+MAX_COORDINATE = 1e7  # m from the origin of the local plane
 
 # Reasons for which plots, scans and own-ship samples are rejected: the names of the counters.
 NOT_FINITE = 'plots not finite'
@@ -45,8 +45,16 @@ BAD_OFFSET = 'plots with time out of the scan'
 TOO_MANY = 'plots over max_plots'
 SPEED_NOT_FINITE = 'radial speeds not finite'
 SPEED_TOO_HIGH = 'radial speeds above 100 m/s'
-PLOT_REASONS = (NOT_FINITE, BAD_RANGE, TOO_FAR, BAD_BEARING, BAD_OFFSET, TOO_MANY,
-                SPEED_NOT_FINITE, SPEED_TOO_HIGH)
+PLOT_REASONS = (
+    NOT_FINITE,
+    BAD_RANGE,
+    TOO_FAR,
+    BAD_BEARING,
+    BAD_OFFSET,
+    TOO_MANY,
+    SPEED_NOT_FINITE,
+    SPEED_TOO_HIGH,
+)
 
 REPEATED = 'scans repeated'
 WENT_BACK = 'scans with time going back'
@@ -66,8 +74,9 @@ OWN_NEVER_HEARD = 'never heard: taken at rest at the origin'
 OWN_SILENT = 'silent: taken at rest at the last known position'
 
 
-def screen_plots(plots: PolarPlots, scan_period: float,
-                 max_plots: int) -> tuple[PolarPlots, dict[str, int]]:
+def screen_plots(
+    plots: PolarPlots, scan_period: float, max_plots: int
+) -> tuple[PolarPlots, dict[str, int]]:
     """The usable plots of one revolution, and how many others there were by reason.
 
     plots        M plots; `time` counts from the start of the revolution, s
@@ -79,16 +88,22 @@ def screen_plots(plots: PolarPlots, scan_period: float,
     """
     counts = {}
     ok = np.ones(len(plots.range), bool)
-    finite = (np.isfinite(plots.range) & np.isfinite(plots.bearing)
-              & np.isfinite(plots.time) & np.isfinite(plots.amplitude))
-    margin = 1e-6               # float32 rounds 2 pi up
+    finite = (
+        np.isfinite(plots.range)
+        & np.isfinite(plots.bearing)
+        & np.isfinite(plots.time)
+        & np.isfinite(plots.amplitude)
+    )
+    margin = 1e-6  # float32 rounds 2 pi up
     with np.errstate(invalid='ignore'):
         checks = (
             (NOT_FINITE, finite),
             (BAD_RANGE, plots.range > 0),
             (TOO_FAR, plots.range <= MAX_RANGE),
-            (BAD_BEARING, (plots.bearing >= -np.pi - margin)
-             & (plots.bearing <= 2 * np.pi + margin)),
+            (
+                BAD_BEARING,
+                (plots.bearing >= -np.pi - margin) & (plots.bearing <= 2 * np.pi + margin),
+            ),
             (BAD_OFFSET, (plots.time >= -1e-3) & (plots.time <= OFFSET_SCANS * scan_period)),
         )
     for reason, good in checks:
@@ -104,8 +119,10 @@ def screen_plots(plots: PolarPlots, scan_period: float,
         plots = take(plots, np.sort(strongest))
     if plots.radial_speed is not None:
         speed = np.abs(plots.radial_speed)
-        for reason, bad in ((SPEED_NOT_FINITE, ~np.isfinite(speed)),
-                            (SPEED_TOO_HIGH, np.isfinite(speed) & (speed > MAX_RADIAL_SPEED))):
+        for reason, bad in (
+            (SPEED_NOT_FINITE, ~np.isfinite(speed)),
+            (SPEED_TOO_HIGH, np.isfinite(speed) & (speed > MAX_RADIAL_SPEED)),
+        ):
             if bad.any():
                 counts[reason] = int(np.count_nonzero(bad))
         sound = speed <= MAX_RADIAL_SPEED
@@ -126,8 +143,9 @@ class TimeOrder(NamedTuple):
     waiting: tuple[float, ...] = ()
 
 
-def admit_scan(order: TimeOrder, start: float, scan_period: float,
-               others: Sequence[TimeOrder] = ()) -> tuple[TimeOrder, bool, str]:
+def admit_scan(
+    order: TimeOrder, start: float, scan_period: float, others: Sequence[TimeOrder] = ()
+) -> tuple[TimeOrder, bool, str]:
     """Whether a scan that begins at `start` is to be taken, and the reason to count or ''.
 
     others  the orders of the other radars
@@ -135,7 +153,7 @@ def admit_scan(order: TimeOrder, start: float, scan_period: float,
     ahead, new = max(AHEAD_S, AHEAD_SCANS * scan_period), math.isnan(order.last)
     others = [other for other in others if not math.isnan(other.last)]
     for shift in dict.fromkeys((order.shift, *(other.shift for other in others))):
-        after = start + shift - (order.last + order.shift)              # nan for a new radar
+        after = start + shift - (order.last + order.shift)  # nan for a new radar
         beside = any(abs(start + shift - other.last - other.shift) <= ahead for other in others)
         if (0 < after <= ahead) or ((new or after > 0) and beside) or (new and not others):
             same = new or shift == order.shift
@@ -148,14 +166,12 @@ def admit_scan(order: TimeOrder, start: float, scan_period: float,
         # The tracker's time of waiting[0] becomes that of the last good scan plus one period.
         shift = order.shift + order.last + scan_period - waiting[0]
         return TimeOrder(start, shift, ()), True, REBASED
-    reason = (REPEATED if start == order.last else
-              WENT_BACK if start < order.last else JUMPED_AHEAD)
+    reason = REPEATED if start == order.last else WENT_BACK if start < order.last else JUMPED_AHEAD
     return order._replace(waiting=waiting), False, reason
 
 
 class OwnShipLog(NamedTuple):
-    """Own-ship samples lately taken, in time order, and the ones rejected since the last of them.
-    """
+    """Own-ship samples taken lately, in time order, and those rejected since the last of them."""
 
     taken: OwnShip
     waiting: OwnShip
@@ -167,12 +183,15 @@ def empty_log() -> OwnShipLog:
     return OwnShipLog(none, none)
 
 
-def admit_own_ship(log: OwnShipLog, time: float, position: Array,
-                   velocity: Array) -> tuple[OwnShipLog, str]:
-    """The log with the sample (position, velocity [2] m, m/s) taken, and the reason to count or ''.
-    """
-    sample = OwnShip(np.array([time]), np.reshape(position, (1, 2)).astype(float),
-                     np.reshape(velocity, (1, 2)).astype(float))
+def admit_own_ship(
+    log: OwnShipLog, time: float, position: Array, velocity: Array
+) -> tuple[OwnShipLog, str]:
+    """The log with the sample (position, velocity [2] m, m/s) taken; the reason to count, or ''."""
+    sample = OwnShip(
+        np.array([time]),
+        np.reshape(position, (1, 2)).astype(float),
+        np.reshape(velocity, (1, 2)).astype(float),
+    )
     numbers = (time, *position, *velocity)
     if not (all(map(math.isfinite, numbers)) and max(map(abs, position)) <= MAX_COORDINATE):
         return log, OWN_NOT_FINITE
@@ -201,8 +220,7 @@ def _against(earlier: OwnShip, sample: OwnShip) -> str:
     return OWN_TELEPORTED if moved > MAX_OWN_SPEED * step + OWN_JITTER else ''
 
 
-def own_ship_for(log: OwnShipLog, start: float, end: float,
-                 timeout: float) -> tuple[OwnShip, str]:
+def own_ship_for(log: OwnShipLog, start: float, end: float, timeout: float) -> tuple[OwnShip, str]:
     """Own ship during a revolution, and '' or the fallback that was used.
 
     start, end  s, of the revolution, on the clock of the samples

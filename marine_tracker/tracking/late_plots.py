@@ -33,7 +33,7 @@ def nothing_yet(state, plots: Plots, updates: int) -> tuple[Update, ...]:
 def as_of(tracks: Tracks, time):
     """The state as it was at the times [N] s: later updates are undone."""
     state = tracks.state
-    for update in tracks.past:                              # the last comes first
+    for update in tracks.past:  # the last comes first
         state = where(update.plots.time > time, update.state, state)
     return state
 
@@ -50,7 +50,7 @@ def update(estimator: Estimator, tracks: Tracks, plots: Plots, rows, radar: int)
     every = np.arange(len(rows))
     before = as_of(here, plots.time)
     after, past = estimator.update(before, plots, every), list(here.past)
-    for k in reversed(range(len(past))):                    # again what was undone, oldest first
+    for k in reversed(range(len(past))):  # again what was undone, oldest first
         later = (past[k].plots.time > plots.time).nonzero()[0]
         past[k] = past[k]._replace(state=put(past[k].state, later, take(after, later)))
         after = estimator.update(after, take(past[k].plots, later), later)
@@ -59,5 +59,8 @@ def update(estimator: Estimator, tracks: Tracks, plots: Plots, rows, radar: int)
     for k, held in enumerate(past):
         moved = where(place == k, new, past[k - 1]) if k else new
         shifted.append(where(place > k, held, moved))
-    return put(tracks, rows, here._replace(state=after, past=tuple(shifted),
-                                           radar=np.full(len(rows), radar, np.int8)))
+    return put(
+        tracks,
+        rows,
+        here._replace(state=after, past=tuple(shifted), radar=np.full(len(rows), radar, np.int8)),
+    )

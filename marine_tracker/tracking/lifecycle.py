@@ -9,12 +9,12 @@ TENTATIVE, CONFIRMED, COASTING, LOST = range(4)
 STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost')
 MISSED, OUT_OF_RANGE, MERGED = range(1, 4)
 REASONS = ('', 'missed', 'out of range', 'merged')
-TEN = 10            # scans in which the standards count a target's plots
-IN_THE_DARK = 30    # scans without a plot after which even a track in the blind zone is lost
+TEN = 10  # scans in which the standards count a target's plots
+IN_THE_DARK = 30  # scans without a plot after which even a track in the blind zone is lost
 
 
 _HALF = HISTORY // 2
-_BITS = (np.arange(1 << _HALF)[:, None] >> np.arange(_HALF)) & 1        # of every half history
+_BITS = (np.arange(1 << _HALF)[:, None] >> np.arange(_HALF)) & 1  # of every half history
 _COUNT = _BITS.sum(1)
 _SINCE = np.where(_BITS.any(1), _BITS.argmax(1), _HALF)
 
@@ -44,9 +44,11 @@ def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters)
     history = ((tracks.history << 1) | hit) & ((1 << HISTORY) - 1)
     score = tracks.score + np.log(1 - parameters.detection_probability) * (visible & ~hit)
     score[rows] += gained
-    return tracks._replace(history=np.where(counted, history, tracks.history),
-                           score=np.minimum(score, parameters.max_score),
-                           age=tracks.age + counted)
+    return tracks._replace(
+        history=np.where(counted, history, tracks.history),
+        score=np.minimum(score, parameters.max_score),
+        age=tracks.age + counted,
+    )
 
 
 def held_by_another(tracks: Tracks, radar: int, time, track, held):
@@ -62,8 +64,12 @@ def held_by_another(tracks: Tracks, radar: int, time, track, held):
         return np.zeros(len(time), bool)
     empty = np.ones(len(time), bool)
     empty[track] = False
-    return (empty & (tracks.status != TENTATIVE) & (tracks.radar != radar)
-            & (time - tracks.last_time < held[tracks.radar]))
+    return (
+        empty
+        & (tracks.status != TENTATIVE)
+        & (tracks.radar != radar)
+        & (time - tracks.last_time < held[tracks.radar])
+    )
 
 
 def evidence(nis, log_det, density, detection_probability: float):
@@ -72,7 +78,7 @@ def evidence(nis, log_det, density, detection_probability: float):
     nis [K], log_det [K] of the innovations; density [K] of false plots, 1 / m^2. Sittler 1964;
     Blackman and Popoli 1999, 6.2.
     """
-    return (np.log(detection_probability / (2 * np.pi * density)) - 0.5 * (nis + log_det))
+    return np.log(detection_probability / (2 * np.pi * density)) - 0.5 * (nis + log_det)
 
 
 def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now: float):
@@ -95,9 +101,12 @@ def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now
     # Of the window's scans still to come none may be missing more than it can.
     remaining = np.maximum(window - tracks.age, 0)
     gone = np.where(
-        tentative, ~confirmed & (recent + remaining < needed),
-        (tracks.score < 0) | (~hit & (drift > parameters.max_drift))
-        | ((hits(tracks.history, TEN) < parameters.hold_hits) & (tracks.age >= TEN)))
+        tentative,
+        ~confirmed & (recent + remaining < needed),
+        (tracks.score < 0)
+        | (~hit & (drift > parameters.max_drift))
+        | ((hits(tracks.history, TEN) < parameters.hold_hits) & (tracks.age >= TEN)),
+    )
     left = beyond & ~hit
     lost = gone | left | (now - tracks.last_time > IN_THE_DARK * parameters.scan_period_s)
     status = np.where(confirmed, np.where(hit, CONFIRMED, COASTING), TENTATIVE)

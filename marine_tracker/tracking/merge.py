@@ -5,9 +5,9 @@ import numpy as np
 from ..types import Extrapolation, Tracks
 from .lifecycle import LOST, TENTATIVE, hits, misses_in_a_row
 
-SAME = 9.49         # chi-square with 4 degrees of freedom, 95 %
-RECENT = 10         # scans over which two tracks are seen to share the plots of one target
-STARVED = 4         # misses in a row, each beside the other's plot, that tell as much
+SAME = 9.49  # chi-square with 4 degrees of freedom, 95 %
+RECENT = 10  # scans over which two tracks are seen to share the plots of one target
+STARVED = 4  # misses in a row, each beside the other's plot, that tell as much
 
 
 def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, status):
@@ -32,7 +32,8 @@ def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, statu
     one, other = track[look], owner[plot[look]]
     mine, others = tracks.history[one], tracks.history[other]
     sharing = (hits(mine, RECENT) + hits(others, RECENT) <= RECENT + 1) | (
-        misses_in_a_row(mine) >= STARVED)
+        misses_in_a_row(mine) >= STARVED
+    )
     keep = (status[one] == TENTATIVE) | ((status[other] != TENTATIVE) & sharing)
     one, other = one[keep], other[keep]
     if not len(one):

@@ -20,9 +20,16 @@ from ..types import Scan
 
 TOPIC = 'radar/plots'
 # Parameters that a radar may have for itself.
-OWN = ('range_sigma_m', 'bearing_sigma_deg', 'radial_speed_sigma_mps', 'scan_period_s',
-       'min_range_m', 'max_range_m', 'detection_probability')
-HELD_REVOLUTIONS = 1.5      # of another radar: so long its plot shows that the target is there
+OWN = (
+    'range_sigma_m',
+    'bearing_sigma_deg',
+    'radial_speed_sigma_mps',
+    'scan_period_s',
+    'min_range_m',
+    'max_range_m',
+    'detection_probability',
+)
+HELD_REVOLUTIONS = 1.5  # of another radar: so long its plot shows that the target is there
 
 
 class Radar(NamedTuple):
@@ -66,15 +73,19 @@ def fused(of_each: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dict[st
     together: dict[str, Any] = {}
     for one in reversed(of_each):
         together.update((key, value) for key, value in one.items() if key not in OWN)
-    items = [{'topic': f'{name}/{TOPIC}', **{key: one[key] for key in OWN if key in one}}
-             for name, one in zip(names, of_each, strict=True)]
+    items = [
+        {'topic': f'{name}/{TOPIC}', **{key: one[key] for key in OWN if key in one}}
+        for name, one in zip(names, of_each, strict=True)
+    ]
     return {**together, 'radars': yaml.safe_dump(items, sort_keys=False)}
 
 
 def merged(*radars: Iterable[Scan]) -> Iterator[Scan]:
     """The scans of several radars as a tracker takes them: each when it ends."""
+
     def of(radar, scans):
         return (scan._replace(radar=radar) for scan in scans)
+
     return heapq.merge(*(of(*pair) for pair in enumerate(radars)), key=lambda scan: scan.end)
 
 
@@ -84,8 +95,10 @@ def held_updates(radars: tuple[Radar, ...]) -> int:
     A plot is at most one revolution old when its scan is complete.
     """
     periods = [radar.parameters.scan_period_s for radar in radars]
-    return max(sum(int(period // other) + 1 for k, other in enumerate(periods) if k != place)
-               for place, period in enumerate(periods))
+    return max(
+        sum(int(period // other) + 1 for k, other in enumerate(periods) if k != place)
+        for place, period in enumerate(periods)
+    )
 
 
 def _radar(item, place: int, parameters: TrackerParameters) -> Radar:

@@ -85,30 +85,37 @@ class Tracker:
 
     def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
         # Clusters tell what their middle strays.
-        self.parameters = (parameters if parameters.extent == 'off'
-                           else replace(parameters, glint_sigma_m=0.0))
+        self.parameters = (
+            parameters if parameters.extent == 'off' else replace(parameters, glint_sigma_m=0.0)
+        )
         self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
         radars = radars_of(self.parameters)
         self.radars = [radar.parameters for radar in radars]
         self.farthest = max(p.max_range_m for p in self.radars)
         self.held = HELD_REVOLUTIONS * np.array([p.scan_period_s for p in self.radars])
         self.updates = held_updates(radars)
-        self.glint = self.parameters.glint_sigma ** 2 * np.eye(2)
+        self.glint = self.parameters.glint_sigma**2 * np.eye(2)
         self.gate_size = gate_size(parameters.gate_probability)
-        self.speed_gate = (float(ndtri(0.5 + 0.5 * parameters.gate_probability))
-                           if parameters.doppler_gate else np.inf)
+        self.speed_gate = (
+            float(ndtri(0.5 + 0.5 * parameters.gate_probability))
+            if parameters.doppler_gate
+            else np.inf
+        )
 
     def start(self) -> TrackerMemory:
         """No tracks yet."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
         of_radar = OfRadar(plots, clutter_map.empty())
-        return TrackerMemory(self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1)
+        return TrackerMemory(
+            self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1
+        )
 
     def extrapolate(self, tracks: Tracks, time) -> Extrapolation:
         """The tracks at the times [N] s (or one time for all)."""
-        return self.estimator.extrapolate(tracks.state,
-                                          np.broadcast_to(time, tracks.id.shape).astype(float))
+        return self.estimator.extrapolate(
+            tracks.state, np.broadcast_to(time, tracks.id.shape).astype(float)
+        )
 
     def step(self, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemory, Report]:
         """One antenna revolution."""
@@ -122,19 +129,42 @@ class Tracker:
         ahead = self.estimator.extrapolate(late_plots.as_of(tracks, beam), beam)
 
         # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
-        time, position, velocity, covariance = (np.concatenate(pair) for pair in (
-            (ahead.time, lone.time), (ahead.position, lone.position),
-            (ahead.velocity, np.zeros_like(lone.position)),
-            (ahead.covariance[:, :2, :2], reach(lone, scan.end, p.max_target_speed_mps))))
+        time, position, velocity, covariance = (
+            np.concatenate(pair)
+            for pair in (
+                (ahead.time, lone.time),
+                (ahead.position, lone.position),
+                (ahead.velocity, np.zeros_like(lone.position)),
+                (ahead.covariance[:, :2, :2], reach(lone, scan.end, p.max_target_speed_mps)),
+            )
+        )
         if p.glint_sigma:
             covariance = covariance + self.glint
         origin, _ = own_ship_at(scan.own_ship, time)
-        track, plot, nis, log_det = gate(time, position, velocity, covariance, sweep, plots, origin,
-                                         p.range_sigma_m, bearing_sigma, self.gate_size,
-                                         _widest(scan.plots.covariance))
+        track, plot, nis, log_det = gate(
+            time,
+            position,
+            velocity,
+            covariance,
+            sweep,
+            plots,
+            origin,
+            p.range_sigma_m,
+            bearing_sigma,
+            self.gate_size,
+            _widest(scan.plots.covariance),
+        )
         if plots.radial_speed is not None:
-            fit = doppler.agree(track, plot, ahead, lone, plots, p.radial_speed_sigma_mps,
-                                p.max_target_speed_mps, self.speed_gate)
+            fit = doppler.agree(
+                track,
+                plot,
+                ahead,
+                lone,
+                plots,
+                p.radial_speed_sigma_mps,
+                p.max_target_speed_mps,
+                self.speed_gate,
+            )
             track, plot, nis, log_det = track[fit], plot[fit], nis[fit], log_det[fit]
         if p.glint_sigma:
             plots = plots._replace(covariance=plots.covariance + self.glint)
@@ -151,9 +181,10 @@ class Tracker:
         # initiate: from plots of this scan and the last that nobody else explains
         free = np.ones(len(plots.time), bool)
         free[taken] = False
-        free[plot[tracks.status[track] != TENTATIVE]] = False       # echoes of held targets
-        first, second = pair_up(lone, plots, first, second, free, p.max_target_speed_mps,
-                                max(0, p.max_tracks - count))
+        free[plot[tracks.status[track] != TENTATIVE]] = False  # echoes of held targets
+        first, second = pair_up(
+            lone, plots, first, second, free, p.max_target_speed_mps, max(0, p.max_tracks - count)
+        )
         free[second] = False
         begun = take(lone, first)
         if len(first):
@@ -177,26 +208,36 @@ class Tracker:
         distance, bearing, drift = np.zeros((3, len(time)))
         distance[rows], bearing[rows] = chosen.range, chosen.bearing
         distance[missed], bearing[missed] = to_range_bearing(
-            ahead.position.take(missed, 0) - origin.take(missed, 0))
+            ahead.position.take(missed, 0) - origin.take(missed, 0)
+        )
         drift[missed] = np.sqrt(
             (ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])[missed]
-            / (p.range_sigma_m ** 2 + (distance[missed] * bearing_sigma) ** 2
-               + 2 * p.glint_sigma ** 2))
+            / (p.range_sigma_m**2 + (distance[missed] * bearing_sigma) ** 2 + 2 * p.glint_sigma**2)
+        )
         density = clutter_map.density(radar.clutter, chosen.range, chosen.bearing)
-        own = (plot_of[track] == plot).nonzero()[0]                # pairs, as held_rows ascends
+        own = (plot_of[track] == plot).nonzero()[0]  # pairs, as held_rows ascends
         held = len(held_rows)
-        gained = lifecycle.evidence(nis[own], log_det[own], density[:held],
-                                    p.detection_probability)
+        gained = lifecycle.evidence(nis[own], log_det[own], density[:held], p.detection_probability)
         if len(first):
-            gained = np.concatenate([gained, first_score(
-                begun, take(chosen, slice(held, None)), density[held:], p.max_target_speed_mps,
-                p.detection_probability)])
+            gained = np.concatenate(
+                [
+                    gained,
+                    first_score(
+                        begun,
+                        take(chosen, slice(held, None)),
+                        density[held:],
+                        p.max_target_speed_mps,
+                        p.detection_probability,
+                    ),
+                ]
+            )
         tracks = tracks._replace(last_time=last_time, bearing=bearing)
         elsewhere = lifecycle.held_by_another(tracks, scan.radar, time, track, self.held)
         visible = (distance >= p.min_range_m) & (distance <= p.max_range_m) & ~elsewhere
         tracks = lifecycle.record(tracks, rows, gained, visible, p)
-        status, reason = lifecycle.judge(tracks, p, (plot_of >= 0) | elsewhere,
-                                         distance > self.farthest, drift, scan.end)
+        status, reason = lifecycle.judge(
+            tracks, p, (plot_of >= 0) | elsewhere, distance > self.farthest, drift, scan.end
+        )
         double = duplicates(track, plot, plot_of, ahead, tracks, status)
         status[double], reason[double] = LOST, MERGED
         newly = ((tracks.number == 0) & (status == CONFIRMED)).nonzero()[0]
@@ -211,12 +252,19 @@ class Tracker:
         radars[scan.radar] = OfRadar(take(plots, free), clutter)
         alive = status != LOST
         return TrackerMemory(
-            tracks if alive.all() else take(tracks, alive), tuple(radars),
+            tracks if alive.all() else take(tracks, alive),
+            tuple(radars),
             scan.own_ship.position[-1],
-            memory.next_id + len(second), memory.next_number + len(newly),
-        ), Report(time, tracks, predicted, plot_of, reason,
-                  begun._replace(covariance=begun.covariance - self.glint)
-                  if p.glint_sigma else begun)
+            memory.next_id + len(second),
+            memory.next_number + len(newly),
+        ), Report(
+            time,
+            tracks,
+            predicted,
+            plot_of,
+            reason,
+            begun._replace(covariance=begun.covariance - self.glint) if p.glint_sigma else begun,
+        )
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.
@@ -231,24 +279,40 @@ class Tracker:
             return memory._replace(tracks=tracks)
         now = previous.extrapolate(memory.tracks, memory.tracks.last_time)
         range_, bearing = to_range_bearing(now.position - memory.origin)
-        plots = Plots(now.time, range_, bearing, np.zeros_like(range_),
-                      np.tile(memory.origin, (len(range_), 1)), now.position,
-                      now.covariance[:, :2, :2])
+        plots = Plots(
+            now.time,
+            range_,
+            bearing,
+            np.zeros_like(range_),
+            np.tile(memory.origin, (len(range_), 1)),
+            now.position,
+            now.covariance[:, :2, :2],
+        )
         state = self.estimator.init(plots, Velocity(now.velocity, now.covariance[:, 2:, 2:]))
-        return memory._replace(tracks=memory.tracks._replace(
-            state=state, past=late_plots.nothing_yet(state, plots, self.updates)))
+        return memory._replace(
+            tracks=memory.tracks._replace(
+                state=state, past=late_plots.nothing_yet(state, plots, self.updates)
+            )
+        )
 
     def _begin(self, plots: Plots, next_id: int, radar: int) -> Tracks:
         """Tentative tracks of one plot each."""
         count, state = len(plots.time), self.estimator.init(plots)
         none = np.zeros(count, np.int64)
-        return Tracks(id=np.arange(next_id, next_id + count), number=none,
-                      status=np.full(count, TENTATIVE, np.int8), history=none + 1,
-                      score=np.zeros(count), age=none + 1, first_time=plots.time,
-                      last_time=plots.time, bearing=plots.bearing, state=state,
-                      radar=(np.full(count, radar, np.int8) if len(self.radars) > 1
-                             else None),
-                      past=late_plots.nothing_yet(state, plots, self.updates))
+        return Tracks(
+            id=np.arange(next_id, next_id + count),
+            number=none,
+            status=np.full(count, TENTATIVE, np.int8),
+            history=none + 1,
+            score=np.zeros(count),
+            age=none + 1,
+            first_time=plots.time,
+            last_time=plots.time,
+            bearing=plots.bearing,
+            state=state,
+            radar=(np.full(count, radar, np.int8) if len(self.radars) > 1 else None),
+            past=late_plots.nothing_yet(state, plots, self.updates),
+        )
 
 
 def _widest(covariance) -> float:

@@ -19,8 +19,9 @@ class Moments(NamedTuple):
 
 def start(parameters) -> Moments:
     """Nothing seen yet."""
-    return Moments([np.zeros_like(p) for p in parameters], [np.zeros_like(p) for p in parameters],
-                   0)
+    return Moments(
+        [np.zeros_like(p) for p in parameters], [np.zeros_like(p) for p in parameters], 0
+    )
 
 
 def step(parameters, gradients, moments: Moments, rate: float) -> Moments:
@@ -29,9 +30,9 @@ def step(parameters, gradients, moments: Moments, rate: float) -> Moments:
     for p, g, mean, square in zip(parameters, gradients, moments.mean, moments.square):
         mean += (1 - FIRST) * (g - mean)
         square += (1 - SECOND) * (g * g - square)
-        size = np.sqrt(square / (1 - SECOND ** count))
+        size = np.sqrt(square / (1 - SECOND**count))
         size += TINY
-        p -= (rate / (1 - FIRST ** count)) * mean / size
+        p -= (rate / (1 - FIRST**count)) * mean / size
     return moments._replace(steps=count)
 
 

@@ -23,12 +23,14 @@ from ..simulation.scenario import Scenario
 from .ship_tracks import Kind
 from .training_tracks import Radars, Waters
 
-KEYS = ('speed_mps manoeuvres_per_scan turns_share turn_radius_m turn_acceleration_mps2 '
-        'turn_angle_deg speed_change_mps2 weave_period_s drift_share')
-SIGMA_SPREAD = 1.2              # sigmas are drawn from the scenario's over to times this
-RATE_SPREAD = 1.05              # likewise the antenna's rate under hard conditions
-HARD = 0.25                     # part of the tracks seen under hard conditions
-NEAREST, LEAST_BEGIN = 20.0, 50.0       # m
+KEYS = (
+    'speed_mps manoeuvres_per_scan turns_share turn_radius_m turn_acceleration_mps2 '
+    'turn_angle_deg speed_change_mps2 weave_period_s drift_share'
+)
+SIGMA_SPREAD = 1.2  # sigmas are drawn from the scenario's over to times this
+RATE_SPREAD = 1.05  # likewise the antenna's rate under hard conditions
+HARD = 0.25  # part of the tracks seen under hard conditions
+NEAREST, LEAST_BEGIN = 20.0, 50.0  # m
 
 
 def read_kinds(path: Path) -> dict[str, Kind]:
@@ -50,8 +52,7 @@ def read_kinds(path: Path) -> dict[str, Kind]:
 
 def _kind(section: Section) -> Kind:
     usual = Kind(0.0)
-    weave = (_pair(section, 'weave_period_s', 5.0, 3600.0) if 'weave_period_s' in section
-             else None)
+    weave = _pair(section, 'weave_period_s', 5.0, 3600.0) if 'weave_period_s' in section else None
     return Kind(
         begin=section.number('manoeuvres_per_scan', 0.0, 1.0),
         turns=section.number('turns_share', 0.0, 1.0, usual.turns),
@@ -60,7 +61,9 @@ def _kind(section: Section) -> Kind:
         lateral=section.number('turn_acceleration_mps2', 0.001, 50.0, usual.lateral),
         angle=section.number('turn_angle_deg', 15.0, 3600.0, usual.angle),
         thrust=_pair(section, 'speed_change_mps2', 0.001, 50.0, usual.thrust),
-        weave=weave, drift=section.number('drift_share', 0.0, 1.0, usual.drift))
+        weave=weave,
+        drift=section.number('drift_share', 0.0, 1.0, usual.drift),
+    )
 
 
 def _pair(section, key, low, high, default=None) -> tuple[float, float]:
@@ -73,8 +76,10 @@ def _pair(section, key, low, high, default=None) -> tuple[float, float]:
     place = section.place(key)
     if not isinstance(value, list) or len(value) != 2:
         raise ValueError(f'{place} is {value!r}; it must be a pair [least, most]')
-    ends = [Section({'value': end}, f'{place}[{i}]', 'value').number('value', low, high)
-            for i, end in enumerate(value)]
+    ends = [
+        Section({'value': end}, f'{place}[{i}]', 'value').number('value', low, high)
+        for i, end in enumerate(value)
+    ]
     if ends[0] > ends[1]:
         raise ValueError(f'{place} is {value}; the least must not be above the most')
     return ends[0], ends[1]
@@ -90,9 +95,16 @@ def from_scenario(waters: Waters, scenario: Scenario) -> Waters:
 
     def around(value, by):
         return value / by, value * by
+
     own = Radars(
-        1.0, around(told['range_sigma_m'], SIGMA_SPREAD),
-        around(told['bearing_sigma_deg'], SIGMA_SPREAD), (begin, radar.max_range),
-        min(nearest, begin), (rate, rate), HARD, around(rate, RATE_SPREAD),
-        detection=(radar.pd_far, radar.pd_near))
+        1.0,
+        around(told['range_sigma_m'], SIGMA_SPREAD),
+        around(told['bearing_sigma_deg'], SIGMA_SPREAD),
+        (begin, radar.max_range),
+        min(nearest, begin),
+        (rate, rate),
+        HARD,
+        around(rate, RATE_SPREAD),
+        detection=(radar.pd_far, radar.pd_near),
+    )
     return waters._replace(radars=(own,), scenario=scenario)

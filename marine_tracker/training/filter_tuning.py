@@ -23,26 +23,26 @@ from . import gwnn_samples, ship_tracks, track_trials, training_tracks
 
 # Weight of a cell where ships keep course and speed, by what the filter is tuned for.
 STRAIGHT_WEIGHT = {'training': 1.0, 'manoeuvre': 0.0}
-PERIOD = 60 / 22                # s, to which the settings refer
-LEAST_TRACKS = 10 * len(ship_tracks.KINDS)          # every vessel class has as many kinds
-DRAWN = 2                       # times as many tracks are drawn: close ones are left out
-GLOBAL_SHARE = 2 / 3            # of the evaluations, all over the bounds; the rest go downhill
-POPULATION = 4                  # times the number of settings searched, rounded up to 2^n
-SIMPLEX = 0.12                  # of the bounds' width, first step of the way down; then smaller
+PERIOD = 60 / 22  # s, to which the settings refer
+LEAST_TRACKS = 10 * len(ship_tracks.KINDS)  # every vessel class has as many kinds
+DRAWN = 2  # times as many tracks are drawn: close ones are left out
+GLOBAL_SHARE = 2 / 3  # of the evaluations, all over the bounds; the rest go downhill
+POPULATION = 4  # times the number of settings searched, rounded up to 2^n
+SIMPLEX = 0.12  # of the bounds' width, first step of the way down; then smaller
 
 # Least and most of what is searched, by its logarithm. Noises are deviations, m/s^2, of the
 # acceleration over a scan; a mode is left with the chance stated in a scan.
 BOUNDS = {
     'quiet_noise': (1e-4, 0.1),
     'loud_noise': (0.03, 5.0),
-    'noise': (1e-3, 5.0),           # of the only mode
+    'noise': (1e-3, 5.0),  # of the only mode
     'turn_noise': (1e-4, 1.0),
-    'turn_rate': (0.003, 0.45),     # rad/s
+    'turn_rate': (0.003, 0.45),  # rad/s
     'leave_quiet': (1e-4, 0.3),
     'leave_loud': (0.01, 0.45),
     'leave_turn': (0.01, 0.45),
-    'max_acceleration': (0.05, 5.0),    # m/s^2, of CS-Kalman
-    'frequency': (1 / 300, 20.0),       # 1/s, likewise
+    'max_acceleration': (0.05, 5.0),  # m/s^2, of CS-Kalman
+    'frequency': (1 / 300, 20.0),  # 1/s, likewise
 }
 
 Settings = imm.Modes | cs_kalman.Manoeuvre
@@ -62,20 +62,39 @@ class Family(NamedTuple):
 
 
 def _four_modes(quiet, loud, turn, rate, leave_quiet, leave_loud, leave_turn) -> imm.Modes:
-    return _modes((quiet, loud, turn, turn), (0.0, 0.0, rate, -rate),
-                  (leave_quiet, leave_loud, leave_turn, leave_turn))
+    return _modes(
+        (quiet, loud, turn, turn),
+        (0.0, 0.0, rate, -rate),
+        (leave_quiet, leave_loud, leave_turn, leave_turn),
+    )
 
 
 def _modes(acceleration, turn_rate, leave) -> imm.Modes:
-    return imm.Modes(tuple(PERIOD * one ** 2 for one in acceleration), turn_rate,
-                     tuple(1 - one for one in leave), PERIOD)
+    return imm.Modes(
+        tuple(PERIOD * one**2 for one in acceleration),
+        turn_rate,
+        tuple(1 - one for one in leave),
+        PERIOD,
+    )
 
 
 FAMILIES = {
-    'imm': Family(('quiet_noise', 'loud_noise', 'turn_noise', 'turn_rate', 'leave_quiet',
-                   'leave_loud', 'leave_turn'), _four_modes),
-    'cv_cv': Family(('quiet_noise', 'loud_noise', 'leave_quiet', 'leave_loud'),
-                    lambda quiet, loud, *leave: _modes((quiet, loud), (0.0, 0.0), leave)),
+    'imm': Family(
+        (
+            'quiet_noise',
+            'loud_noise',
+            'turn_noise',
+            'turn_rate',
+            'leave_quiet',
+            'leave_loud',
+            'leave_turn',
+        ),
+        _four_modes,
+    ),
+    'cv_cv': Family(
+        ('quiet_noise', 'loud_noise', 'leave_quiet', 'leave_loud'),
+        lambda quiet, loud, *leave: _modes((quiet, loud), (0.0, 0.0), leave),
+    ),
     'cv': Family(('noise',), lambda noise: _modes((noise,), (0.0,), (0.0,))),
     'cs': Family(('max_acceleration', 'frequency'), cs_kalman.Manoeuvre),
 }
@@ -116,9 +135,12 @@ def course(tracks: int, rng, vessel_class: str = 'ship') -> Course:
     waters = training_tracks.WATERS[vessel_class]
     names = list(waters.kinds)
     each = tracks // len(names)
-    drawn = training_tracks.draw(waters._replace(radars=waters.radars[:1]),
-                                 np.repeat(np.arange(len(names)), DRAWN * each),
-                                 gwnn_samples.SCANS, rng)
+    drawn = training_tracks.draw(
+        waters._replace(radars=waters.radars[:1]),
+        np.repeat(np.arange(len(names)), DRAWN * each),
+        gwnn_samples.SCANS,
+        rng,
+    )
     keep = np.concatenate([np.flatnonzero(drawn.kind == i)[:each] for i in range(len(names))])
     on = track_trials.trial(take(drawn.ships, keep), take(drawn.radar, keep), rng)
     kind, cells, counts, straight = drawn.kind[keep], [], [], []
@@ -162,9 +184,13 @@ def cell_ratios(error, against, on: Course) -> dict[str, float]:
 def compare(error, against, on: Course, target: str, rng, resamples=1000) -> track_trials.Ratio:
     """Geometric mean of the cells' ratios; its interval by tracks resampled within each kind."""
     weight = _weights(on, target)
-    pick = np.concatenate([
-        rows[rng.integers(0, len(rows), (resamples, len(rows)))]
-        for rows in (np.flatnonzero(on.kind == i) for i in np.unique(on.kind))], 1)
+    pick = np.concatenate(
+        [
+            rows[rng.integers(0, len(rows), (resamples, len(rows)))]
+            for rows in (np.flatnonzero(on.kind == i) for i in np.unique(on.kind))
+        ],
+        1,
+    )
     times = np.stack([np.bincount(one, minlength=len(on.kind)) for one in pick])
     # A resample may leave a cell of few tracks without any scan: it then has no say.
     one, other = error @ times.T, against @ times.T
@@ -175,8 +201,14 @@ def compare(error, against, on: Course, target: str, rng, resamples=1000) -> tra
     return track_trials.Ratio(float(value), float(low), float(high))
 
 
-def search(judge: Callable[[Settings], float], evaluations: int, seed: int, start=None,
-           progress: Progress = lambda done, whole: None, family: Family = IMM) -> TuningResult:
+def search(
+    judge: Callable[[Settings], float],
+    evaluations: int,
+    seed: int,
+    start=None,
+    progress: Progress = lambda done, whole: None,
+    family: Family = IMM,
+) -> TuningResult:
     """The settings of the least loss found with so many evaluations; repeatable.
 
     Two thirds of them by differential evolution over the bounds (there are several valleys), the
@@ -208,9 +240,16 @@ def search(judge: Callable[[Settings], float], evaluations: int, seed: int, star
     bounds = [(0.0, 1.0)] * count
     try:
         optimize.differential_evolution(
-            at, bounds, x0=np.full(count, 0.5) if start is None else start, init='sobol',
-            popsize=POPULATION, maxiter=evaluations, tol=0, polish=False,
-            seed=np.random.default_rng([seed, 11]))
+            at,
+            bounds,
+            x0=np.full(count, 0.5) if start is None else start,
+            init='sobol',
+            popsize=POPULATION,
+            maxiter=evaluations,
+            tol=0,
+            polish=False,
+            seed=np.random.default_rng([seed, 11]),
+        )
     except _SpentError:
         pass
     limit = evaluations
@@ -219,10 +258,19 @@ def search(judge: Callable[[Settings], float], evaluations: int, seed: int, star
         while True:
             origin = np.array(min(tried)[1])
             corners = np.tile(origin, (count + 1, 1))
-            corners[1:] += np.diag(np.where(origin < 0.5, size, -size))     # into the bounds
-            optimize.minimize(at, origin, method='Nelder-Mead', bounds=bounds,
-                              options={'initial_simplex': corners, 'adaptive': True,
-                                       'xatol': size / 20, 'fatol': 1e-5})
+            corners[1:] += np.diag(np.where(origin < 0.5, size, -size))  # into the bounds
+            optimize.minimize(
+                at,
+                origin,
+                method='Nelder-Mead',
+                bounds=bounds,
+                options={
+                    'initial_simplex': corners,
+                    'adaptive': True,
+                    'xatol': size / 20,
+                    'fatol': 1e-5,
+                },
+            )
             size /= 2
     except _SpentError:
         pass
@@ -234,13 +282,24 @@ class _SpentError(Exception):
     """No evaluations are left."""
 
 
-def tune(target: str, tracks: int, evaluations: int, seed: int,
-         progress: Progress = lambda done, whole: None, vessel_class: str = 'ship',
-         family: Family = IMM) -> tuple[TuningResult, Course]:
+def tune(
+    target: str,
+    tracks: int,
+    evaluations: int,
+    seed: int,
+    progress: Progress = lambda done, whole: None,
+    vessel_class: str = 'ship',
+    family: Family = IMM,
+) -> tuple[TuningResult, Course]:
     """The settings found for a target of STRAIGHT_WEIGHT, and the tracks they were found on."""
     on = course(tracks, _tracks_rng(seed, 0), vessel_class)
-    return search(lambda settings: loss(errors(settings, on), on, target), evaluations, seed,
-                  progress=progress, family=family), on
+    return search(
+        lambda settings: loss(errors(settings, on), on, target),
+        evaluations,
+        seed,
+        progress=progress,
+        family=family,
+    ), on
 
 
 def fresh(tracks: int, seed: int, vessel_class: str = 'ship') -> Course:
@@ -260,8 +319,15 @@ class Verdict(NamedTuple):
     ratio: track_trials.Ratio
 
 
-def judge(settings: Settings, shipped: dict[str, Settings], rival: str, target: str,
-          seen: Course, unseen: Course, seed: int) -> Verdict:
+def judge(
+    settings: Settings,
+    shipped: dict[str, Settings],
+    rival: str,
+    target: str,
+    seen: Course,
+    unseen: Course,
+    seed: int,
+) -> Verdict:
     """How settings do beside the shipped ones, on tracks they were found on and on others.
 
     rival  the one of `shipped` that is for the same target
@@ -272,25 +338,36 @@ def judge(settings: Settings, shipped: dict[str, Settings], rival: str, target: 
         found = errors(settings, on)
         others = {name: errors(one, on) for name, one in shipped.items()}
         for name, error in [('found', found), *others.items()]:
-            figures.append(Figure(f'{place}: {name}', float(np.exp(loss(error, on, target))),
-                                  'sigma'))
+            figures.append(
+                Figure(f'{place}: {name}', float(np.exp(loss(error, on, target))), 'sigma')
+            )
         for name, error in others.items():
             ratio = compare(found, error, on, target, rng)
-            figures.append(Figure(f'{place}: found over {name}', ratio.value, '', None, None,
-                                  f'[{ratio.low:.4f} {ratio.high:.4f}]'))
+            figures.append(
+                Figure(
+                    f'{place}: found over {name}',
+                    ratio.value,
+                    '',
+                    None,
+                    None,
+                    f'[{ratio.low:.4f} {ratio.high:.4f}]',
+                )
+            )
             if name == rival:
                 to_rival, cells = ratio, cell_ratios(found, error, on)
-    figures += [Figure(f'fresh tracks, {cell}: found over {rival}', value)
-                for cell, value in cells.items()]
+    figures += [
+        Figure(f'fresh tracks, {cell}: found over {rival}', value) for cell, value in cells.items()
+    ]
     return Verdict(figures, to_rival)
 
 
 def as_text(settings: Settings) -> str:
     """The settings as Python, to paste."""
+
     def value_text(value):
         if isinstance(value, tuple):
             return f'({", ".join(f"{one:.5g}" for one in value)}{"," * (len(value) == 1)})'
         return '60 / 22' if value == PERIOD else f'{value:.5g}'
-    values = ', '.join(f'{name}={value_text(value)}'
-                       for name, value in settings._asdict().items())
+
+    values = ', '.join(f'{name}={value_text(value)}' for name, value in settings._asdict().items())
     return f'{type(settings).__name__}({values})'

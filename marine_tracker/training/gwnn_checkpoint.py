@@ -20,17 +20,23 @@ def _arrays(training: Training) -> dict[str, Array]:
     for kind in ('mean', 'square'):
         for i, array in enumerate(getattr(training.moments, kind)):
             arrays[f'{kind}{i}'] = array
-    return arrays | {'emphasis': training.emphasis, 'size': training.size,
-                     'against': training.against}
+    return arrays | {
+        'emphasis': training.emphasis,
+        'size': training.size,
+        'against': training.against,
+    }
 
 
 def save(path: Path, settings: dict[str, Any], training: Training) -> None:
     """Write a checkpoint; whoever stops the process meanwhile leaves the last one whole."""
     fresh = path.with_name(path.name + '.new')
     with open(fresh, 'wb') as file:
-        np.savez(file, settings=np.array(json.dumps(settings)),
-                 steps=np.array(training.moments.steps),
-                 **_arrays(training))                               # type: ignore[arg-type]
+        np.savez(
+            file,
+            settings=np.array(json.dumps(settings)),
+            steps=np.array(training.moments.steps),
+            **_arrays(training),  # type: ignore[arg-type]
+        )
     fresh.replace(path)
 
 
@@ -52,9 +58,14 @@ def resume(path: Path, settings: dict[str, Any], layout: net.Layout) -> Training
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise ValueError(f'checkpoint {path} is damaged: remove it') from error
     ours = json.loads(json.dumps(settings))
-    differing = [f'{name} {theirs.get(name)}, not {ours[name]}' for name in ours
-                 if theirs.get(name) != ours[name]]
+    differing = [
+        f'{name} {theirs.get(name)}, not {ours[name]}'
+        for name in ours
+        if theirs.get(name) != ours[name]
+    ]
     if differing:
-        raise ValueError(f'checkpoint {path} is of another training ({"; ".join(differing)}); '
-                         'remove it, or train with its settings')
+        raise ValueError(
+            f'checkpoint {path} is of another training ({"; ".join(differing)}); '
+            'remove it, or train with its settings'
+        )
     return training

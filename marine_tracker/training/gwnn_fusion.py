@@ -18,12 +18,12 @@ from .gwnn_samples import Samples, cell_count
 from .gwnn_symmetry import apply, standardise, symmetries
 
 HUBER = 10.0
-MOST = 6.0                      # times the mean: weight of a sample for its noise
+MOST = 6.0  # times the mean: weight of a sample for its noise
 BATCH, PEAK, WARM_UP = 1024, 4e-3, 200
-REWEIGH_EVERY, REWEIGH_BY = 250, 0.5                # steps between looks at the worst cells
-MOST_ERROR = 40.0               # true sigma^2: squared errors count as no more in cells' means
-LARGE = 100.0                   # sigma^2: likewise in the running errors
-MOST_EMPHASIS = 2.0             # log weight of a cell
+REWEIGH_EVERY, REWEIGH_BY = 250, 0.5  # steps between looks at the worst cells
+MOST_ERROR = 40.0  # true sigma^2: squared errors count as no more in cells' means
+LARGE = 100.0  # sigma^2: likewise in the running errors
+MOST_EMPHASIS = 2.0  # log weight of a cell
 LAYOUT = net.Layout(levels=2, translations=5, q=1.2, outputs=gwnn.OUTPUTS)
 
 
@@ -77,9 +77,8 @@ def cell_weights(samples: Samples):
     share[:, 1] = np.minimum(samples.area / _mean_by_cell(samples.area, samples.cell), MOST)
     out = np.empty((len(samples.cell), 2), np.float32)
     for j in (0, 1):
-        mean = np.minimum(*(_mean_by_cell(share[:, j] * one, samples.cell)
-                            for one in size[:, j].T))
-        out[:, j] = share[:, j] / (mean * samples.truly ** 2)
+        mean = np.minimum(*(_mean_by_cell(share[:, j] * one, samples.cell) for one in size[:, j].T))
+        out[:, j] = share[:, j] / (mean * samples.truly**2)
     return out
 
 
@@ -116,12 +115,23 @@ def begin(samples: Samples, kinds: int, seed: int, layout: net.Layout = LAYOUT) 
     centre, scale = standardise(samples.seen)
     network = net.start(layout, centre, scale, rng)
     cells = np.zeros((cell_count(kinds), 2))
-    return Training(network, adam.start([network.inner, network.outer, network.bias]), cells,
-                    cells.copy(), np.full((*cells.shape, 2), 1e-9))
+    return Training(
+        network,
+        adam.start([network.inner, network.outer, network.bias]),
+        cells,
+        cells.copy(),
+        np.full((*cells.shape, 2), 1e-9),
+    )
 
 
-def train(training: Training, samples: Samples, seed: int, steps: int, until: int,
-          balance: Balance = USUAL) -> Training:
+def train(
+    training: Training,
+    samples: Samples,
+    seed: int,
+    steps: int,
+    until: int,
+    balance: Balance = USUAL,
+) -> Training:
     """Steps of Adam from where the training stands up to step `until` of `steps`.
 
     The network's and the moments' arrays are changed in place.
@@ -144,14 +154,14 @@ def train(training: Training, samples: Samples, seed: int, steps: int, until: in
         own = weights[pick]
         factor = np.minimum(1, HUBER / np.sqrt(own) / np.maximum(length, 1e-6)) * own
         cell = batch.cell
-        size += _by_cell(cell, own * np.minimum(length ** 2, LARGE), len(size))
+        size += _by_cell(cell, own * np.minimum(length**2, LARGE), len(size))
         against += _by_cell(cell, own[..., None] * np.minimum(rivals(batch), LARGE), len(size))
         factor *= np.exp(emphasis[cell]) * velocity / BATCH
         gradient = (error * np.repeat(factor, 2, 1)).astype(np.float32)
-        gradients = net.backward(network, form, layer, value, tanh,
-                                 fuse_backward(gradient, out, weight, batch))
-        moments = adam.step(parameters, gradients, moments,
-                            adam.cosine(step, steps, PEAK, WARM_UP))
+        gradients = net.backward(
+            network, form, layer, value, tanh, fuse_backward(gradient, out, weight, batch)
+        )
+        moments = adam.step(parameters, gradients, moments, adam.cosine(step, steps, PEAK, WARM_UP))
         if (step + 1) % REWEIGH_EVERY == 0:
             emphasis = emphasize(emphasis, size, against, balance.least)
             size *= 0.5
@@ -163,7 +173,8 @@ def _by_cell(cell, values, count):
     """Sums [count, ...] of values [n, ...] over the cells."""
     columns = values.reshape(len(values), -1).T
     return np.stack([np.bincount(cell, column, count) for column in columns], 1).reshape(
-        count, *values.shape[1:])
+        count, *values.shape[1:]
+    )
 
 
 def emphasize(emphasis, size, against, least):

@@ -17,9 +17,9 @@ from ..types import Array, put, take
 from . import ship_tracks, training_tracks
 
 SCANS = 110
-CHUNK = 588                     # tracks made at once, as many of each kind
-EXPECTED, KNOWN = 0.22, 0.10    # part of the rows sampled a scan: before the plot, after it
-CLIP = 30.0                     # sigma: of the truth from the base
+CHUNK = 588  # tracks made at once, as many of each kind
+EXPECTED, KNOWN = 0.22, 0.10  # part of the rows sampled a scan: before the plot, after it
+CLIP = 30.0  # sigma: of the truth from the base
 
 
 class Samples(NamedTuple):
@@ -92,13 +92,24 @@ def make(bank: filters.Filters, waters: training_tracks.Waters, seed: int, chunk
             if after:
                 rows = rows[state.time[rows] == ships.time[rows, k - 1]]
             if len(rows):
-                cell = cell_number(traffic.kind[rows], phase[rows, k - after], after,
-                                   traffic.sort[rows])
-                parts.append(_sample(bank, take(state, rows), take(memory, rows),
-                                     take(ships, rows), k - after, take(radar, rows), cell))
+                cell = cell_number(
+                    traffic.kind[rows], phase[rows, k - after], after, traffic.sort[rows]
+                )
+                parts.append(
+                    _sample(
+                        bank,
+                        take(state, rows),
+                        take(memory, rows),
+                        take(ships, rows),
+                        k - after,
+                        take(radar, rows),
+                        cell,
+                    )
+                )
         rows = np.flatnonzero(seen[:, k])
-        new_state, new_memory, _ = gwnn.advance(bank, take(state, rows), take(memory, rows),
-                                                take(plots[k], rows))
+        new_state, new_memory, _ = gwnn.advance(
+            bank, take(state, rows), take(memory, rows), take(plots[k], rows)
+        )
         state, memory = put(state, rows, new_state), put(memory, rows, new_memory)
     return join(parts)
 
@@ -113,11 +124,24 @@ def _sample(bank, state, memory, ships, k, radar, cell) -> Samples:
     columns = filters.base(bank, state, time)
     _, covariance = linear_modes.unpack(columns.T)
     spread = inputs.variances(frame, covariance)
-    return Samples._make([*(np.ascontiguousarray(array, np.float32) for array in (
-        inputs.inputs(bank, state, memory, radar.period), at.apart.transpose(2, 1, 0),
-        at.log_weight[:4].T, at.scans, np.clip(off, -CLIP, CLIP).T, np.log(spread).T,
-        np.square(frame[:, 2:]).mean(1))),
-        cell.astype(np.int16), radar.truly.astype(np.float32)])
+    return Samples._make(
+        [
+            *(
+                np.ascontiguousarray(array, np.float32)
+                for array in (
+                    inputs.inputs(bank, state, memory, radar.period),
+                    at.apart.transpose(2, 1, 0),
+                    at.log_weight[:4].T,
+                    at.scans,
+                    np.clip(off, -CLIP, CLIP).T,
+                    np.log(spread).T,
+                    np.square(frame[:, 2:]).mean(1),
+                )
+            ),
+            cell.astype(np.int16),
+            radar.truly.astype(np.float32),
+        ]
+    )
 
 
 def join(parts) -> Samples:

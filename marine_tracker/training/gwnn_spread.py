@@ -15,20 +15,28 @@ from .gwnn_symmetry import apply, symmetries
 
 LAYOUT = net.Layout(levels=2, translations=2, q=1.2, outputs=gwnn.SPREADS)
 STEPS = 4000
-LEVEL = (-8.0, 6.0)             # log of the least and the largest variance, sigma^2
-SAMPLES = 300000                # at most
+LEVEL = (-8.0, 6.0)  # log of the least and the largest variance, sigma^2
+SAMPLES = 300000  # at most
 PEAK = 3e-3
 
 
-def train(network: net.Network, samples: Samples, seed: int, steps: int = STEPS,
-          layout: net.Layout = LAYOUT) -> net.Network:
+def train(
+    network: net.Network,
+    samples: Samples,
+    seed: int,
+    steps: int = STEPS,
+    layout: net.Layout = LAYOUT,
+) -> net.Network:
     """The network that says how far the fusion network is off."""
     rng = np.random.default_rng([seed, 1 << 21])
     pick = np.sort(rng.permutation(len(samples.cell))[:SAMPLES])
     samples = take(samples, pick)
-    error = np.concatenate([
-        fuse(net.forward(network, part.seen), part)[0] - part.truth
-        for part in (take(samples, slice(i, i + 10000)) for i in range(0, len(pick), 10000))])
+    error = np.concatenate(
+        [
+            fuse(net.forward(network, part.seen), part)[0] - part.truth
+            for part in (take(samples, slice(i, i + 10000)) for i in range(0, len(pick), 10000))
+        ]
+    )
     square = np.minimum(error * error, 100.0)
     spread = net.start(layout, network.centre, network.scale, rng)
     parameters = [spread.inner, spread.outer, spread.bias]
@@ -46,6 +54,10 @@ def train(network: net.Network, samples: Samples, seed: int, steps: int = STEPS,
         slope = np.clip(0.5 * (1 - off * np.exp(-np.clip(level, *LEVEL))), -5, 0.5)
         slope /= len(pick)
         back = np.concatenate([slope * (1 - part), slope * part], 1).astype(np.float32)
-        moments = adam.step(parameters, net.backward(spread, form, layer, value, tanh, back),
-                            moments, adam.cosine(step, steps, PEAK, WARM_UP))
+        moments = adam.step(
+            parameters,
+            net.backward(spread, form, layer, value, tanh, back),
+            moments,
+            adam.cosine(step, steps, PEAK, WARM_UP),
+        )
     return spread

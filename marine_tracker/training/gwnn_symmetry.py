@@ -30,8 +30,12 @@ class Symmetry(NamedTuple):
 
 def symmetries() -> list[Symmetry]:
     """All eight."""
-    return [_symmetry(np.array([x, y]), swap)
-            for x in (1, -1) for y in (1, -1) for swap in (False, True)]
+    return [
+        _symmetry(np.array([x, y]), swap)
+        for x in (1, -1)
+        for y in (1, -1)
+        for swap in (False, True)
+    ]
 
 
 def _symmetry(signs, swap) -> Symmetry:
@@ -45,16 +49,20 @@ def _symmetry(signs, swap) -> Symmetry:
             sign.append(mirrored if kind == inputs.P else 1)
             continue
         order += [i + 1, i] if swap else [i, i + 1]
-        factor = {inputs.V: signs, inputs.PV: signs * mirrored,
-                  inputs.E: np.ones(2)}[kind]
+        factor = {inputs.V: signs, inputs.PV: signs * mirrored, inputs.E: np.ones(2)}[kind]
         sign += list(factor)
     experts = np.arange(filters.EXPERTS)
     if mirrored < 0:
         for right, left in filters.TURNS:
             experts[[right, left]] = left, right
     pair = np.array([1, 0] if swap else [0, 1])
-    return Symmetry(np.array(order), np.array(sign, np.float32), np.concatenate([pair, pair + 2]),
-                    np.tile(signs, 2).astype(np.float32), experts)
+    return Symmetry(
+        np.array(order),
+        np.array(sign, np.float32),
+        np.concatenate([pair, pair + 2]),
+        np.tile(signs, 2).astype(np.float32),
+        experts,
+    )
 
 
 def apply(symmetry: Symmetry, batch: Samples) -> Samples:
@@ -64,8 +72,10 @@ def apply(symmetry: Symmetry, batch: Samples) -> Samples:
     return batch._replace(
         seen=batch.seen[:, symmetry.inputs] * symmetry.sign,
         apart=batch.apart[:, symmetry.experts][:, :, state] * sign,
-        base=batch.base[:, modes], truth=batch.truth[:, state] * sign,
-        spread=batch.spread[:, state])
+        base=batch.base[:, modes],
+        truth=batch.truth[:, state] * sign,
+        spread=batch.spread[:, state],
+    )
 
 
 def standardise(seen):
@@ -77,9 +87,9 @@ def standardise(seen):
     i = 0
     for kind in inputs.KINDS:
         width = 1 if kind in (inputs.S, inputs.P) else 2
-        columns = seen[:, i:i + width]
+        columns = seen[:, i : i + width]
         if kind in (inputs.S, inputs.E):
-            centre[i:i + width] = columns.mean(dtype=float)
-        scale[i:i + width] = np.sqrt(np.square(columns - centre[i]).mean(dtype=float)) + 1e-3
+            centre[i : i + width] = columns.mean(dtype=float)
+        scale[i : i + width] = np.sqrt(np.square(columns - centre[i]).mean(dtype=float)) + 1e-3
         i += width
     return centre, scale

@@ -17,12 +17,12 @@ from . import gwnn_checkpoint, gwnn_samples, gwnn_spread
 from . import gwnn_fusion as fusion
 from .training_tracks import WATERS, Waters
 
-CHUNKS, STEPS = 40, 14000       # of the shipped training
-UNSEEN = 1 << 16                # number of a chunk that is never trained on
+CHUNKS, STEPS = 40, 14000  # of the shipped training
+UNSEEN = 1 << 16  # number of a chunk that is never trained on
 # Ships keep course for long: what that asks for must not be given up for their turns.
 BALANCE = {'ship': fusion.Balance(velocity=1.0, least=-0.4), 'small_craft': fusion.USUAL}
-FEW = 100                       # samples of a cell that say too little
-SAVE_EVERY = 500                # steps
+FEW = 100  # samples of a cell that say too little
+SAVE_EVERY = 500  # steps
 
 Progress = Callable[[str, int, int], None]
 
@@ -55,25 +55,35 @@ class Plan(NamedTuple):
 
 def plan(vessel_class: str, seed: int, **other) -> Plan:
     """The plan by which the shipped weights of a vessel class are trained; and what differs."""
-    return Plan(vessel_class, WATERS[vessel_class], seed,
-                balance=BALANCE[vessel_class])._replace(**other)
+    return Plan(vessel_class, WATERS[vessel_class], seed, balance=BALANCE[vessel_class])._replace(
+        **other
+    )
 
 
 def settings(plan: Plan) -> dict[str, Any]:
     """All that makes two trainings differ, for a checkpoint."""
-    return {'vessel_class': plan.vessel_class, 'filters': plan.bank.mark, 'seed': plan.seed,
-            'chunks': plan.chunks, 'steps': plan.steps, 'layout': list(plan.layout),
-            'balance': list(plan.balance),
-            'inputs': inputs.COUNT, 'kinds': plan.waters.names,
-            'motion': list(plan.waters.kinds.values()), 'radars': plan.waters.radars}
+    return {
+        'vessel_class': plan.vessel_class,
+        'filters': plan.bank.mark,
+        'seed': plan.seed,
+        'chunks': plan.chunks,
+        'steps': plan.steps,
+        'layout': list(plan.layout),
+        'balance': list(plan.balance),
+        'inputs': inputs.COUNT,
+        'kinds': plan.waters.names,
+        'motion': list(plan.waters.kinds.values()),
+        'radars': plan.waters.radars,
+    }
 
 
 def judge(weights: gwnn_weights.Weights, plan: Plan) -> dict[str, float]:
     """RMS position error over the base IMM's, by kind and phase, on tracks not trained on."""
     samples = gwnn_samples.make(plan.bank, plan.waters, plan.seed, UNSEEN)
     out, _ = fusion.fuse(net.forward(weights.fusion, samples.seen), samples)
-    size, against = (np.square(error[:, :2]).sum(1) for error in (out - samples.truth,
-                                                                  samples.truth))
+    size, against = (
+        np.square(error[:, :2]).sum(1) for error in (out - samples.truth, samples.truth)
+    )
     cell = gwnn_samples.cell_of(samples.cell)
     ratios = {}
     for i, kind in enumerate(plan.waters.names):
@@ -81,12 +91,14 @@ def judge(weights: gwnn_weights.Weights, plan: Plan) -> dict[str, float]:
             chosen = (cell.after == 0) & (cell.kind == i) & (cell.phase == phase)
             if chosen.sum() > FEW:
                 ratios[f'{kind}, {name}'] = round(
-                    float(np.sqrt(size[chosen].mean() / against[chosen].mean())), 3)
+                    float(np.sqrt(size[chosen].mean() / against[chosen].mean())), 3
+                )
     return ratios
 
 
-def run(plan: Plan, checkpoint: Path,
-        progress: Progress = lambda stage, done, whole: None) -> gwnn_weights.Weights:
+def run(
+    plan: Plan, checkpoint: Path, progress: Progress = lambda stage, done, whole: None
+) -> gwnn_weights.Weights:
     """The whole training; goes on from the checkpoint file where there is one.
 
     Raises ValueError where the checkpoint is of another training, or is damaged.
@@ -101,17 +113,34 @@ def run(plan: Plan, checkpoint: Path,
     training = training or fusion.begin(samples, len(plan.waters.names), plan.seed, plan.layout)
     for step in range(training.moments.steps, plan.steps, SAVE_EVERY):
         progress('fusion', step, plan.steps)
-        training = fusion.train(training, samples, plan.seed, plan.steps,
-                                min(step + SAVE_EVERY, plan.steps), plan.balance)
+        training = fusion.train(
+            training,
+            samples,
+            plan.seed,
+            plan.steps,
+            min(step + SAVE_EVERY, plan.steps),
+            plan.balance,
+        )
         gwnn_checkpoint.save(checkpoint, settings(plan), training)
     progress('spread', 0, 1)
-    spread = gwnn_spread.train(training.network, samples, plan.seed,
-                                        min(plan.steps, gwnn_spread.STEPS))
-    weights = gwnn_weights.Weights(training.network, spread, {
-        'made_by': 'marine_tracker train gwnn', 'vessel_class': plan.vessel_class,
-        'filters': plan.bank.mark, 'seed': plan.seed, 'steps': plan.steps,
-        'tracks': plan.chunks * gwnn_samples.CHUNK, 'samples': len(samples.cell),
-        'kinds': plan.waters.names, 'inputs': inputs.COUNT,
-        'hidden': len(training.network.inner.T)})
+    spread = gwnn_spread.train(
+        training.network, samples, plan.seed, min(plan.steps, gwnn_spread.STEPS)
+    )
+    weights = gwnn_weights.Weights(
+        training.network,
+        spread,
+        {
+            'made_by': 'marine_tracker train gwnn',
+            'vessel_class': plan.vessel_class,
+            'filters': plan.bank.mark,
+            'seed': plan.seed,
+            'steps': plan.steps,
+            'tracks': plan.chunks * gwnn_samples.CHUNK,
+            'samples': len(samples.cell),
+            'kinds': plan.waters.names,
+            'inputs': inputs.COUNT,
+            'hidden': len(training.network.inner.T),
+        },
+    )
     progress('spread', 1, 1)
     return weights._replace(manifest={**weights.manifest, 'ratios': judge(weights, plan)})

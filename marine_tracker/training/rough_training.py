@@ -23,15 +23,15 @@ from ..estimators.rough_features import HIGH, KAPPA, LAMBDA, LOW, inputs
 from ..networks import rough_network as net
 from ..networks.rough_weights import HIDDEN, INPUTS, NEURONS, Quiet, Weights
 
-NARROW = 0.02                               # O of F2 while a target keeps its course
+NARROW = 0.02  # O of F2 while a target keeps its course
 LOG_GAMMA = np.log(10.0) * np.arange(-3, 1.01, 0.5)
 LOG_Y = np.log([0.01, 0.03, 0.1, 0.3])
 LEVELS = np.linspace(0, 1, 5)
-SAMPLED = [(3, 0), (3, 2), (5, 1), (7, 0), (7, 2)]          # places of the table, for the intervals
-STARTS, DECAY, ROUNDS = 12, 1e-3, 200       # beginnings; of the weights; evaluations each
-EXACT, LAST_ROUNDS = 1e-15, 3000            # of the last fit: tolerance; evaluations
-ALIKE = 1.02                                # costs of fits that are as good
-DIGITS = 4                                  # of the weights kept
+SAMPLED = [(3, 0), (3, 2), (5, 1), (7, 0), (7, 2)]  # places of the table, for the intervals
+STARTS, DECAY, ROUNDS = 12, 1e-3, 200  # beginnings; of the weights; evaluations each
+EXACT, LAST_ROUNDS = 1e-15, 3000  # of the last fit: tolerance; evaluations
+ALIKE = 1.02  # costs of fits that are as good
+DIGITS = 4  # of the weights kept
 
 
 class Samples(NamedTuple):
@@ -50,8 +50,8 @@ def quiet(gamma: float, y: float):
     """
     phi, q = (part[:, 0] for part in model(y, np.ones(1)))
     decaying = np.array([[1, 1, phi[2]], [0, 1, phi[1]], [0, 0, phi[0]]])
-    steady = np.array([[1, 1, 0.5], [0, 1, 1], [0, 0, 1.0]])        # F + U [0 0 1]
-    noise = 2 * y * gamma ** 2 * q[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]]
+    steady = np.array([[1, 1, 0.5], [0, 1, 1], [0, 0, 1.0]])  # F + U [0 0 1]
+    noise = 2 * y * gamma**2 * q[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]]
     seen = np.array([[1.0, 0, 0]])
     spread, transition, drive = [], np.zeros((6, 6)), np.zeros((6, 1))
     for i, share in enumerate((1.0, NARROW)):
@@ -77,7 +77,7 @@ def normalisation() -> tuple[Quiet, np.ndarray]:
 
 def label(v):
     """O [...] wanted for places v [..., 3] between quiet (0) and hard (1)."""
-    return 0.02 + 0.96 * (1 - np.prod(1 - 0.72 * v ** 1.5, -1)) / (1 - 0.28 ** 3)
+    return 0.02 + 0.96 * (1 - np.prod(1 - 0.72 * v**1.5, -1)) / (1 - 0.28**3)
 
 
 def samples(deviations, neurons: int) -> Samples:
@@ -91,8 +91,9 @@ def samples(deviations, neurons: int) -> Samples:
     return Samples(np.concatenate(seen), np.tile(label(v), len(SAMPLED)))
 
 
-def train(kind: str, seed: int, progress: Callable[[int, int], None] = lambda done, whole: None
-          ) -> Weights:
+def train(
+    kind: str, seed: int, progress: Callable[[int, int], None] = lambda done, whole: None
+) -> Weights:
     """One of the best of STARTS networks of a kind, fitted by Levenberg and Marquardt's method."""
     neurons = NEURONS[kind]
     table, deviations = normalisation()
@@ -101,26 +102,46 @@ def train(kind: str, seed: int, progress: Callable[[int, int], None] = lambda do
     rng = np.random.default_rng(seed)
 
     def error(vector):
-        return np.concatenate([net.forward(net.from_vector(vector, form), given.inputs)
-                               - given.wanted, DECAY * vector])
+        return np.concatenate(
+            [
+                net.forward(net.from_vector(vector, form), given.inputs) - given.wanted,
+                DECAY * vector,
+            ]
+        )
 
     def slope(vector):
-        return np.concatenate([net.jacobian(net.from_vector(vector, form), given.inputs),
-                               DECAY * np.eye(len(vector))])
+        return np.concatenate(
+            [net.jacobian(net.from_vector(vector, form), given.inputs), DECAY * np.eye(len(vector))]
+        )
+
     fits = []
     for start in range(STARTS):
         progress(start, STARTS)
-        fits.append(least_squares(error, net.to_vector(net.draw(form, rng)), slope,
-                                  method='lm', max_nfev=ROUNDS))
+        fits.append(
+            least_squares(
+                error, net.to_vector(net.draw(form, rng)), slope, method='lm', max_nfev=ROUNDS
+            )
+        )
     # The first of the good ones, to its very end: how a processor rounds must make no difference.
     least = min(fit.cost for fit in fits)
     good = next(fit for fit in fits if fit.cost <= ALIKE * least)
-    best = least_squares(error, good.x, slope, method='lm',
-                         ftol=EXACT, xtol=EXACT, gtol=EXACT, max_nfev=LAST_ROUNDS)
+    best = least_squares(
+        error, good.x, slope, method='lm', ftol=EXACT, xtol=EXACT, gtol=EXACT, max_nfev=LAST_ROUNDS
+    )
     network = net.from_vector(np.round(best.x, DIGITS), form)
     off = net.forward(network, given.inputs) - given.wanted
     progress(STARTS, STARTS)
-    return Weights(network, table, {
-        'made_by': 'marine_tracker train rough_nn', 'network': kind, 'seed': seed,
-        'layout': f'{INPUTS}-{HIDDEN}-1', 'lambda': LAMBDA, 'kappa': KAPPA,
-        'samples': len(given.wanted), 'rms_error': round(float(np.sqrt(np.mean(off ** 2))), 4)})
+    return Weights(
+        network,
+        table,
+        {
+            'made_by': 'marine_tracker train rough_nn',
+            'network': kind,
+            'seed': seed,
+            'layout': f'{INPUTS}-{HIDDEN}-1',
+            'lambda': LAMBDA,
+            'kappa': KAPPA,
+            'samples': len(given.wanted),
+            'rms_error': round(float(np.sqrt(np.mean(off**2))), 4),
+        },
+    )

@@ -13,10 +13,10 @@ from ..geometry import polar_to_position, to_range_bearing, unit_vector
 from ..types import Array, Plots
 
 SUB_STEPS = 4
-LONGEST_PHASE = 8               # scans: a manoeuvre's phase ends so many scans after it
+LONGEST_PHASE = 8  # scans: a manoeuvre's phase ends so many scans after it
 # Where on a hull the plot lies: a slow wander, and jumps to another part or what lies beside it.
-WANDER, WANDER_KEEP = 0.7, 0.85         # deviation, of the hull's; part kept a scan
-JUMP, FAR, BACK = 0.07, 2.5, 0.6        # chance a scan; deviation, of the hull's; chance to be home
+WANDER, WANDER_KEEP = 0.7, 0.85  # deviation, of the hull's; part kept a scan
+JUMP, FAR, BACK = 0.07, 2.5, 0.6  # chance a scan; deviation, of the hull's; chance to be home
 
 
 class Ships(NamedTuple):
@@ -72,15 +72,31 @@ KINDS = {
 SMALL_CRAFT = {
     'idle': Kind(1 / 120, speed=(0.0, 1.0), radius=(3.0, 20.0), lateral=0.5, thrust=(0.02, 0.1)),
     'steady': Kind(0.0, speed=(0.5, 12.0), drift=0.3),
-    'cruise': Kind(1 / 40, speed=(1.0, 15.0), radius=(30.0, 500.0), lateral=2.5,
-                   thrust=(0.05, 0.8)),
-    'ferry': Kind(1 / 25, turns=0.6, speed=(0.0, 6.0), radius=(5.0, 80.0), lateral=1.0,
-                  thrust=(0.05, 0.5)),
+    'cruise': Kind(
+        1 / 40, speed=(1.0, 15.0), radius=(30.0, 500.0), lateral=2.5, thrust=(0.05, 0.8)
+    ),
+    'ferry': Kind(
+        1 / 25, turns=0.6, speed=(0.0, 6.0), radius=(5.0, 80.0), lateral=1.0, thrust=(0.05, 0.5)
+    ),
     'weave': Kind(0.0, speed=(2.0, 12.0), lateral=3.0, weave=(12.0, 80.0)),
-    'sharp': Kind(1 / 30, turns=0.9, speed=(2.0, 12.0), radius=(15.0, 120.0), lateral=4.0,
-                  angle=200.0, thrust=(0.1, 1.5)),
-    'rib': Kind(1 / 8, turns=0.7, speed=(2.0, 20.0), radius=(12.0, 100.0), lateral=4.0,
-                angle=300.0, thrust=(0.3, 2.0)),
+    'sharp': Kind(
+        1 / 30,
+        turns=0.9,
+        speed=(2.0, 12.0),
+        radius=(15.0, 120.0),
+        lateral=4.0,
+        angle=200.0,
+        thrust=(0.1, 1.5),
+    ),
+    'rib': Kind(
+        1 / 8,
+        turns=0.7,
+        speed=(2.0, 20.0),
+        radius=(12.0, 100.0),
+        lateral=4.0,
+        angle=300.0,
+        thrust=(0.3, 2.0),
+    ),
 }
 
 
@@ -94,7 +110,8 @@ def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
     every = [kinds[name] for name in names]
     begin, turns, lateral, angle, drift = (
         np.array([getattr(kind, name) for kind in every])
-        for name in ('begin', 'turns', 'lateral', 'angle', 'drift'))
+        for name in ('begin', 'turns', 'lateral', 'angle', 'drift')
+    )
     angle = np.radians(angle)
     tight, wide = np.log(np.array([kind.radius for kind in every])).T
     low, high = np.array([kind.speed for kind in every]).T
@@ -109,16 +126,18 @@ def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
     speed_swing = wander * rng.uniform(0.2, 1.5, count)
     speed_rate = 2 * np.pi / rng.uniform(300, 1500, count)
     course_rate = 2 * np.pi / rng.uniform(200, 900, count)
-    course_swing = wander * np.minimum(np.radians(rng.uniform(1, 8, count)),
-                                       0.03 / (np.maximum(speed, 0.1) * course_rate))
+    course_swing = wander * np.minimum(
+        np.radians(rng.uniform(1, 8, count)), 0.03 / (np.maximum(speed, 0.1) * course_rate)
+    )
     weave_rate = 2 * np.pi / np.where(weave, rng.uniform(short, long), 1.0)
-    weave_swing = weave * np.minimum(np.radians(rng.uniform(10, 45, count)),
-                                     lateral / (np.maximum(speed, 0.1) * weave_rate))
+    weave_swing = weave * np.minimum(
+        np.radians(rng.uniform(10, 45, count)), lateral / (np.maximum(speed, 0.1) * weave_rate)
+    )
     phases = rng.uniform(0, 2 * np.pi, (3, count))
     stop = np.minimum(low, 0.3)
 
-    rate, left = np.zeros(count), np.zeros(count)                   # of turns: rad/s, rad to go
-    push, goal = np.zeros(count), speed.copy()                      # m/s^2 and m/s
+    rate, left = np.zeros(count), np.zeros(count)  # of turns: rad/s, rad to go
+    push, goal = np.zeros(count), speed.copy()  # m/s^2 and m/s
     positions, velocities = np.empty((2, scans, count, 2))
     manoeuvre = np.empty((scans, count), bool)
     clock = np.zeros(count)
@@ -126,7 +145,7 @@ def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
         start = (rng.random(count) < begin) & (left <= 0) & (push == 0)
         turning = start & (rng.random(count) < turns)
         changing = start & ~turning
-        radius = np.maximum(np.exp(rng.uniform(tight, wide)), speed ** 2 / lateral)
+        radius = np.maximum(np.exp(rng.uniform(tight, wide)), speed**2 / lateral)
         side = np.where(rng.random(count) < 0.5, -1.0, 1.0)
         rate = np.where(turning, side * speed / radius, rate)
         left = np.where(turning, rng.uniform(np.radians(15), angle), left)
@@ -141,10 +160,10 @@ def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
             course = course + dt * (
                 np.where(in_turn, rate, 0.0)
                 + weave_swing * weave_rate * np.cos(weave_rate * clock + phases[0])
-                + course_swing * course_rate * np.cos(course_rate * clock + phases[1]))
+                + course_swing * course_rate * np.cos(course_rate * clock + phases[1])
+            )
             left = np.where(in_turn, left - np.abs(rate) * dt, 0.0)
-            drifted = speed + dt * speed_swing * speed_rate * np.cos(
-                speed_rate * clock + phases[2])
+            drifted = speed + dt * speed_swing * speed_rate * np.cos(speed_rate * clock + phases[2])
             pushed = np.maximum(drifted, stop) + push * dt
             done = (push != 0) & ((pushed - goal) * np.sign(push) >= 0)
             speed, push = np.where(done, goal, pushed), np.where(done, 0.0, push)
@@ -193,17 +212,29 @@ def observe(ships: Ships, radar: RunRadar, rng, hull=None) -> tuple[list[Plots],
     def noise(sigma):
         wild = rng.standard_normal(shape) + rare * 5 * rng.standard_normal(shape)
         return (sigma * radar.truly)[:, None] * wild
+
     if hull is not None:
         along, across = hull[:, None] * _on_hull(shape, rng)
         bearing = bearing + across / np.maximum(distance, 1.0)
         distance = distance + along
     distance = np.maximum(distance + noise(radar.range_sigma), 1.0)
     bearing = bearing + noise(radar.bearing_sigma)
-    position, covariance = polar_to_position(distance, bearing, radar.range_sigma[:, None],
-                                             radar.bearing_sigma[:, None])
+    position, covariance = polar_to_position(
+        distance, bearing, radar.range_sigma[:, None], radar.bearing_sigma[:, None]
+    )
     zero, origin = np.zeros(shape[0]), np.zeros((shape[0], 2))
-    plots = [Plots(ships.time[:, k], distance[:, k], bearing[:, k], zero, origin, position[:, k],
-                   covariance[:, k]) for k in range(shape[1])]
+    plots = [
+        Plots(
+            ships.time[:, k],
+            distance[:, k],
+            bearing[:, k],
+            zero,
+            origin,
+            position[:, k],
+            covariance[:, k],
+        )
+        for k in range(shape[1])
+    ]
     seen = rng.random(shape) < radar.detection[:, None]
     seen[:, :2] = True
     return plots, seen
@@ -216,7 +247,8 @@ def _on_hull(shape, rng):
     place = FAR * rng.standard_normal((2, *shape)) * (rng.random(shape) > BACK)
     place[..., 0] = 0.0
     for k in range(1, shape[1]):
-        wander[..., k] = (WANDER_KEEP * wander[..., k - 1]
-                          + np.sqrt(1 - WANDER_KEEP ** 2) * wander[..., k])
+        wander[..., k] = (
+            WANDER_KEEP * wander[..., k - 1] + np.sqrt(1 - WANDER_KEEP**2) * wander[..., k]
+        )
         place[..., k] = np.where(jumps[:, k], place[..., k], place[..., k - 1])
     return WANDER * wander + place

@@ -15,8 +15,8 @@ from ..geometry import unit_vector
 from ..types import Array, take
 from .ship_tracks import RunRadar, Ships, observe, phase
 
-SETTLED = 20                    # scans that do not count
-GATE, REFUSALS = 16.0, 2        # squared distance; plots refused in a row, at most
+SETTLED = 20  # scans that do not count
+GATE, REFUSALS = 16.0, 2  # squared distance; plots refused in a row, at most
 
 
 class TrackTrial(NamedTuple):
@@ -65,8 +65,9 @@ def run(estimator: Estimator, on: TrackTrial, gated: bool, watch=None) -> Outcom
     position, velocity, nis = np.zeros((3, count, scans))
     for k in range(1, scans):
         ahead = estimator.extrapolate(state, ships.time[:, k])
-        position[:, k] = _in_sigma(ahead.position - ships.position[:, k], ships.position[:, k],
-                                   on.radar)
+        position[:, k] = _in_sigma(
+            ahead.position - ships.position[:, k], ships.position[:, k], on.radar
+        )
         velocity[:, k] = np.square(ahead.velocity - ships.velocity[:, k]).sum(1)
         inverse, _ = invert_2x2(ahead.covariance[:, :2, :2] + plots[k].covariance)
         nis[:, k] = squared_distance(plots[k].position - ahead.position, inverse)
@@ -88,7 +89,7 @@ def _in_sigma(off, place, radar):
     line = unit_vector(np.arctan2(*place.T))
     along = (off * line).sum(1) / radar.range_sigma
     across = (off[:, 0] * line[:, 1] - off[:, 1] * line[:, 0]) / (distance * radar.bearing_sigma)
-    return along ** 2 + across ** 2
+    return along**2 + across**2
 
 
 class Ratio(NamedTuple):

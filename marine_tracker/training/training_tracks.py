@@ -14,14 +14,14 @@ from ..types import Array, put, take
 from . import ship_tracks
 from .ship_tracks import Kind, RunRadar, Ships
 
-SPEED = 25.0                    # m/s, the fastest target the tracker is told of
+SPEED = 25.0  # m/s, the fastest target the tracker is told of
 # Radars under hard conditions: least and most of what is drawn evenly, and in what part of them.
 DETECTION = (0.7, 1.0)
 OUTLIERS, WITH_OUTLIERS = (0.0, 0.06), 0.5
-TRULY, WRONGLY_STATED = (0.5, 2.2), 0.4             # by its logarithm
-JITTER = (0.0, 0.06)            # deviation of a scan's time over the time
-TRIES = 50                      # moments at which stretches of a scenario begin
-TURNING = 0.04                  # m/s^2, acceleration that counts as manoeuvre
+TRULY, WRONGLY_STATED = (0.5, 2.2), 0.4  # by its logarithm
+JITTER = (0.0, 0.06)  # deviation of a scan's time over the time
+TRIES = 50  # moments at which stretches of a scenario begin
+TURNING = 0.04  # m/s^2, acceleration that counts as manoeuvre
 
 
 class Radars(NamedTuple):
@@ -70,16 +70,51 @@ class Waters(NamedTuple):
 
 
 WATERS = {
-    'ship': Waters(ship_tracks.KINDS, (
-        Radars(0.85, (8.0, 35.0), (0.15, 0.5), (1500.0, 18000.0), 1000.0, (22.0, 22.0), 0.25,
-               (20.0, 26.0)),
-        Radars(0.15, (2.0, 15.0), (0.3, 1.0), (60.0, 2500.0), 30.0, (22.0, 22.0), 1.0,
-               (20.0, 40.0), (3.0, 18.0)))),
-    'small_craft': Waters(ship_tracks.SMALL_CRAFT, (
-        Radars(0.5, (2.0, 15.0), (0.3, 1.2), (60.0, 5000.0), 20.0, (20.0, 48.0), 0.3,
-               (20.0, 48.0)),
-        Radars(0.5, (2.0, 15.0), (0.3, 1.2), (60.0, 5000.0), 20.0, (20.0, 48.0), 1.0,
-               (20.0, 48.0), hull=(0.0, 5.0)))),
+    'ship': Waters(
+        ship_tracks.KINDS,
+        (
+            Radars(
+                0.85,
+                (8.0, 35.0),
+                (0.15, 0.5),
+                (1500.0, 18000.0),
+                1000.0,
+                (22.0, 22.0),
+                0.25,
+                (20.0, 26.0),
+            ),
+            Radars(
+                0.15,
+                (2.0, 15.0),
+                (0.3, 1.0),
+                (60.0, 2500.0),
+                30.0,
+                (22.0, 22.0),
+                1.0,
+                (20.0, 40.0),
+                (3.0, 18.0),
+            ),
+        ),
+    ),
+    'small_craft': Waters(
+        ship_tracks.SMALL_CRAFT,
+        (
+            Radars(
+                0.5, (2.0, 15.0), (0.3, 1.2), (60.0, 5000.0), 20.0, (20.0, 48.0), 0.3, (20.0, 48.0)
+            ),
+            Radars(
+                0.5,
+                (2.0, 15.0),
+                (0.3, 1.2),
+                (60.0, 5000.0),
+                20.0,
+                (20.0, 48.0),
+                1.0,
+                (20.0, 48.0),
+                hull=(0.0, 5.0),
+            ),
+        ),
+    ),
 }
 
 
@@ -108,22 +143,33 @@ def draw(waters: Waters, kind, scans: int, rng) -> Traffic:
 
     def by_log(low, high):
         return np.exp(rng.uniform(np.log(low), np.log(high)))
-    own = {name: np.array([getattr(one, name) for one in waters.radars])[sort]
-           for name in ('hard', 'nearest', 'ranges')}
+
+    own = {
+        name: np.array([getattr(one, name) for one in waters.radars])[sort]
+        for name in ('hard', 'nearest', 'ranges')
+    }
     hard = rng.random(count) < own['hard']
     some = rng.random((2, count)) < np.array([[WITH_OUTLIERS], [WRONGLY_STATED]])
     period = 60 / np.where(hard, drawn('hard_rpm'), drawn('rpm'))
     radar = RunRadar(
-        range_sigma=drawn('range_sigma'), bearing_sigma=np.radians(drawn('bearing_sigma')),
+        range_sigma=drawn('range_sigma'),
+        bearing_sigma=np.radians(drawn('bearing_sigma')),
         detection=np.where(hard, rng.uniform(*DETECTION, count), drawn('detection')),
         outliers=np.where(hard & some[0], rng.uniform(*OUTLIERS, count), 0.0),
         truly=np.where(hard & some[1], by_log(*np.full((count, 2), TRULY).T), 1.0),
-        period=period)
+        period=period,
+    )
     jitter = np.where(hard, rng.uniform(*JITTER, count), 0.0)[:, None]
     steps = period[:, None] * (1 + jitter * np.clip(rng.standard_normal((count, scans)), -3, 3))
     kind, names = np.asarray(kind), list(waters.kinds)
-    ships = ship_tracks.sail([names[i % len(names)] for i in kind], by_log(*own['ranges'].T),
-                             steps, rng, drawn('fastest'), waters.kinds)
+    ships = ship_tracks.sail(
+        [names[i % len(names)] for i in kind],
+        by_log(*own['ranges'].T),
+        steps,
+        rng,
+        drawn('fastest'),
+        waters.kinds,
+    )
     if waters.scenario is not None:
         rows = np.flatnonzero(kind == len(names))
         ships = put(ships, rows, _targets(waters.scenario, steps[rows], rng))
@@ -140,18 +186,26 @@ def _targets(scenario: Scenario, steps, rng) -> Ships:
     time = np.cumsum(steps, 1) - steps[:, :1]
     paths, longest = scenario.fleet.paths, time[:, -1].max()
     room = scenario.duration - longest
-    ship, begin = np.broadcast_arrays(np.arange(1, paths.ships),
-                                      np.linspace(0.0, max(room, 0.0), TRIES)[:, None])
+    ship, begin = np.broadcast_arrays(
+        np.arange(1, paths.ships), np.linspace(0.0, max(room, 0.0), TRIES)[:, None]
+    )
     there = motion.exist(paths, ship, begin) & motion.exist(paths, ship, begin + longest)
     if room <= 0 or not there.any():
-        raise ValueError(f'scenario {scenario.name} has no target that is there for '
-                         f'{longest:.0f} s; make it longer')
+        raise ValueError(
+            f'scenario {scenario.name} has no target that is there for '
+            f'{longest:.0f} s; make it longer'
+        )
     pick = rng.integers(0, there.sum(), len(steps))
     at = begin[there][pick][:, None] + time
     position, velocity = motion.locate_ships(
-        paths, np.broadcast_to(ship[there][pick][:, None], at.shape), at)
+        paths, np.broadcast_to(ship[there][pick][:, None], at.shape), at
+    )
     own = np.zeros(len(at), np.int64)
     middle, _ = motion.locate_ships(paths, own, at[:, at.shape[1] // 2])
     acceleration = np.gradient(velocity, axis=1) / steps[..., None]
-    return Ships(time, position - middle[:, None], velocity,
-                 np.hypot(*np.moveaxis(acceleration, -1, 0)) > TURNING)
+    return Ships(
+        time,
+        position - middle[:, None],
+        velocity,
+        np.hypot(*np.moveaxis(acceleration, -1, 0)) > TURNING,
+    )

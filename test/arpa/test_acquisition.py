@@ -23,8 +23,10 @@ from marine_tracker.tracking.lifecycle import (
 )
 
 RING = '[{name: ring, kind: guard, range_m: [1000, 2000]}]'
-QUAY = ('[{name: quay, kind: exclusion, fixed_to: ground,'
-        ' corners_m: [[-500, -500], [500, -500], [500, 500], [-500, 500]]}]')
+QUAY = (
+    '[{name: quay, kind: exclusion, fixed_to: ground,'
+    ' corners_m: [[-500, -500], [500, -500], [500, 500], [-500, 500]]}]'
+)
 
 
 def told(events):
@@ -84,7 +86,7 @@ def test_a_click_takes_the_nearest_track_that_is_no_target_yet(situate):
     scene = situate([[0, 0], [0, 40], [0, 100]], status=[CONFIRMED, TENTATIVE, TENTATIVE])
     state, _ = run([scene])
     state, events = run([scene], acquire(state, [0, 5], 1.0), start=3.0)
-    assert told(events) == [('acquired', 2)]                # quick entry, though tentative
+    assert told(events) == [('acquired', 2)]  # quick entry, though tentative
     assert state.targets.number.tolist() == [1, 0]
     assert label(state.targets.id, state.targets.number) == ['TT01', 'Q2']
 
@@ -127,15 +129,17 @@ def test_a_click_waits_for_a_track_and_takes_it_when_it_comes(situate):
 
 def test_a_click_lapses_when_no_track_comes_and_says_so(situate):
     elsewhere = situate([[0, 900]], status=TENTATIVE)
-    state, events = run([elsewhere] * 8, acquire(begin(), [10, 20], 0.0))      # 21 s
+    state, events = run([elsewhere] * 8, acquire(begin(), [10, 20], 0.0))  # 21 s
     assert told(events) == [('no track there', 0)] and events.position.tolist() == [[10, 20]]
     assert not len(state.clicks.since) and not ids(state)
     state, events = run([elsewhere], state, start=24.0)
     assert told(events) == []
 
 
-@pytest.mark.parametrize(('position', 'message'), [
-    ([np.nan, 0], 'two finite numbers'), ([1, 2, 3], 'two finite numbers')])
+@pytest.mark.parametrize(
+    ('position', 'message'),
+    [([np.nan, 0], 'two finite numbers'), ([1, 2, 3], 'two finite numbers')],
+)
 def test_a_click_nowhere_is_refused(position, message):
     with pytest.raises(ValueError, match=message):
         acquire(begin(), position, 0.0)
@@ -149,9 +153,14 @@ def test_clicks_do_not_pile_up():
         acquire(state, [0, 0], 0.0)
 
 
-@pytest.mark.parametrize(('reason', 'expected'), [
-    (MISSED, 'lost at once'), (OUT_OF_RANGE, 'left by range'),
-    (MERGED, 'merged into another track')])
+@pytest.mark.parametrize(
+    ('reason', 'expected'),
+    [
+        (MISSED, 'lost at once'),
+        (OUT_OF_RANGE, 'left by range'),
+        (MERGED, 'merged into another track'),
+    ],
+)
 def test_a_lost_track_ends_its_target_with_the_reason(situate, reason, expected):
     state, _ = run([situate([[0, 0]])])
     state, events = run([situate([[3, 4]], status=LOST, reason=reason)], state, start=3.0)
@@ -178,8 +187,12 @@ def test_a_target_merged_into_another_track_goes_on_as_that(situate):
     both = situate([[0, 0], [30, 0], [10, 0]], status=[CONFIRMED, CONFIRMED, TENTATIVE])
     state, _ = run([both], acquire(begin(), [0, 0], 0.0), settings)
     assert ids(state) == [1]
-    after = situate([[0, 0], [30, 0], [10, 0]], status=[LOST, CONFIRMED, TENTATIVE],
-                    number=[1, 2, 0], reason=[MERGED, 0, 0])
+    after = situate(
+        [[0, 0], [30, 0], [10, 0]],
+        status=[LOST, CONFIRMED, TENTATIVE],
+        number=[1, 2, 0],
+        reason=[MERGED, 0, 0],
+    )
     state, events = run([after], state, settings, start=3.0)
     assert ids(state) == [2] and state.targets.acquired.tolist() == [MANUAL]
     assert state.targets.since.tolist() == [0.0]
@@ -194,6 +207,7 @@ def test_when_the_tracker_begins_anew_its_targets_are_gone(situate):
 
 # exclusion zones
 
+
 def test_tracks_in_an_exclusion_zone_are_not_acquired(situate):
     state, _ = run([situate([[0, 0], [600, 0]], zones=QUAY)])
     assert ids(state) == [2]
@@ -201,15 +215,20 @@ def test_tracks_in_an_exclusion_zone_are_not_acquired(situate):
 
 def test_exclusion_beats_guard(situate):
     ring = '{name: ring, kind: guard, range_m: [0, 9000]}'
-    state, _ = run([situate([[0, 0], [600, 0]], zones=f'{QUAY[:-1]}, {ring}]')],
-                   settings=AcquisitionSettings(automatic='zones'))
+    state, _ = run(
+        [situate([[0, 0], [600, 0]], zones=f'{QUAY[:-1]}, {ring}]')],
+        settings=AcquisitionSettings(automatic='zones'),
+    )
     assert ids(state) == [2]
 
 
 def test_a_target_that_enters_an_exclusion_zone_drops_out_unless_acquired_by_hand(situate):
     state, _ = run([situate([[600, 0], [600, 100]], zones=QUAY)])
-    state, _ = run([situate([[600, 0], [600, 100]], zones=QUAY)], acquire(
-        cancel(state, 2)[0], [600, 100], 1.0), start=3.0)
+    state, _ = run(
+        [situate([[600, 0], [600, 100]], zones=QUAY)],
+        acquire(cancel(state, 2)[0], [600, 100], 1.0),
+        start=3.0,
+    )
     assert state.targets.acquired.tolist() == [AUTOMATIC, MANUAL]
     state, events = run([situate([[400, 0], [400, 100]], zones=QUAY)], state, start=6.0)
     assert told(events) == [('entered an exclusion zone', 1)] and ids(state) == [2]
@@ -230,10 +249,11 @@ def test_a_target_at_the_border_of_an_exclusion_zone_does_not_come_and_go(situat
         acquired += ('acquired', 1) in told(events)
     assert acquired <= 1
     state, events = run([situate([[520, 0]], zones=QUAY)] * 9, state, start=180.0)
-    assert ids(state) == [1]                            # back, once it has left it for good
+    assert ids(state) == [1]  # back, once it has left it for good
 
 
 # capacity
+
 
 def test_the_nearest_are_acquired_first(situate):
     position = np.column_stack([1000 + 100 * np.arange(30), np.zeros(30)])
@@ -256,9 +276,10 @@ def test_a_newcomer_takes_a_place_only_if_it_is_clearly_nearer(situate):
     assert told(events) == [] and state.waiting == 1
     state, events = run([situate([[5000, 0], [4000, 0], [3900, 0]])], state, settings, start=6.0)
     assert told(events) == [('acquired', 3), ('gave way to a nearer target', 1)]
-    for k in range(5):                                  # and they do not change back
-        state, events = run([situate([[5000, 0], [4000, 0], [3900, 0]])], state, settings,
-                            start=9.0 + k)
+    for k in range(5):  # and they do not change back
+        state, events = run(
+            [situate([[5000, 0], [4000, 0], [3900, 0]])], state, settings, start=9.0 + k
+        )
         assert told(events) == []
 
 
@@ -316,8 +337,10 @@ def test_a_click_takes_the_place_of_the_farthest_automatic_target(situate):
 
 
 def test_a_click_finds_no_room_among_targets_by_hand(situate):
-    settings, scene = AcquisitionSettings(capacity=2, automatic='nowhere', click_radius=100), situate(
-        [[1000, 0], [2000, 0], [3000, 0]])
+    settings, scene = (
+        AcquisitionSettings(capacity=2, automatic='nowhere', click_radius=100),
+        situate([[1000, 0], [2000, 0], [3000, 0]]),
+    )
     state = begin()
     for k in (1, 2):
         state = acquire(state, [1000 * k, 0], 0.0)
@@ -340,13 +363,18 @@ def test_the_capacity_is_never_exceeded_but_by_what_never_gives_way(situate):
         count = int(rng.integers(0, 40))
         chosen = np.sort(rng.permutation(60)[:count])
         position = rng.uniform(-6000, 6000, (60, 2))[chosen]
-        scene = situate(position, rng.normal(0, 6, (count, 2)), id=chosen + 1,
-                        status=rng.choice([CONFIRMED, COASTING, LOST], count))
+        scene = situate(
+            position,
+            rng.normal(0, 6, (count, 2)),
+            id=chosen + 1,
+            status=rng.choice([CONFIRMED, COASTING, LOST], count),
+        )
         if k % 4 == 0:
             state = acquire(state, rng.uniform(-6000, 6000, 2), 3.0 * k)
         state, events = step(state, settings, scene, 3.0 * k)
         firm = (state.targets.acquired == MANUAL) | np.isin(
-            state.targets.id, scene.id[scene.danger > 0])
+            state.targets.id, scene.id[scene.danger > 0]
+        )
         assert len(firm) <= 12 or firm.all()
         alive = scene.id[scene.status != LOST]
         assert np.isin(state.targets.id, alive).all()
@@ -354,6 +382,7 @@ def test_the_capacity_is_never_exceeded_but_by_what_never_gives_way(situate):
 
 
 # cancelling
+
 
 def test_a_cancelled_target_is_not_acquired_again_by_itself(situate):
     scene = situate([[1000, 0], [2000, 0]])
@@ -379,9 +408,9 @@ def test_a_cancelled_target_is_acquired_when_it_enters_a_guard_zone_anew(situate
     state, _ = run([inside], settings=settings)
     state, _ = cancel(state, 1)
     state, _ = run([inside] * 20, state, settings, start=3.0)
-    assert ids(state) == []                                 # it is still inside
+    assert ids(state) == []  # it is still inside
     state, _ = run([out] * 3 + [inside] * 3, state, settings, start=63.0)
-    assert ids(state) == []                                 # out for 9 s only: the border
+    assert ids(state) == []  # out for 9 s only: the border
     state, _ = run([out] * 9 + [inside], state, settings, start=100.0)
     assert ids(state) == [1]
 

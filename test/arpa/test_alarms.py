@@ -41,21 +41,33 @@ class Bridge:
         """What changed in one scan: [(kind, target number, state)], sorted."""
         self.now += PERIOD
         scene = self.situate(position, velocity, zones=self.zones, limits=LIMITS, **about)
-        self.acquisition, events = acquisition.step(self.acquisition, self.acquiring, scene,
-                                                    self.now)
+        self.acquisition, events = acquisition.step(
+            self.acquisition, self.acquiring, scene, self.now
+        )
         count = len(scene.id)
         tracking = Tracking(
-            self.acquiring.capacity, fallen,
+            self.acquiring.capacity,
+            fallen,
             np.full(count, np.inf) if overlap is None else np.asarray(overlap, float),
-            np.full(count, -1) if other is None else np.asarray(other))
-        self.alerts, changed = alarms.step(self.alerts, self.settings, scene, self.acquisition,
-                                           events, self.zones, tracking, self.now)
+            np.full(count, -1) if other is None else np.asarray(other),
+        )
+        self.alerts, changed = alarms.step(
+            self.alerts,
+            self.settings,
+            scene,
+            self.acquisition,
+            events,
+            self.zones,
+            tracking,
+            self.now,
+        )
         return self.told(changed)
 
     def sensors(self, heading=0.0, position=0.0, plots=0.0):
         self.now += PERIOD
-        self.alerts, changed = alarms.watch(self.alerts, self.settings,
-                                            Silence(heading, position, (plots,)), self.now)
+        self.alerts, changed = alarms.watch(
+            self.alerts, self.settings, Silence(heading, position, (plots,)), self.now
+        )
         return self.told(changed)
 
     def acknowledge(self, **which):
@@ -69,18 +81,26 @@ class Bridge:
 
     def told(self, changed):
         self.text = text(changed, self.zones)
-        return sorted((NAMES[kind], number, STATES[state]) for kind, number, state in zip(
-            changed.kind.tolist(), changed.number.tolist(), changed.state.tolist()))
+        return sorted(
+            (NAMES[kind], number, STATES[state])
+            for kind, number, state in zip(
+                changed.kind.tolist(), changed.number.tolist(), changed.state.tolist()
+            )
+        )
 
     def standing(self):
-        return [(NAMES[kind], STATES[state]) for kind, state in zip(
-            self.alerts.kind.tolist(), self.alerts.state.tolist()) if state]
+        return [
+            (NAMES[kind], STATES[state])
+            for kind, state in zip(self.alerts.kind.tolist(), self.alerts.state.tolist())
+            if state
+        ]
 
 
 @pytest.fixture
 def bridge(situate):
     def make(*arguments, **named):
         return Bridge(situate, *arguments, **named)
+
     return make
 
 
@@ -91,6 +111,7 @@ def course(position, velocity, scans):
 
 # danger
 
+
 def test_a_target_that_passes_close_raises_once_and_ends_when_it_has_passed(bridge):
     one, speed = bridge(), 20 * KNOT
     told = []
@@ -100,8 +121,8 @@ def test_a_target_that_passes_close_raises_once_and_ends_when_it_has_passed(brid
             one.acknowledge(kind=alarms.DANGER, number=1)
     (raised, *what), (ended, *then) = told
     assert what == ['danger', 1, UNACKNOWLEDGED] and then == ['danger', 1, NORMAL]
-    assert 280 <= raised <= 280 + 5 + 2 * PERIOD            # TCPA 720 s at 280 s
-    assert 1000 <= ended <= 1000 + 15 + 2 * PERIOD          # CPA at 1000 s
+    assert 280 <= raised <= 280 + 5 + 2 * PERIOD  # TCPA 720 s at 280 s
+    assert 1000 <= ended <= 1000 + 15 + 2 * PERIOD  # CPA at 1000 s
 
 
 def test_an_unacknowledged_danger_that_is_over_waits_to_be_acknowledged(bridge):
@@ -137,7 +158,7 @@ def test_a_track_that_does_not_show_again_raises_no_danger(bridge):
     for _ in range(7):
         assert one.scan([[0.0, 2000.0]], [[0.0, -5.0]], status=COASTING) == []
     assert one.scan([[0.0, 2000.0]], [[0.0, -5.0]]) == [('danger', 1, UNACKNOWLEDGED)]
-    for _ in range(7):                              # but a danger stays one while it coasts
+    for _ in range(7):  # but a danger stays one while it coasts
         assert one.scan([[0.0, 2000.0]], [[0.0, -5.0]], status=COASTING) == []
 
 
@@ -171,12 +192,17 @@ def test_a_target_in_acquisition_and_a_track_that_is_no_target_raise_no_danger(b
     one = bridge(acquiring=acquisition.AcquisitionSettings(automatic='nowhere'))
     one.acquisition = acquisition.acquire(one.acquisition, [0.0, 2000.0], 0.0)
     for _ in range(5):
-        assert one.scan([[0.0, 2000.0], [0.0, 3000.0]], [[0.0, -8.0]] * 2,
-                        status=[TENTATIVE, CONFIRMED]) == []
+        assert (
+            one.scan(
+                [[0.0, 2000.0], [0.0, 3000.0]], [[0.0, -8.0]] * 2, status=[TENTATIVE, CONFIRMED]
+            )
+            == []
+        )
     assert one.acquisition.targets.id.tolist() == [1]
 
 
 # lost target
+
 
 def test_a_lost_target_raises_with_its_last_position(bridge):
     one = bridge()
@@ -195,14 +221,17 @@ def test_a_dangerous_target_that_is_lost_tells_both(bridge):
     for _ in range(4):
         one.scan([[0.0, 2000.0]], [[0.0, -5.0]])
     assert one.scan([[0.0, 2000.0]], [[0.0, -5.0]], status=LOST) == [
-        ('danger', 1, RECTIFIED), ('lost target', 1, UNACKNOWLEDGED)]
+        ('danger', 1, RECTIFIED),
+        ('lost target', 1, UNACKNOWLEDGED),
+    ]
 
 
-@pytest.mark.parametrize(('scans', 'expected'), [
-    (13, []), (14, [('lost target', 1, UNACKNOWLEDGED)])])
+@pytest.mark.parametrize(
+    ('scans', 'expected'), [(13, []), (14, [('lost target', 1, UNACKNOWLEDGED)])]
+)
 def test_a_target_lost_soon_after_it_was_acquired_raises_nothing(bridge, scans, expected):
     one = bridge(acquiring=acquisition.AcquisitionSettings(brief=40.0))
-    for _ in range(scans):                                  # 39 s and 42 s until it is lost
+    for _ in range(scans):  # 39 s and 42 s until it is lost
         one.scan([[3000.0, 4000.0]])
     assert one.scan([[3000.0, 4000.0]], status=LOST) == expected
 
@@ -253,6 +282,7 @@ def test_a_target_that_comes_back_is_a_new_one_and_can_be_lost_again(bridge):
 
 # new target
 
+
 def test_a_target_that_enters_a_guard_zone_raises_though_it_was_tracked_before(bridge):
     one = bridge(f'[{RING}]')
     assert one.scan([[2500.0, 0.0]]) == []
@@ -301,7 +331,9 @@ def test_zones_that_change_while_running(bridge):
     one.acknowledge()
     one.zones = zones.parse(f'[{INNER}]')
     assert one.scan([[1400.0, 0.0]]) == [
-        ('new target', 1, UNACKNOWLEDGED), ('new target', 1, NORMAL)]
+        ('new target', 1, UNACKNOWLEDGED),
+        ('new target', 1, NORMAL),
+    ]
     one.zones = zones.parse('')
     assert one.scan([[1400.0, 0.0]]) == [('new target', 1, RECTIFIED)]
     assert one.text == ['TT01 in guard zone no longer set, at 0.76 NM, 090.0 deg']
@@ -317,12 +349,15 @@ def test_cancelled_and_excluded_tracks_are_no_new_targets(bridge):
 
 # capacity, fallback, swap risk, sensors
 
+
 def test_capacity_warns_at_nine_tenths_and_when_full(bridge):
     one = bridge(acquiring=acquisition.AcquisitionSettings(capacity=20))
+
     def crowd(count):
         return one.scan(np.column_stack([5000.0 + 300 * np.arange(count), np.zeros(count)]))
+
     assert crowd(17) == []
-    assert crowd(18) == [('near capacity', 0, ACKNOWLEDGED)]        # a caution
+    assert crowd(18) == [('near capacity', 0, ACKNOWLEDGED)]  # a caution
     assert one.text == ['18 targets, 20 may be']
     assert crowd(23) == [('capacity', 0, UNACKNOWLEDGED)]
     assert one.text == ['20 targets, as many as may be; 3 more are not acquired']
@@ -343,7 +378,9 @@ def test_fallback_of_many_is_told_of_one_among_many_not(bridge):
 def test_swap_risk_names_both_targets(bridge):
     one, pair = bridge(), [[5000.0, 0.0], [5040.0, 0.0]]
     assert one.scan(pair, overlap=[0.5, 0.5], other=[1, 0]) == [
-        ('swap risk', 1, ACKNOWLEDGED), ('swap risk', 2, ACKNOWLEDGED)]
+        ('swap risk', 1, ACKNOWLEDGED),
+        ('swap risk', 2, ACKNOWLEDGED),
+    ]
     assert one.text[0] == 'TT01 may be swapped with TT02, at 2.70 NM, 090.0 deg'
     for _ in range(10):
         assert one.scan(pair, overlap=[1.2, 1.2], other=[1, 0]) == []
@@ -357,7 +394,7 @@ def test_a_sensor_that_falls_silent(bridge, name):
     assert one.sensors(**{name: 10.1}) == [(f'{name} missing', 0, UNACKNOWLEDGED)]
     assert one.text == [f'no {name} for 10 s']
     assert one.sensors(**{name: 13.0}) == []
-    assert one.scan([[100.0, 0.0]]) == []                   # a scan leaves it alone
+    assert one.scan([[100.0, 0.0]]) == []  # a scan leaves it alone
     one.acknowledge()
     told = [one.sensors() for _ in range(7)]
     assert sum(told, []) == [(f'{name} missing', 0, NORMAL)]
@@ -371,36 +408,48 @@ def test_a_sensor_never_heard(bridge):
 
 # words
 
+
 def test_a_danger_tells_its_values(bridge):
     one = bridge()
     for _ in range(3):
         one.scan([[0.2 * NAUTICAL_MILE, 3 * NAUTICAL_MILE]], [[0.0, -30 * KNOT]])
-    assert one.text == ['TT01 dangerous: CPA 0.20 NM in 6.0 min, probability 100 %, then at '
-                        '3.01 NM, 003.8 deg']
+    assert one.text == [
+        'TT01 dangerous: CPA 0.20 NM in 6.0 min, probability 100 %, then at 3.01 NM, 003.8 deg'
+    ]
 
 
 def test_every_kind_has_words_a_priority_and_a_rule():
     count = len(NAMES)
     assert len(alarms.PRIORITY) == len(alarms.rules(AlarmSettings())) == count
     kinds = np.arange(count)
-    every = alerts.Alerts(kinds.astype(np.int8), 0 * kinds, kinds, kinds, 0 * kinds.astype(np.int8),
-                          0.0 * kinds, 0.0 * kinds, np.zeros((count, 2)),
-                          np.full((count, alerts.VALUES), 1.0))
+    every = alerts.Alerts(
+        kinds.astype(np.int8),
+        0 * kinds,
+        kinds,
+        kinds,
+        0 * kinds.astype(np.int8),
+        0.0 * kinds,
+        0.0 * kinds,
+        np.zeros((count, 2)),
+        np.full((count, alerts.VALUES), 1.0),
+    )
     assert len(set(text(every, zones.parse('')))) == count
     unknown = every._replace(values=np.full((count, alerts.VALUES), np.inf))
-    assert all(text(unknown._replace(kind=np.full(count, kind, np.int8)), zones.parse(''))
-               for kind in (alarms.HEADING_MISSING, alarms.PLOTS_MISSING))
+    assert all(
+        text(unknown._replace(kind=np.full(count, kind, np.int8)), zones.parse(''))
+        for kind in (alarms.HEADING_MISSING, alarms.PLOTS_MISSING)
+    )
 
 
 @settings(max_examples=40, deadline=None)
-@given(st.integers(0, 2 ** 32 - 1))
+@given(st.integers(0, 2**32 - 1))
 def test_whatever_happens_every_change_follows_from_the_state_before(situate, seed):
     """Random traffic, operator and sensors: changes are the differences, no alert is twofold."""
     rng = np.random.default_rng(seed)
     one = Bridge(situate, f'[{RING}, {INNER}]', acquisition.AcquisitionSettings(capacity=6))
     before, where = {}, rng.uniform(-2500, 2500, (15, 2))
     for _ in range(30):
-        chosen = np.sort(rng.permutation(15)[:rng.integers(0, 12)])
+        chosen = np.sort(rng.permutation(15)[: rng.integers(0, 12)])
         kept = one.alerts
         what = rng.integers(4)
         if what == 0:
@@ -410,11 +459,13 @@ def test_whatever_happens_every_change_follows_from_the_state_before(situate, se
         elif what == 2:
             told = one.sensors(heading=rng.uniform(0, 20), plots=rng.uniform(0, 20))
         else:
-            told = one.scan(where[chosen] + rng.normal(0, 50, (len(chosen), 2)),
-                            rng.normal(0, 8, (len(chosen), 2)), id=chosen + 1,
-                            status=rng.choice([CONFIRMED, COASTING, LOST], len(chosen)))
-        keys = list(zip(one.alerts.kind.tolist(), one.alerts.zone.tolist(),
-                        one.alerts.id.tolist()))
+            told = one.scan(
+                where[chosen] + rng.normal(0, 50, (len(chosen), 2)),
+                rng.normal(0, 8, (len(chosen), 2)),
+                id=chosen + 1,
+                status=rng.choice([CONFIRMED, COASTING, LOST], len(chosen)),
+            )
+        keys = list(zip(one.alerts.kind.tolist(), one.alerts.zone.tolist(), one.alerts.id.tolist()))
         assert len(set(keys)) == len(keys)
         after = {key: state for key, state in zip(keys, one.alerts.state.tolist()) if state}
         differences = {key for key in {*before, *after} if before.get(key) != after.get(key)}
@@ -424,10 +475,13 @@ def test_whatever_happens_every_change_follows_from_the_state_before(situate, se
 
 def test_plots_missing_of_two_radars_are_two_alerts_that_name_them(bridge):
     here = bridge()
-    here.alerts, changed = alarms.watch(here.alerts, here.settings,
-                                        Silence(0.0, 0.0, (0.0, 20.0)), 100.0)
+    here.alerts, changed = alarms.watch(
+        here.alerts, here.settings, Silence(0.0, 0.0, (0.0, 20.0)), 100.0
+    )
     assert text(changed, zones.parse(''), ['X band', 'S band']) == [
-        'no plots of radar S band for 20 s']
-    here.alerts, changed = alarms.watch(here.alerts, here.settings,
-                                        Silence(0.0, 0.0, (20.0, 30.0)), 110.0)
+        'no plots of radar S band for 20 s'
+    ]
+    here.alerts, changed = alarms.watch(
+        here.alerts, here.settings, Silence(0.0, 0.0, (20.0, 30.0)), 110.0
+    )
     assert parts(changed, zones.parse(''), ['X band', 'S band']) == ['X band']

@@ -27,8 +27,13 @@ def causes(levels):
     there = [k for k, level in enumerate(levels) if level != AWAY]
     count = len(there)
     id = np.array(there, np.int64) + 1
-    return Causes(id, id + 100, np.array([levels[k] for k in there], np.int8),
-                  np.zeros((count, 2)), np.repeat(np.arange(count)[:, None] * 1.0, 5, 1))
+    return Causes(
+        id,
+        id + 100,
+        np.array([levels[k] for k in there], np.int8),
+        np.zeros((count, 2)),
+        np.repeat(np.arange(count)[:, None] * 1.0, 5, 1),
+    )
 
 
 def play(script, rule=None, momentary=False):
@@ -52,16 +57,20 @@ def states(script, **about):
 A, B, C, N = ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED, NORMAL
 
 
-@pytest.mark.parametrize(('script', 'expected'), [
-    ([ON, ON, OFF], [A, A, C]),
-    ([ON, ACKNOWLEDGE, ON, OFF], [A, B, B, N]),
-    ([ON, OFF, ACKNOWLEDGE, OFF], [A, C, N, N]),
-    ([ON, OFF, ON, ACKNOWLEDGE, OFF, ON], [A, C, A, B, N, A]),
-    ([ON, ACKNOWLEDGE, ACKNOWLEDGE, ON], [A, B, B, B]),
-    ([KEEP, KEEP, ON, KEEP, KEEP, OFF, KEEP], [N, N, A, A, A, C, C]),
-    ([ON, AWAY, AWAY], [A, C, C]),
-    ([ON, ACKNOWLEDGE, AWAY], [A, B, N]),
-    ([OFF, ACKNOWLEDGE, AWAY], [N, N, N])])
+@pytest.mark.parametrize(
+    ('script', 'expected'),
+    [
+        ([ON, ON, OFF], [A, A, C]),
+        ([ON, ACKNOWLEDGE, ON, OFF], [A, B, B, N]),
+        ([ON, OFF, ACKNOWLEDGE, OFF], [A, C, N, N]),
+        ([ON, OFF, ON, ACKNOWLEDGE, OFF, ON], [A, C, A, B, N, A]),
+        ([ON, ACKNOWLEDGE, ACKNOWLEDGE, ON], [A, B, B, B]),
+        ([KEEP, KEEP, ON, KEEP, KEEP, OFF, KEEP], [N, N, A, A, A, C, C]),
+        ([ON, AWAY, AWAY], [A, C, C]),
+        ([ON, ACKNOWLEDGE, AWAY], [A, B, N]),
+        ([OFF, ACKNOWLEDGE, AWAY], [N, N, N]),
+    ],
+)
 def test_the_states_of_bridge_alert_management(script, expected):
     assert states(script) == expected
 
@@ -69,13 +78,20 @@ def test_the_states_of_bridge_alert_management(script, expected):
 def test_a_cause_must_hold_before_it_raises_and_be_gone_before_it_ends():
     rule = Rule(raise_after=2.0, end_after=3.0)
     assert states([ON, ON, OFF, ON, ON, ON], rule=rule) == [N, N, N, N, N, A]
-    assert states([ON, KEEP, ON], rule=rule) == [N, N, A]           # the middle is no interruption
-    assert states([ON, KEEP, KEEP, KEEP, ON], rule=rule) == [N, N, N, N, A]     # nor does it raise
+    assert states([ON, KEEP, ON], rule=rule) == [N, N, A]  # the middle is no interruption
+    assert states([ON, KEEP, KEEP, KEEP, ON], rule=rule) == [N, N, N, N, A]  # nor does it raise
     assert states([KEEP, KEEP, KEEP, ON, ON, ON], rule=rule) == [N, N, N, N, N, A]
     raised = [ON, ON, ON]
     assert states([*raised, OFF, OFF, KEEP, OFF, OFF, OFF, OFF], rule=rule)[3:] == [
-        A, A, A, A, A, A, C]
-    assert states([*raised, AWAY], rule=rule)[3:] == [C]        # gone for good: at once
+        A,
+        A,
+        A,
+        A,
+        A,
+        A,
+        C,
+    ]
+    assert states([*raised, AWAY], rule=rule)[3:] == [C]  # gone for good: at once
 
 
 def test_a_rectified_alert_comes_back_only_after_the_cause_held():
@@ -91,16 +107,17 @@ def test_a_caution_needs_no_acknowledgement():
 
 def test_an_alert_on_something_momentary_stays_until_acknowledged():
     rule = Rule(momentary=True)
-    assert states([ON, AWAY, AWAY, ACKNOWLEDGE, AWAY], rule=rule, momentary=True) == [
-        A, A, A, N, N]
+    assert states([ON, AWAY, AWAY, ACKNOWLEDGE, AWAY], rule=rule, momentary=True) == [A, A, A, N, N]
 
 
-@pytest.mark.parametrize(('rule', 'script'), [
-    (Rule(momentary=True, lapse_after=5.0), [ON]), (Rule(lapse_after=4.0), [ON, OFF])])
+@pytest.mark.parametrize(
+    ('rule', 'script'),
+    [(Rule(momentary=True, lapse_after=5.0), [ON]), (Rule(lapse_after=4.0), [ON, OFF])],
+)
 def test_what_nobody_acknowledges_lapses(rule, script):
     found = states([*script, *[AWAY] * 6], rule=rule)
     assert found[5] != N and found[6] == N
-    assert states([ON] * 20, rule=Rule(lapse_after=5.0)) == [A] * 20        # the cause is there
+    assert states([ON] * 20, rule=Rule(lapse_after=5.0)) == [A] * 20  # the cause is there
 
 
 def test_each_change_is_told_once_with_the_values_of_that_time():
@@ -116,7 +133,7 @@ def test_each_change_is_told_once_with_the_values_of_that_time():
     alerts, changed = machine.advance(alerts, KIND, 0, later, rule, 2.0)
     assert not len(changed.id) and alerts.values[0, 0] == 7.0 and alerts.since.tolist() == [1.0]
     alerts, changed = machine.advance(alerts, KIND, 0, causes([]), rule, 3.0)
-    assert changed.state.tolist() == [C] and changed.values[0, 0] == 7.0     # the last known
+    assert changed.state.tolist() == [C] and changed.values[0, 0] == 7.0  # the last known
 
 
 def test_acknowledging_one_a_target_a_kind_or_all():
@@ -129,6 +146,7 @@ def test_acknowledging_one_a_target_a_kind_or_all():
         alerts, changed = machine.acknowledge(raised(), 1.0, LASTING, kind, number)
         assert (alerts.state == B).sum() == len(changed.id)
         return len(changed.id)
+
     assert count(1, 101) == 1
     assert count(None, 101) == 2
     assert count(2, None) == 2
@@ -152,8 +170,14 @@ def test_a_cancelled_target_has_no_alerts_left():
 
 LEVELS = st.sampled_from([OFF, KEEP, ON, AWAY])
 STEPS = st.lists(st.one_of(st.just(ACKNOWLEDGE), st.tuples(LEVELS, LEVELS, LEVELS)), max_size=60)
-RULES = st.builds(Rule, st.sampled_from([0.0, 1.0, 3.0]), st.sampled_from([0.0, 2.0, 5.0]),
-                  st.sampled_from([8.0, 1e9]), st.booleans(), st.booleans())
+RULES = st.builds(
+    Rule,
+    st.sampled_from([0.0, 1.0, 3.0]),
+    st.sampled_from([0.0, 2.0, 5.0]),
+    st.sampled_from([8.0, 1e9]),
+    st.booleans(),
+    st.booleans(),
+)
 
 
 def by_hand(script, rule, subject):
@@ -209,8 +233,10 @@ def test_many_subjects_at_once_live_as_each_would_by_itself(script, rule):
 
 
 @settings(max_examples=120, deadline=None)
-@given(st.lists(st.one_of(st.just(ACKNOWLEDGE), LEVELS), max_size=60),
-       RULES.filter(lambda rule: not rule.momentary))
+@given(
+    st.lists(st.one_of(st.just(ACKNOWLEDGE), LEVELS), max_size=60),
+    RULES.filter(lambda rule: not rule.momentary),
+)
 def test_no_alert_without_a_cause_one_raise_for_each_and_never_stuck(script, rule):
     # Whatever came before, then the cause ends and the operator acknowledges twice.
     quiet = int(rule.end_after) + 1
@@ -228,7 +254,7 @@ def test_no_alert_without_a_cause_one_raise_for_each_and_never_stuck(script, rul
         armed = armed or step in (OFF, AWAY)
         if armed and run == 1:
             causes_held, armed = causes_held + 1, False
-    assert raised <= causes_held                    # at most one raise a stretch of the cause
+    assert raised <= causes_held  # at most one raise a stretch of the cause
     assert not changed
 
 

@@ -22,12 +22,28 @@ SHIPS = {MEETS: (3, 4, 180, 10), BESIDE: (2, 90, 0, 10), ANCHORED: (2, 300, 0, 0
 def simulate(ships, seconds, own_speed=10, seed=1, pd=1):
     """Scans and truths of ships (range NM, bearing deg, course deg, speed kn), and the tracker's
     parameters."""
-    built = scenario.build({
-        'duration_s': seconds, 'own_ship': {'course_deg': 0, 'speed_kn': own_speed},
-        'radar': {'max_range_nm': 6, 'range_sigma_m': 10, 'bearing_sigma_deg': 0.3,
-                  'pd_near': pd, 'pd_far': pd},
-        'targets': [{'start': {'range_nm': away, 'bearing_deg': bearing}, 'speed_kn': speed,
-                     'course_deg': course} for away, bearing, course, speed in ships]}, 'sea')
+    built = scenario.build(
+        {
+            'duration_s': seconds,
+            'own_ship': {'course_deg': 0, 'speed_kn': own_speed},
+            'radar': {
+                'max_range_nm': 6,
+                'range_sigma_m': 10,
+                'bearing_sigma_deg': 0.3,
+                'pd_near': pd,
+                'pd_far': pd,
+            },
+            'targets': [
+                {
+                    'start': {'range_nm': away, 'bearing_deg': bearing},
+                    'speed_kn': speed,
+                    'course_deg': course,
+                }
+                for away, bearing, course, speed in ships
+            ],
+        },
+        'sea',
+    )
     scans, truths = zip(*radar.simulate(built, seed))
     return scans, truths, from_mapping(TrackerParameters, built.tracker_parameters())
 
@@ -66,9 +82,11 @@ def test_what_is_told_of_the_targets_is_true(sea):
     assert sorted(rows.values()) == [0, 1, 2]
     approach, meets = picture.approach, rows[MEETS]
     assert approach.cpa[meets] / NAUTICAL_MILE == pytest.approx(
-        3 * np.sin(np.radians(4)), abs=3 * approach.cpa_sigma[meets] / NAUTICAL_MILE)
+        3 * np.sin(np.radians(4)), abs=3 * approach.cpa_sigma[meets] / NAUTICAL_MILE
+    )
     assert approach.tcpa[meets] == pytest.approx(
-        3 * np.cos(np.radians(4)) / 20 * 3600 - picture.time, abs=5)
+        3 * np.cos(np.radians(4)) / 20 * 3600 - picture.time, abs=5
+    )
     assert picture.danger[meets] == DANGEROUS
     assert approach.relative_speed[rows[BESIDE]] < 0.3
     assert picture.motion.stationary[rows[ANCHORED]] and not picture.at_rest.any()
@@ -86,6 +104,7 @@ def test_a_step_leaves_its_inputs_as_they_are_and_repeats_to_the_byte(sea):
 
     def flat(thing):
         return sum(map(flat, thing), []) if isinstance(thing, tuple) else [np.array(thing)]
+
     before = flat(memory)
     first, second = (flat(arpa.step(memory, scans[20], report, HEADING)) for _ in range(2))
     for one, other in ((before, flat(memory)), (first, second)):
@@ -94,19 +113,25 @@ def test_a_step_leaves_its_inputs_as_they_are_and_repeats_to_the_byte(sea):
 
 def test_a_lost_target_stands_in_the_picture_once_more(sea):
     scans, truths, parameters = sea
-    silent = [scan if k < 60 else scan._replace(plots=take(scan.plots, np.zeros(
-        len(scan.plots.time), bool))) for k, scan in enumerate(scans[:80])]
+    silent = [
+        scan
+        if k < 60
+        else scan._replace(plots=take(scan.plots, np.zeros(len(scan.plots.time), bool)))
+        for k, scan in enumerate(scans[:80])
+    ]
     pictures = [(report, picture) for report, _, picture in run((silent, truths, parameters))]
     counts = [len(picture.targets.id) for _, picture in pictures]
     last = max(k for k, count in enumerate(counts) if count)
     report, picture = pictures[last]
     assert 60 < last <= 71 and (report.tracks.status[picture.row] == LOST).all()
-    assert counts[last] == 3 and not any(counts[last + 1:])
+    assert counts[last] == 3 and not any(counts[last + 1 :])
     lost = picture.alerts.kind == alarms.LOST_TARGET
     assert set(picture.alerts.number[lost]) == {1, 2, 3}
     assert picture.alerts.position[lost] == pytest.approx(
         picture.motion.position[np.argsort(picture.targets.number)][
-            np.argsort(np.argsort(picture.alerts.number[lost]))])
+            np.argsort(np.argsort(picture.alerts.number[lost]))
+        ]
+    )
 
 
 def test_another_arpa_goes_on_from_the_memory(sea):
@@ -116,11 +141,13 @@ def test_another_arpa_goes_on_from_the_memory(sea):
     tracked = tracker.start()
     for scan in scans[:31]:
         tracked, report = tracker.step(tracked, scan)
-    other = Arpa(ArpaParameters(cpa_limit_nm=0.01, max_targets=2, acquisition='nowhere'),
-                 parameters)
+    other = Arpa(
+        ArpaParameters(cpa_limit_nm=0.01, max_targets=2, acquisition='nowhere'), parameters
+    )
     after, picture = other.step(memory, scans[30], report, HEADING)
     assert len(picture.targets.id) == 2 and set(picture.targets.id) < set(
-        memory.acquisition.targets.id)
+        memory.acquisition.targets.id
+    )
     assert (picture.danger != DANGEROUS).all()
     assert alarms.CAPACITY in after.alerts.kind
 
@@ -128,13 +155,20 @@ def test_another_arpa_goes_on_from_the_memory(sea):
 def test_a_current_changes_courses_and_speeds_but_not_how_near_they_come(sea):
     *_, (_, _, ground) = run(sea)
     *_, (_, _, water) = run(sea, ArpaParameters(current_set_deg=90.0, current_drift_kn=4.0))
-    for name in ('cpa', 'tcpa', 'relative_course', 'relative_speed', 'danger_probability',
-                 'cpa_sigma', 'bow_range'):
+    for name in (
+        'cpa',
+        'tcpa',
+        'relative_course',
+        'relative_speed',
+        'danger_probability',
+        'cpa_sigma',
+        'bow_range',
+    ):
         assert getattr(water.approach, name) == pytest.approx(
-            getattr(ground.approach, name), rel=1e-9, abs=1e-9, nan_ok=True)
+            getattr(ground.approach, name), rel=1e-9, abs=1e-9, nan_ok=True
+        )
     drift = [4 * KNOT, 0]
-    assert ground.motion.velocity - water.motion.velocity == pytest.approx(
-        np.tile(drift, (3, 1)))
+    assert ground.motion.velocity - water.motion.velocity == pytest.approx(np.tile(drift, (3, 1)))
     assert ground.own.velocity - water.own.velocity == pytest.approx(drift)
     assert Arpa(ArpaParameters(current_drift_kn=4.0), sea[2]).stabilised == 'sea'
     assert Arpa(ArpaParameters(), sea[2]).stabilised == 'ground'
@@ -146,8 +180,10 @@ def test_only_targets_that_have_fallen_back_count(sea):
     assert alarms.FALLBACK in fallen[-1].kind
     row = fallen[-1].kind == alarms.FALLBACK
     assert fallen[-1].values[row, :2].tolist() == [[3.0, 3.0]]
-    nowhere = [memory.alerts for _, memory, _ in run(
-        sea, ArpaParameters(acquisition='nowhere'), fallen=True)]
+    nowhere = [
+        memory.alerts
+        for _, memory, _ in run(sea, ArpaParameters(acquisition='nowhere'), fallen=True)
+    ]
     assert not len(nowhere[-1].kind)
 
 
@@ -167,8 +203,12 @@ def test_ships_at_anchor_raise_no_danger_in_an_own_ship_at_anchor():
     """Of 48 ships at 0.2 to 4 NM for 3 minutes; without the rule one in ten did."""
     rng, raised, resting = np.random.default_rng(5), 0, 0
     for seed in range(4):
-        ships = [(away, bearing, 0, 0) for away, bearing in zip(
-            rng.uniform(0.2, 4, 12).tolist(), np.arange(0.0, 360.0, 30.0).tolist())]
+        ships = [
+            (away, bearing, 0, 0)
+            for away, bearing in zip(
+                rng.uniform(0.2, 4, 12).tolist(), np.arange(0.0, 360.0, 30.0).tolist()
+            )
+        ]
         for _, _, picture in run(simulate(ships, 180, own_speed=0, seed=seed, pd=0.9)):
             raised += (picture.changed.kind == alarms.DANGER).sum()
         resting += picture.at_rest.sum()
@@ -179,9 +219,11 @@ def test_a_ship_that_comes_for_an_anchored_own_ship_raises_it_within_a_minute():
     for seed, speed in enumerate((3, 6, 12, 20)):
         bearing = 80.0 * seed
         ship = speed / 6, bearing, (bearing + 180) % 360, speed
-        times = [picture.time for _, _, picture in run(
-            simulate([ship], 120, own_speed=0, seed=seed, pd=0.9))
-            if alarms.DANGER in picture.changed.kind]
+        times = [
+            picture.time
+            for _, _, picture in run(simulate([ship], 120, own_speed=0, seed=seed, pd=0.9))
+            if alarms.DANGER in picture.changed.kind
+        ]
         assert times and times[0] < 60
 
 
@@ -191,8 +233,9 @@ def test_motion_and_approach_hardly_depend_on_the_estimator(sea, estimator):
     scans, truths, parameters = sea
     values = {field: getattr(parameters, field) for field in parameters.__dataclass_fields__}
     *_, (_, _, one) = run(sea)
-    *_, (_, _, other) = run((scans, truths, TrackerParameters(
-        **{**values, 'estimator': estimator})))
+    *_, (_, _, other) = run(
+        (scans, truths, TrackerParameters(**{**values, 'estimator': estimator}))
+    )
     assert np.array_equal(one.targets.number, other.targets.number)
     for name in ('range', 'bearing', 'speed', 'relative_speed', 'cpa'):
         off = getattr(one.approach, name) - getattr(other.approach, name)
@@ -210,8 +253,9 @@ def test_tracks_whose_first_plots_went_by_unseen_are_taken_up(sea):
             memory, picture = arpa.step(memory, scan, report, HEADING)
     assert picture.targets.number.tolist() == [1, 2, 3]
     assert np.isfinite(picture.motion.velocity).all()
-    nothing = scans[60]._replace(plots=take(scans[60].plots, np.zeros(
-        len(scans[60].plots.time), bool)))
+    nothing = scans[60]._replace(
+        plots=take(scans[60].plots, np.zeros(len(scans[60].plots.time), bool))
+    )
     tracked, report = tracker.step(tracked, nothing)
     _, picture = arpa.step(arpa.start(), nothing, report, HEADING)
     assert len(picture.targets.id) == 3 and np.isnan(picture.approach.cpa).all()

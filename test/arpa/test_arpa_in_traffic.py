@@ -21,19 +21,42 @@ ZONES = """
 """
 TRAFFIC = {
     'duration_s': 720,
-    'radar': {'max_range_nm': 4, 'range_sigma_m': 10, 'bearing_sigma_deg': 0.3, 'pd_near': 1,
-              'pd_far': 1},
+    'radar': {
+        'max_range_nm': 4,
+        'range_sigma_m': 10,
+        'bearing_sigma_deg': 0.3,
+        'pd_near': 1,
+        'pd_far': 1,
+    },
     'own_ship': {'course_deg': 0, 'speed_kn': 0},
     'targets': [
-        {'name': 'collides', 'start': {'range_nm': 3, 'bearing_deg': 0}, 'course_deg': 180,
-         'speed_kn': 20},
-        {'name': 'leaves', 'start': {'range_nm': 3.5, 'bearing_deg': 90}, 'course_deg': 90,
-         'speed_kn': 15},
-        {'name': 'vanishes', 'start': {'range_nm': 2, 'bearing_deg': 200}, 'course_deg': 270,
-         'speed_kn': 3},
-        {'name': 'moored', 'start': {'range_nm': 2, 'bearing_deg': 270}, 'course_deg': 0,
-         'speed_kn': 0}]}
-VANISHED = 300.0                # s
+        {
+            'name': 'collides',
+            'start': {'range_nm': 3, 'bearing_deg': 0},
+            'course_deg': 180,
+            'speed_kn': 20,
+        },
+        {
+            'name': 'leaves',
+            'start': {'range_nm': 3.5, 'bearing_deg': 90},
+            'course_deg': 90,
+            'speed_kn': 15,
+        },
+        {
+            'name': 'vanishes',
+            'start': {'range_nm': 2, 'bearing_deg': 200},
+            'course_deg': 270,
+            'speed_kn': 3,
+        },
+        {
+            'name': 'moored',
+            'start': {'range_nm': 2, 'bearing_deg': 270},
+            'course_deg': 0,
+            'speed_kn': 0,
+        },
+    ],
+}
+VANISHED = 300.0  # s
 
 
 @pytest.fixture(scope='module')
@@ -54,29 +77,69 @@ def watch():
         if k == 0:
             targets = acquisition.acquire(targets, truth.position[truth.target == 1][0], now)
         memory, report = tracker.step(memory, scan)
-        plots = locate(scan.plots, scan.own_ship, 10.0,
-                       np.radians(tracker.parameters.bearing_sigma_deg))
+        plots = locate(
+            scan.plots, scan.own_ship, 10.0, np.radians(tracker.parameters.bearing_sigma_deg)
+        )
         moving = motion.step(moving, report, plots, motion.MotionSettings())
         shown = motion.at(moving, now)
         own = own_motion(scan.own_ship, now, 0.0)
-        situation = look(report.tracks, report.reason, shown.position,
-                         cpa.approach(shown, own, limits.cpa, limits.tcpa), shown.stationary,
-                         zone, own, limits)
-        targets, events = acquisition.step(targets, acquisition.AcquisitionSettings(), situation, now)
-        gates = swap_risk(shown.position, shown.covariance[:, :2, :2] + 400 * np.eye(2),
-                          own.position, tracker.gate_size)
-        alarm, changed = alarms.step(alarm, alarms.AlarmSettings(), situation, targets, events, zone,
-                                     alarms.Tracking(200, 0, *gates), now)
-        past = past_positions.step(past, report.tracks.id, report.tracks.first_time,
-                                   shown.position, shown.velocity, own.position, own.velocity, now)
+        situation = look(
+            report.tracks,
+            report.reason,
+            shown.position,
+            cpa.approach(shown, own, limits.cpa, limits.tcpa),
+            shown.stationary,
+            zone,
+            own,
+            limits,
+        )
+        targets, events = acquisition.step(
+            targets, acquisition.AcquisitionSettings(), situation, now
+        )
+        gates = swap_risk(
+            shown.position,
+            shown.covariance[:, :2, :2] + 400 * np.eye(2),
+            own.position,
+            tracker.gate_size,
+        )
+        alarm, changed = alarms.step(
+            alarm,
+            alarms.AlarmSettings(),
+            situation,
+            targets,
+            events,
+            zone,
+            alarms.Tracking(200, 0, *gates),
+            now,
+        )
+        past = past_positions.step(
+            past,
+            report.tracks.id,
+            report.tracks.first_time,
+            shown.position,
+            shown.velocity,
+            own.position,
+            own.velocity,
+            now,
+        )
         log += [(now, EVENTS[kind], '', place) for kind, place in zip(events.kind, events.position)]
-        log += [(now, alarms.NAMES[kind], alerts.STATES[state], place)
-                for kind, state, place in zip(changed.kind, changed.state, changed.position)]
+        log += [
+            (now, alarms.NAMES[kind], alerts.STATES[state], place)
+            for kind, state, place in zip(changed.kind, changed.state, changed.position)
+        ]
         quick.append(targets.targets.number[targets.targets.acquired == 1].tolist())
         if k == 150:
-            behind = {name: (past.time, past.position[np.hypot(*(
-                shown.position - truth.position[truth.target == target][0]).T).argmin()])
-                for name, target in (('collides', 1), ('moored', 4))}
+            behind = {
+                name: (
+                    past.time,
+                    past.position[
+                        np.hypot(
+                            *(shown.position - truth.position[truth.target == target][0]).T
+                        ).argmin()
+                    ],
+                )
+                for name, target in (('collides', 1), ('moored', 4))
+            }
         alarm, _ = alarms.acknowledge(alarm, now)
     return log, quick, behind
 
@@ -87,25 +150,28 @@ def times(log, what, state):
 
 def test_a_click_on_the_first_echo_acquires_before_the_tracker_confirms(watch):
     _, quick, _ = watch
-    assert quick[0] == [] and quick[1] == [0]           # pending; in acquisition with two plots
+    assert quick[0] == [] and quick[1] == [0]  # pending; in acquisition with two plots
     confirmed = next(k for k, numbers in enumerate(quick) if numbers and numbers[0])
     assert 2 <= confirmed <= 4
 
 
 def test_the_collision_raises_once_and_ends_after_it(watch):
-    raised, = times(watch[0], 'danger', 'active unacknowledged')
-    ended, = times(watch[0], 'danger', 'normal')
+    (raised,) = times(watch[0], 'danger', 'active unacknowledged')
+    (ended,) = times(watch[0], 'danger', 'normal')
     assert raised < 30.0 and 540.0 < ended < 570.0
 
 
 def test_only_the_ship_that_vanished_is_lost(watch):
-    lost, = times(watch[0], 'lost target', 'active unacknowledged')
-    assert VANISHED < lost < VANISHED + 10 * 60 / 22 + 0.1             # within 10 scans
-    place, = (place for _, kind, state, place in watch[0] if (kind, state) == (
-        'lost target', 'active unacknowledged'))
+    (lost,) = times(watch[0], 'lost target', 'active unacknowledged')
+    assert VANISHED < lost < VANISHED + 10 * 60 / 22 + 0.1  # within 10 scans
+    (place,) = (
+        place
+        for _, kind, state, place in watch[0]
+        if (kind, state) == ('lost target', 'active unacknowledged')
+    )
     expected = 2 * NAUTICAL_MILE * unit_vector(np.radians(200.0)) + [-VANISHED * 3 / 3600 * 1852, 0]
     assert np.hypot(*(place - expected)) < 100
-    left, = times(watch[0], 'left by range', '')
+    (left,) = times(watch[0], 'left by range', '')
     assert 110 < left < 150
 
 

@@ -30,16 +30,25 @@ def measured(truth, rng):
     """Plots of the positions truth [N, 2], seen from [0, 0]; the glint is round."""
     offset = truth + rng.normal(0, GLINT, truth.shape)
     distance, bearing = to_range_bearing(offset)
-    return (distance + rng.normal(0, RANGE, len(truth)),
-            bearing + rng.normal(0, BEARING, len(truth)))
+    return (
+        distance + rng.normal(0, RANGE, len(truth)),
+        bearing + rng.normal(0, BEARING, len(truth)),
+    )
 
 
 def plots_of(polar, time, range_sigma=RANGE, bearing_sigma=BEARING):
     distance, bearing = polar
     count = len(distance)
     position, covariance = polar_to_position(distance, bearing, range_sigma, bearing_sigma)
-    return Plots(np.broadcast_to(time, count).astype(float), distance, bearing, np.zeros(count),
-                 np.zeros((count, 2)), position, covariance)
+    return Plots(
+        np.broadcast_to(time, count).astype(float),
+        distance,
+        bearing,
+        np.zeros(count),
+        np.zeros((count, 2)),
+        position,
+        covariance,
+    )
 
 
 NONE = plots_of((np.zeros(0), np.zeros(0)), 0.0)
@@ -47,8 +56,9 @@ NONE = plots_of((np.zeros(0), np.zeros(0)), 0.0)
 
 def report(id_, plot, begun=NONE):
     """What `motion.step` reads of a tracker's report."""
-    return SimpleNamespace(tracks=SimpleNamespace(id=np.asarray(id_)), plot=np.asarray(plot),
-                           begun=begun)
+    return SimpleNamespace(
+        tracks=SimpleNamespace(id=np.asarray(id_)), plot=np.asarray(plot), begun=begun
+    )
 
 
 class Run:
@@ -60,13 +70,17 @@ class Run:
         rng = np.random.default_rng(seed)
         self.position, self.velocity = position, velocity
         count = position.shape[1]
-        self.plots = [plots_of(measured(truth, rng), k * PERIOD, *sigmas)
-                      for k, truth in enumerate(position)]
+        self.plots = [
+            plots_of(measured(truth, rng), k * PERIOD, *sigmas) for k, truth in enumerate(position)
+        ]
         memory, self.at = motion.begin(), [None]
         for k, plots in enumerate(self.plots[1:], 1):
             memory = motion.step(
-                memory, report(np.arange(count), np.arange(count),
-                               self.plots[0] if k == 1 else NONE), plots, settings)
+                memory,
+                report(np.arange(count), np.arange(count), self.plots[0] if k == 1 else NONE),
+                plots,
+                settings,
+            )
             self.at.append(motion.at(memory, k * PERIOD))
 
     def course_errors(self, k):
@@ -96,14 +110,17 @@ def turn(count, scans, begin, rate_deg, angle_deg):
     course = np.radians(np.clip((time - begin * PERIOD) * rate_deg, 0, angle_deg))
     velocity = 8.0 * unit_vector(course)
     way = np.cumsum(velocity * PERIOD / 10, 0)[::10] + [3000.0, -4000.0]
-    return (np.repeat(way[:, None], count, 1), np.repeat(velocity[::10][:, None], count, 1),
-            begin + int(np.ceil(angle_deg / rate_deg / PERIOD)))
+    return (
+        np.repeat(way[:, None], count, 1),
+        np.repeat(velocity[::10][:, None], count, 1),
+        begin + int(np.ceil(angle_deg / rate_deg / PERIOD)),
+    )
 
 
 def line_fit(run, k):
     """Velocities [N, 2] of least-squares lines through the plots of scans 0 to k."""
     time = PERIOD * np.arange(k + 1)
-    places = np.array([plots.position for plots in run.plots[:k + 1]])
+    places = np.array([plots.position for plots in run.plots[: k + 1]])
     centred = time - time.mean()
     return np.tensordot(centred, places, 1) / (centred @ centred)
 
@@ -121,7 +138,7 @@ def test_a_straight_course_is_known_as_well_as_from_a_line_fit(fleet, scan, boun
     """
     fit = np.hypot(*(line_fit(fleet, scan) - fleet.velocity[scan]).T)
     shown = np.hypot(*(fleet.at[scan].velocity - fleet.velocity[scan]).T)
-    assert np.sqrt(np.mean(shown ** 2) / np.mean(fit ** 2)) < bound
+    assert np.sqrt(np.mean(shown**2) / np.mean(fit**2)) < bound
     assert np.percentile(shown, 95) / np.percentile(fit, 95) < 1.15
 
 
@@ -135,8 +152,12 @@ def test_deviations_on_a_straight_course_are_right(fleet):
 @pytest.mark.parametrize('factor', [0.4, 2.5])
 def test_a_radar_described_wrongly_still_gives_fair_deviations(factor):
     """Sigmas configured 2.5 times too small or too large, unlearned: 6.2 and .16 instead of 1."""
-    run = Run(*straight(400, 67, seed=3), seed=3, settings=MotionSettings(glint_sigma=GLINT * factor),
-              sigmas=(RANGE * factor, BEARING * factor))
+    run = Run(
+        *straight(400, 67, seed=3),
+        seed=3,
+        settings=MotionSettings(glint_sigma=GLINT * factor),
+        sigmas=(RANGE * factor, BEARING * factor),
+    )
     assert 0.5 < run.nees(66).mean() < 1.5
 
 
@@ -177,6 +198,7 @@ def test_one_wrong_plot_does_little_and_is_soon_forgotten():
 
     def error(run, k):
         return np.percentile(np.hypot(*(run.at[k].velocity - velocity[k]).T), 95)
+
     assert error(wrong, 44) == error(sound, 44)
     assert error(wrong, 45) < 1.0
     assert error(wrong, 69) < 1.5 * error(sound, 69)
@@ -191,8 +213,9 @@ def test_danger_is_told_rightly_of_tracks_as_they_are():
     count, scans = 2000, 40
     start = rng.uniform(3000, 9000, count)[:, None] * unit_vector(rng.uniform(0, 6.283, count))
     speed = rng.uniform(6, 14, count)
-    towards = np.arctan2(*-start.T) + np.arcsin(rng.uniform(-1800, 1800, count)
-                                                / np.hypot(*start.T))
+    towards = np.arctan2(*-start.T) + np.arcsin(
+        rng.uniform(-1800, 1800, count) / np.hypot(*start.T)
+    )
     velocity = np.broadcast_to(speed[:, None] * unit_vector(towards), (scans, count, 2))
     run = Run(start + PERIOD * np.arange(scans)[:, None, None] * velocity, velocity, seed=9)
     own = OwnMotion(np.zeros(2), np.zeros(2), 0.0, np.zeros((4, 4)))
@@ -225,11 +248,12 @@ def test_an_anchored_ship_is_still_and_a_slow_one_is_not():
 def test_a_ship_that_gets_under_way_is_no_longer_still():
     still, none = straight(200, 90, seed=2, distance=(2000, 5000), speed=(0, 0))
     way = np.minimum(0.05 * PERIOD * np.arange(90), 5.0)[:, None, None] * unit_vector(
-        np.random.default_rng(1).uniform(0, 6.283, 200))
+        np.random.default_rng(1).uniform(0, 6.283, 200)
+    )
     position = np.concatenate([still, still[-1] + np.cumsum(way * PERIOD, 0)])
     run = Run(position, np.concatenate([none, way]), seed=8)
     assert run.at[89].stationary.mean() > 0.85
-    assert run.at[90 + 30].stationary.mean() < 0.05      # 80 s later, at 4 m/s
+    assert run.at[90 + 30].stationary.mean() < 0.05  # 80 s later, at 4 m/s
 
 
 def fed(polars, settings=None, missed=()):
@@ -241,8 +265,12 @@ def fed(polars, settings=None, missed=()):
             if scan == k:
                 plot[target] = -1
         begun = plots_of(polars[0], 0.0) if k == 1 else NONE
-        memory = motion.step(memory, report(np.arange(count), plot, begun),
-                             plots_of(polar, k * PERIOD), settings or MotionSettings())
+        memory = motion.step(
+            memory,
+            report(np.arange(count), plot, begun),
+            plots_of(polar, k * PERIOD),
+            settings or MotionSettings(),
+        )
     return memory
 
 
@@ -273,8 +301,12 @@ def test_tracks_come_and_go_and_do_not_touch_each_other(polars):
             ids = np.array([0, 1, 2, 4, 9])
             begun = take(plots_of(polars[9], 9 * PERIOD), np.array([5]))
         plot = place[np.where(ids == 9, 5, ids)]
-        memory = motion.step(memory, report(ids, plot, begun),
-                             take(plots_of(polars[k], k * PERIOD), order), MotionSettings())
+        memory = motion.step(
+            memory,
+            report(ids, plot, begun),
+            take(plots_of(polars[k], k * PERIOD), order),
+            MotionSettings(),
+        )
         np.testing.assert_array_equal(memory.id, ids)
     found = motion.at(memory, 29 * PERIOD)
     same(take(found, np.arange(4)), take(whole, np.array([0, 1, 2, 4])), slice(None))
@@ -290,27 +322,33 @@ def test_a_missed_plot_leaves_a_track_behind_and_extrapolates_it(polars):
     assert missed.time[2] == pytest.approx(27 * PERIOD)
     ahead = motion.at(missed, now)
     back = motion.at(missed, missed.time)
-    np.testing.assert_allclose(ahead.position[2],
-                               back.position[2] + 2 * PERIOD * back.velocity[2])
+    np.testing.assert_allclose(ahead.position[2], back.position[2] + 2 * PERIOD * back.velocity[2])
     assert np.trace(ahead.covariance[2]) > np.trace(back.covariance[2])
 
 
 def test_a_track_without_any_plot_is_unknown_until_it_has_one(polars):
     """As when motion is asked of tracks that were there before it: it begins with their next."""
-    memory = motion.step(motion.begin(), report([4, 7], [-1, 0]), plots_of(polars[0], 0.0),
-                         MotionSettings())
+    memory = motion.step(
+        motion.begin(), report([4, 7], [-1, 0]), plots_of(polars[0], 0.0), MotionSettings()
+    )
     now = motion.at(memory, 1.0)
     assert np.isnan(now.position[0]).all() and np.isfinite(now.position[1]).all()
     assert not now.steady[0] and not now.stationary[0]
-    memory = motion.step(memory, report([4, 7], [1, 0]), plots_of(polars[1], PERIOD), MotionSettings())
+    memory = motion.step(
+        memory, report([4, 7], [1, 0]), plots_of(polars[1], PERIOD), MotionSettings()
+    )
     assert np.isfinite(motion.at(memory, PERIOD).covariance).all()
 
 
 def test_what_is_handed_in_stays_as_it_was(polars):
     memory = fed(polars[:20])
     plots = plots_of(polars[20], 20 * PERIOD)
-    frozen = [a for part in (memory, *memory.scatter, memory.legs, plots) for a in part
-              if isinstance(a, np.ndarray)]
+    frozen = [
+        a
+        for part in (memory, *memory.scatter, memory.legs, plots)
+        for a in part
+        if isinstance(a, np.ndarray)
+    ]
     for array in frozen:
         array.flags.writeable = False
     after = motion.step(memory, report(np.arange(6), np.arange(6)), plots, MotionSettings())
@@ -330,6 +368,7 @@ def test_a_boat_that_weaves_is_followed_with_the_preset_for_small_craft():
     def error(name):
         run = Run(position, velocity, 3, PRESETS[name], (5.0, np.radians(0.3)))
         return np.mean([np.hypot(*(run.at[k].velocity - velocity[k]).T) for k in range(20, scans)])
+
     assert error('small_craft') < 0.8 * error('ship')
 
 
@@ -351,19 +390,27 @@ def test_through_the_tracker_every_track_has_its_motion():
         distance, bearing = to_range_bearing(offset)
         false = 10
         distance = np.r_[distance + rng.normal(0, 15, len(distance)), rng.uniform(500, 9000, false)]
-        bearing = np.r_[bearing + rng.normal(0, np.radians(0.5), seen.sum()),
-                        rng.uniform(0, 6.28, false)]
-        scan = Scan(now, now + PERIOD, PolarPlots(np.full(len(distance), now + 1), distance,
-                                                  bearing, np.full(len(distance), 10.0)), own)
+        bearing = np.r_[
+            bearing + rng.normal(0, np.radians(0.5), seen.sum()), rng.uniform(0, 6.28, false)
+        ]
+        scan = Scan(
+            now,
+            now + PERIOD,
+            PolarPlots(
+                np.full(len(distance), now + 1), distance, bearing, np.full(len(distance), 10.0)
+            ),
+            own,
+        )
         memory, found = tracker.step(memory, scan)
         plots = locate(scan.plots, own, p.range_sigma_m, np.radians(p.bearing_sigma_deg))
         moving = motion.step(moving, found, plots, MotionSettings(glint_sigma=0.0))
         np.testing.assert_array_equal(moving.id, found.tracks.id)
     shown = motion.at(moving, now + 1)
     for place, way in zip(start + (now + 1) * velocity, velocity):
-        near = np.flatnonzero((np.hypot(*(shown.position - place).T) < 100)
-                              & (found.tracks.number > 0))
+        near = np.flatnonzero(
+            (np.hypot(*(shown.position - place).T) < 100) & (found.tracks.number > 0)
+        )
         assert len(near) == 1
         assert np.hypot(*(shown.velocity[near[0]] - way)) < 0.5
         error = np.r_[shown.position[near[0]] - place, shown.velocity[near[0]] - way]
-        assert error @ np.linalg.solve(shown.covariance[near[0]], error) < 23   # 1 in 10,000
+        assert error @ np.linalg.solve(shown.covariance[near[0]], error) < 23  # 1 in 10,000

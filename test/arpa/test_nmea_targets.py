@@ -10,17 +10,24 @@ def targets(*numbers, lost=(), range_=1000.0):
     """Targets of these numbers, each at its number in metres beyond the range."""
     count, numbers = len(numbers), np.array(numbers, np.int64)
     figures = np.ones(count)
-    return Targets(numbers, np.where(np.isin(numbers, lost), LOST, TRACKING),
-                   np.full(count, 'A'), np.array([f'TT{n:02d}' for n in numbers], str),
-                   range_ + numbers, *[figures] * 5)
+    return Targets(
+        numbers,
+        np.where(np.isin(numbers, lost), LOST, TRACKING),
+        np.full(count, 'A'),
+        np.array([f'TT{n:02d}' for n in numbers], str),
+        range_ + numbers,
+        *[figures] * 5,
+    )
 
 
 def said(now):
     """What a word tells: {two-digit number: (name, status, range)}."""
     rows = now.targets
-    told = {int(n): (str(name), str(status), float(r)) for n, name, status, r in zip(
-        rows.number, rows.name, rows.status, rows.range)}
-    assert len(told) == len(rows.number)                # no number twice in a scan
+    told = {
+        int(n): (str(name), str(status), float(r))
+        for n, name, status, r in zip(rows.number, rows.name, rows.status, rows.range)
+    }
+    assert len(told) == len(rows.number)  # no number twice in a scan
     return told
 
 
@@ -41,7 +48,11 @@ def test_every_target_is_told_once_a_scan():
 def test_a_lost_target_gets_one_last_word():
     _, words = play(targets(1, 2), targets(1, 2, lost=[2]), targets(1, 2, lost=[2]), targets(1))
     assert [said(now).get(2) for now in words] == [
-        ('TT02', 'T', 1002), ('TT02', 'L', 1002), None, None]
+        ('TT02', 'T', 1002),
+        ('TT02', 'L', 1002),
+        None,
+        None,
+    ]
 
 
 def test_a_target_that_is_no_longer_there_is_lost_where_it_was_last():
@@ -62,8 +73,7 @@ def test_a_lost_target_never_heard_of_is_not_told():
 
 def test_the_number_of_a_target_that_has_gone_is_not_given_away_in_the_same_scan():
     told, (_, second, third) = play(targets(1, 2), targets(2, 101), targets(2, 101, 102))
-    assert said(second) == {
-        1: ('TT01', 'L', 1001), 2: ('TT02', 'T', 1002), 3: ('TT101', 'T', 1101)}
+    assert said(second) == {1: ('TT01', 'L', 1001), 2: ('TT02', 'T', 1002), 3: ('TT101', 'T', 1101)}
     assert said(third)[1] == ('TT102', 'T', 1102)
     assert told.slots == {2: 2, 101: 3, 102: 1}
 
@@ -88,9 +98,9 @@ def test_numbers_up_to_99_are_kept_and_larger_ones_take_the_lowest_free_for_life
     assert held == {1: 1, 2: 2, 99: 99}
     held = slots(held, [2, 99, 100, 101])
     assert held == {2: 2, 99: 99, 100: 1, 101: 3}
-    held = slots(held, [101, 102])             # 100 has gone, 101 stays as it was
+    held = slots(held, [101, 102])  # 100 has gone, 101 stays as it was
     assert held == {101: 3, 102: 1}
-    assert slots(held, [101, 102, 3]) == {101: 3, 102: 1, 3: 2}   # a tracker begun anew
+    assert slots(held, [101, 102, 3]) == {101: 3, 102: 1, 3: 2}  # a tracker begun anew
 
 
 def test_more_targets_than_numbers_wait_until_one_is_free():

@@ -21,9 +21,15 @@ def samples(course, speed, times, rng=None, sigma=0.0):
 def targets():
     covariance = np.tile(np.diag([100.0, 100.0, 0.04, 0.04]), (2, 1, 1))
     zero = np.zeros(2)
-    return Motion(np.array([[3000.0, 4000.0], [-2000.0, 500.0]]),
-                  np.array([[-6.0, -2.0], [4.0, 3.0]]), covariance, zero.astype(int), zero,
-                  zero == 0, zero == 1)
+    return Motion(
+        np.array([[3000.0, 4000.0], [-2000.0, 500.0]]),
+        np.array([[-6.0, -2.0], [4.0, 3.0]]),
+        covariance,
+        zero.astype(int),
+        zero,
+        zero == 0,
+        zero == 1,
+    )
 
 
 def test_noise_is_smoothed_and_its_measure_is_right():
@@ -63,8 +69,18 @@ def test_the_sea_moves_own_ship_and_target_alike():
     at_sea, own_at_sea = sea_stabilised(motion, own, drift)
     np.testing.assert_allclose(own_at_sea.velocity, 5.0 * unit_vector(0.2))
     ground, sea = approach(motion, own, 926, 720), approach(at_sea, own_at_sea, 926, 720)
-    for name in ('range', 'bearing', 'relative_course', 'relative_speed', 'cpa', 'tcpa',
-                 'bow_range', 'bow_time', 'danger_probability', 'cpa_sigma'):
+    for name in (
+        'range',
+        'bearing',
+        'relative_course',
+        'relative_speed',
+        'cpa',
+        'tcpa',
+        'bow_range',
+        'bow_time',
+        'danger_probability',
+        'cpa_sigma',
+    ):
         np.testing.assert_allclose(getattr(sea, name), getattr(ground, name), rtol=1e-6)
     assert not np.allclose(sea.course, ground.course)
     still, _ = sea_stabilised(motion._replace(velocity=np.zeros((2, 2))), own, drift)
@@ -76,5 +92,4 @@ def test_relative_vectors_end_where_own_ship_will_see_the_target():
     own, motion = own_motion(samples(0.0, 6.0, times), 20.0, 0.0), targets()
     true, relative = (vectors(motion, own, 360.0, kind) for kind in (False, True))
     np.testing.assert_allclose(true, motion.position + 360 * motion.velocity)
-    np.testing.assert_allclose(relative - own.position,
-                               true - (own.position + 360 * own.velocity))
+    np.testing.assert_allclose(relative - own.position, true - (own.position + 360 * own.velocity))

@@ -18,11 +18,21 @@ def truth(id, time):
 
 
 def follow(past, ids, now, first_time=0.0):
-    position, velocity = (np.array(column).reshape(-1, 2)
-                          for column in zip(*(truth(id, now) for id in ids))) if ids else (
-        np.zeros((0, 2)), np.zeros((0, 2)))
-    return step(past, np.array(ids, np.int64), np.broadcast_to(first_time, len(ids)), position,
-                velocity, own_at(now), OWN_VELOCITY, now)
+    position, velocity = (
+        (np.array(column).reshape(-1, 2) for column in zip(*(truth(id, now) for id in ids)))
+        if ids
+        else (np.zeros((0, 2)), np.zeros((0, 2)))
+    )
+    return step(
+        past,
+        np.array(ids, np.int64),
+        np.broadcast_to(first_time, len(ids)),
+        position,
+        velocity,
+        own_at(now),
+        OWN_VELOCITY,
+        now,
+    )
 
 
 def test_past_positions_are_equal_in_time_and_where_the_targets_were():
@@ -40,15 +50,16 @@ def test_relative_past_positions_are_offsets_from_where_own_ship_was():
     past = begin(4, 30.0)
     for k in range(60):
         past = follow(past, [2], k * PERIOD)
-    np.testing.assert_allclose(relative(past)[0], truth(2, past.time)[0] - own_at(past.time),
-                               atol=1e-9)
+    np.testing.assert_allclose(
+        relative(past)[0], truth(2, past.time)[0] - own_at(past.time), atol=1e-9
+    )
 
 
 def test_a_new_track_has_none_before_its_first_plot():
     past = begin(4, 30.0)
     for k in range(45):
         past = follow(past, [2], k * PERIOD)
-    for k in range(45, 60):                             # from 122.7 s on
+    for k in range(45, 60):  # from 122.7 s on
         past = follow(past, [2, 7], k * PERIOD, first_time=np.array([0.0, 45 * PERIOD]))
     assert past.id.tolist() == [2, 7]
     assert np.isfinite(past.position[0]).all()
@@ -93,10 +104,15 @@ def test_a_gap_within_what_is_kept_is_filled_along_the_course():
     np.testing.assert_allclose(past.position[0], truth(2, past.time)[0], atol=1e-9)
 
 
-@pytest.mark.parametrize(('count', 'interval', 'message'), [
-    (0, 30.0, 'number of past positions is 0'), (4, 0.0, 'interval of past positions is 0 s'),
-    (4, np.nan, 'interval of past positions is nan s'),
-    (4, np.inf, 'interval of past positions is inf s')])
+@pytest.mark.parametrize(
+    ('count', 'interval', 'message'),
+    [
+        (0, 30.0, 'number of past positions is 0'),
+        (4, 0.0, 'interval of past positions is 0 s'),
+        (4, np.nan, 'interval of past positions is nan s'),
+        (4, np.inf, 'interval of past positions is inf s'),
+    ],
+)
 def test_what_cannot_be_kept_is_an_error(count, interval, message):
     with pytest.raises(ValueError, match=message):
         begin(count, interval)

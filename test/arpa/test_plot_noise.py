@@ -7,15 +7,22 @@ from marine_tracker.arpa import plot_noise
 from marine_tracker.geometry import polar_to_position, to_range_bearing, unit_vector
 from marine_tracker.types import Plots
 
-RANGE, BEARING = 15.0, 0.005           # configured: m, rad
+RANGE, BEARING = 15.0, 0.005  # configured: m, rad
 
 
 def plots_of(position, time):
     distance, bearing = to_range_bearing(position)
     offset, covariance = polar_to_position(distance, bearing, RANGE, BEARING)
     count = len(position)
-    return Plots(np.broadcast_to(time, count).astype(float), distance, bearing, np.zeros(count),
-                 np.zeros((count, 2)), position, covariance)
+    return Plots(
+        np.broadcast_to(time, count).astype(float),
+        distance,
+        bearing,
+        np.zeros(count),
+        np.zeros((count, 2)),
+        position,
+        covariance,
+    )
 
 
 def observe(tracks, times, glint=0.0):
@@ -37,8 +44,9 @@ def noisy(truth, along, across, rng):
 
 def straight(scans, tracks, velocity=(4.0, -6.0)):
     times = np.arange(scans) * 2.7
-    return times, np.tile(np.array([3000.0, 4000.0]) + times[:, None] * velocity,
-                          (tracks, 1, 1)).transpose(1, 0, 2)
+    return times, np.tile(
+        np.array([3000.0, 4000.0]) + times[:, None] * velocity, (tracks, 1, 1)
+    ).transpose(1, 0, 2)
 
 
 @pytest.mark.parametrize(('along', 'across'), [(45.0, 12.0), (15.0, 25.0), (8.0, 60.0)])
@@ -49,8 +57,9 @@ def test_scatter_is_learned_along_and_across(along, across):
     _, covariance, _ = observe(tracks, times)
     unit = unit_vector(to_range_bearing(truth[-1])[1])
     side = np.stack([unit[:, 1], -unit[:, 0]], -1)
-    found = [np.sqrt(np.einsum('ni,nij,nj->n', axis, covariance, axis).mean())
-             for axis in (unit, side)]
+    found = [
+        np.sqrt(np.einsum('ni,nij,nj->n', axis, covariance, axis).mean()) for axis in (unit, side)
+    ]
     assert found == pytest.approx([along, across], rel=0.1)
 
 
@@ -108,7 +117,7 @@ def test_one_wrong_plot_counts_little():
 def test_the_stretches_lead_from_the_configured_errors_to_those_found():
     times, truth = straight(40, 3)
     tracks = noisy(truth, 40, 10, np.random.default_rng(4))
-    tracks = truth[:1] + (tracks - truth)               # at rest: the line of sight stays
+    tracks = truth[:1] + (tracks - truth)  # at rest: the line of sight stays
     _, covariance, product = observe(tracks, times)
     configured = plots_of(truth[0], 0.0).covariance
     rebuilt = product @ configured @ product.swapaxes(1, 2)

@@ -20,7 +20,7 @@ def ellipse(rng, smallest=10, largest=100):
 def circles(distance, *radii):
     """Overlap of two round gates."""
     position = np.array([[1000.0, 0.0], [1000.0, distance]])
-    covariance = np.array([np.eye(2) * radius ** 2 / SIZE for radius in radii])
+    covariance = np.array([np.eye(2) * radius**2 / SIZE for radius in radii])
     return swap_risk(position, covariance, ORIGIN, SIZE)[0]
 
 
@@ -32,7 +32,7 @@ def test_round_gates_overlap_when_they_are_nearer_than_their_radii(radii):
 
 
 @settings(max_examples=80, deadline=None)
-@given(st.integers(0, 2 ** 32 - 1))
+@given(st.integers(0, 2**32 - 1))
 def test_overlap_of_two_gates_agrees_with_points_that_lie_in_both(seed):
     """Two ellipses overlap where the least of the greater of both distances is below 1."""
     rng = np.random.default_rng(seed)
@@ -46,8 +46,13 @@ def test_overlap_of_two_gates_agrees_with_points_that_lie_in_both(seed):
         weight = (1 - share) * inverse[0], share * inverse[1]
         point = np.linalg.solve(sum(weight), weight[0] @ position[0] + weight[1] @ position[1])
         return [(point - p) @ m @ (point - p) for p, m in zip(position, inverse)]
-    exact = minimize_scalar(lambda share: max(distances(share)), bounds=(1e-6, 1 - 1e-6),
-                            method='bounded', options={'xatol': 1e-9}).fun
+
+    exact = minimize_scalar(
+        lambda share: max(distances(share)),
+        bounds=(1e-6, 1 - 1e-6),
+        method='bounded',
+        options={'xatol': 1e-9},
+    ).fun
     if exact < 1.5:
         assert (other == [1, 0]).all()
         assert 0.96 * exact - 1e-6 <= overlap[0] == overlap[1] <= exact * (1 + 1e-6)
@@ -69,9 +74,12 @@ def test_across_north_and_round_own_ship():
 
 
 def test_a_large_gate_that_holds_a_small_one():
-    overlap, other = swap_risk(np.array([[0, 2000.0], [0, 2500.0]]),
-                               np.array([np.eye(2) * 300.0 ** 2, np.eye(2) * 5.0 ** 2]), ORIGIN,
-                               SIZE)
+    overlap, other = swap_risk(
+        np.array([[0, 2000.0], [0, 2500.0]]),
+        np.array([np.eye(2) * 300.0**2, np.eye(2) * 5.0**2]),
+        ORIGIN,
+        SIZE,
+    )
     assert other.tolist() == [1, 0] and (overlap < 0.5).all()
 
 
@@ -81,8 +89,11 @@ def test_many_tracks_agree_with_every_pair_looked_at():
     covariance = np.array([ellipse(rng, 5, 60) for _ in range(300)])
     overlap, _ = swap_risk(position, covariance, ORIGIN, SIZE)
     for one in range(300):
-        pairs = [swap_risk(position[[one, two]], covariance[[one, two]], ORIGIN, SIZE)[0][0]
-                 for two in range(one + 1, 300) if np.hypot(*(position[one] - position[two])) < 500]
+        pairs = [
+            swap_risk(position[[one, two]], covariance[[one, two]], ORIGIN, SIZE)[0][0]
+            for two in range(one + 1, 300)
+            if np.hypot(*(position[one] - position[two])) < 500
+        ]
         for value in pairs:
             if value < 1.44:
                 assert overlap[one] <= value + 1e-9
@@ -91,6 +102,7 @@ def test_many_tracks_agree_with_every_pair_looked_at():
 
 @pytest.mark.parametrize('count', [0, 1])
 def test_none_or_one_is_no_risk(count):
-    overlap, other = swap_risk(np.zeros((count, 2)), np.tile(np.eye(2), (count, 1, 1)), ORIGIN,
-                               SIZE)
+    overlap, other = swap_risk(
+        np.zeros((count, 2)), np.tile(np.eye(2), (count, 1, 1)), ORIGIN, SIZE
+    )
     assert np.isinf(overlap).all() and (other == -1).all()

@@ -15,10 +15,13 @@ SURE = np.diag([1.0, 1.0, 1e-4, 1e-4])
 def targets(position, velocity, covariance=SURE):
     position = np.atleast_2d(np.asarray(position, float))
     count = len(position)
-    rest = dict.fromkeys(Motion._fields[3:], np.zeros(count, int))      # of no weight in a trial
-    return Motion(position=position, velocity=np.broadcast_to(
-        np.asarray(velocity, float), (count, 2)), covariance=np.broadcast_to(
-        covariance, (count, 4, 4)), **rest)
+    rest = dict.fromkeys(Motion._fields[3:], np.zeros(count, int))  # of no weight in a trial
+    return Motion(
+        position=position,
+        velocity=np.broadcast_to(np.asarray(velocity, float), (count, 2)),
+        covariance=np.broadcast_to(covariance, (count, 4, 4)),
+        **rest,
+    )
 
 
 def own_ship(course_deg=0.0, speed=TEN_KNOTS, position=(0.0, 0.0)):
@@ -31,7 +34,7 @@ def traffic(seed, count=60):
     rng = np.random.default_rng(seed)
     position = rng.uniform(0.5, 8, (count, 1)) * MILE * unit_vector(rng.uniform(0, 7, count))
     velocity = rng.uniform(1, 20, (count, 1)) * KNOT * unit_vector(rng.uniform(0, 7, count))
-    root = rng.normal(size=(count, 4, 4)) * np.array([20, 20, .2, .2])[:, None]
+    root = rng.normal(size=(count, 4, 4)) * np.array([20, 20, 0.2, 0.2])[:, None]
     return targets(position, velocity, root @ root.swapaxes(1, 2) + SURE)
 
 
@@ -46,8 +49,9 @@ def sailed(own, trial, step=0.1, until=3000.0):
         if (k + 1) * step > trial.delay:
             turn = np.clip(left, -trial.turn_rate * step, trial.turn_rate * step)
             course, left = course + turn, left - turn
-            speed += np.clip(trial.speed - speed, -trial.acceleration * step,
-                             trial.acceleration * step)
+            speed += np.clip(
+                trial.speed - speed, -trial.acceleration * step, trial.acceleration * step
+            )
     return np.array(positions)
 
 
@@ -62,13 +66,16 @@ def test_a_trial_that_changes_nothing_gives_the_plain_cpa(delay):
     np.testing.assert_allclose(tried.danger_probability, plain.danger_probability, atol=1e-6)
 
 
-@pytest.mark.parametrize('trial', [
-    TrialManoeuvre(np.radians(60), 12 * KNOT, 300.0, np.inf, np.inf),
-    TrialManoeuvre(np.radians(60), 12 * KNOT, 60.0, np.radians(1.0), 0.05),
-    TrialManoeuvre(np.radians(200), 4 * KNOT, 0.0, np.radians(0.3), 0.01),
-    TrialManoeuvre(np.radians(-100), 0.0, 120.0, np.radians(2.0), 0.02),
-    TrialManoeuvre(np.radians(350), 10 * KNOT, 30.0, np.radians(0.5), np.inf),
-])
+@pytest.mark.parametrize(
+    'trial',
+    [
+        TrialManoeuvre(np.radians(60), 12 * KNOT, 300.0, np.inf, np.inf),
+        TrialManoeuvre(np.radians(60), 12 * KNOT, 60.0, np.radians(1.0), 0.05),
+        TrialManoeuvre(np.radians(200), 4 * KNOT, 0.0, np.radians(0.3), 0.01),
+        TrialManoeuvre(np.radians(-100), 0.0, 120.0, np.radians(2.0), 0.02),
+        TrialManoeuvre(np.radians(350), 10 * KNOT, 30.0, np.radians(0.5), np.inf),
+    ],
+)
 def test_cpa_and_tcpa_are_those_of_the_path_sailed_step_by_step(trial):
     motion, own = traffic(2), own_ship(0)
     tried = trial_approach(motion, own, trial, *LIMITS)
@@ -78,12 +85,13 @@ def test_cpa_and_tcpa_are_those_of_the_path_sailed_step_by_step(trial):
         distance = np.hypot(*(motion.position[k] + time[:, None] * motion.velocity[k] - track).T)
         at = distance.argmin()
         if at == 0:
-            assert not tried.tcpa[k] >= 0       # nan where next to nothing moves
+            assert not tried.tcpa[k] >= 0  # nan where next to nothing moves
         elif at < len(time) - 1:
             # The sailor's own step errs by half a step's way per change.
             assert tried.cpa[k] == pytest.approx(distance[at], abs=2.0)
             assert distance[max(round(tried.tcpa[k] / step), 0)] == pytest.approx(
-                distance[at], abs=2.0)
+                distance[at], abs=2.0
+            )
 
 
 def test_turning_at_once_is_the_plain_cpa_of_the_new_course():
@@ -99,12 +107,18 @@ def test_turning_at_once_is_the_plain_cpa_of_the_new_course():
 def test_the_mirrored_trial_passes_the_mirrored_targets_alike():
     motion, flip = traffic(4), np.array([-1.0, 1.0])
     mirror = np.kron(np.eye(2), np.diag(flip))
-    mirrored = motion._replace(position=motion.position * flip, velocity=motion.velocity * flip,
-                               covariance=mirror @ motion.covariance @ mirror)
+    mirrored = motion._replace(
+        position=motion.position * flip,
+        velocity=motion.velocity * flip,
+        covariance=mirror @ motion.covariance @ mirror,
+    )
     for turn in (30, 90, 160):
-        starboard, port = (trial_approach(
-            some, own_ship(0), TrialManoeuvre(np.radians(sign * turn), 8 * KNOT, 60.0), *LIMITS)
-            for some, sign in ((motion, 1), (mirrored, -1)))
+        starboard, port = (
+            trial_approach(
+                some, own_ship(0), TrialManoeuvre(np.radians(sign * turn), 8 * KNOT, 60.0), *LIMITS
+            )
+            for some, sign in ((motion, 1), (mirrored, -1))
+        )
         for one, other in zip(starboard, port):
             np.testing.assert_allclose(one, other, atol=1e-6)
 
@@ -125,8 +139,11 @@ def test_the_danger_probability_is_that_of_sampled_motions(turn_rate):
     rng, count = np.random.default_rng(5), 8_000
     covariance = np.diag([60.0, 60.0, 0.5, 0.5]) ** 2 + 0.0
     covariance[0, 2] = covariance[2, 0] = covariance[1, 3] = covariance[3, 1] = 15.0
-    motion = targets([[3000, 6000], [-2500, 5000], [0, 7000], [4000, 1500]],
-                     [[-4, -4], [5, -2], [0, -6], [-6, 2]], covariance)
+    motion = targets(
+        [[3000, 6000], [-2500, 5000], [0, 7000], [4000, 1500]],
+        [[-4, -4], [5, -2], [0, -6], [-6, 2]],
+        covariance,
+    )
     trial = TrialManoeuvre(np.radians(20), TEN_KNOTS, 90.0, turn_rate)
     expected = trial_approach(motion, own_ship(0), trial, 900.0, 700.0).danger_probability
     assert ((expected > 0.05) & (expected < 0.95)).sum() >= 3
@@ -142,7 +159,9 @@ def test_the_danger_probability_is_that_of_sampled_motions(turn_rate):
 
 def test_courses_are_safe_where_turning_at_once_keeps_the_cpa():
     motion, own = traffic(6, 5), own_ship(0)
-    chosen = safe_courses(motion, own, TrialManoeuvre(0.0, TEN_KNOTS, 0.0, np.inf, np.inf), 0.5 * MILE)
+    chosen = safe_courses(
+        motion, own, TrialManoeuvre(0.0, TEN_KNOTS, 0.0, np.inf, np.inf), 0.5 * MILE
+    )
     for k in range(0, 360, 7):
         turned = approach(motion, own_ship(k), 0.5 * MILE, 1e6)
         some = 1 - np.prod(1 - turned.danger_probability)
@@ -153,32 +172,45 @@ def test_courses_are_safe_where_turning_at_once_keeps_the_cpa():
 
 def test_safe_sectors_are_the_runs_of_safe_courses_through_north_too():
     # A target abeam to starboard that lies still: courses towards it are not safe.
-    chosen = safe_courses(targets((2 * MILE, 0), (0, 0)), own_ship(0),
-                          TrialManoeuvre(0.0, TEN_KNOTS, 0.0, np.inf, np.inf), 0.5 * MILE)
+    chosen = safe_courses(
+        targets((2 * MILE, 0), (0, 0)),
+        own_ship(0),
+        TrialManoeuvre(0.0, TEN_KNOTS, 0.0, np.inf, np.inf),
+        0.5 * MILE,
+    )
     # The courses within asin(.5 / 2) = 14.5 degrees of it pass too near.
     np.testing.assert_allclose(np.degrees(chosen.sectors), [[105, 75]], atol=1.01)
     assert chosen.safe[0] and chosen.safe[270] and not chosen.safe[90]
     assert chosen.nearest[90] == 0 and chosen.cpa[90] < 10
-    assert chosen.cpa[270] == pytest.approx(2 * MILE)        # already as near as it will be
+    assert chosen.cpa[270] == pytest.approx(2 * MILE)  # already as near as it will be
 
 
 def test_two_dangers_leave_two_safe_sectors():
     motion = targets([[2 * MILE, 0], [-2 * MILE, 0]], (0, 0))
-    chosen = safe_courses(motion, own_ship(0), TrialManoeuvre(0.0, TEN_KNOTS, 0.0, np.inf, np.inf),
-                          0.5 * MILE)
+    chosen = safe_courses(
+        motion, own_ship(0), TrialManoeuvre(0.0, TEN_KNOTS, 0.0, np.inf, np.inf), 0.5 * MILE
+    )
     np.testing.assert_allclose(np.degrees(chosen.sectors), [[105, 255], [285, 75]], atol=1.01)
 
 
 def test_less_sure_motion_leaves_fewer_safe_courses():
     trial = TrialManoeuvre(0.0, TEN_KNOTS, 60.0)
-    counts = [safe_courses(targets((0, 4 * MILE), (0, -5), scale * SURE), own_ship(0), trial,
-                           0.5 * MILE).safe.sum() for scale in (1.0, 1e3, 1e4)]
+    counts = [
+        safe_courses(
+            targets((0, 4 * MILE), (0, -5), scale * SURE), own_ship(0), trial, 0.5 * MILE
+        ).safe.sum()
+        for scale in (1.0, 1e3, 1e4)
+    ]
     assert counts[0] > counts[1] > counts[2] > 0
 
 
 def test_without_targets_every_course_is_safe():
-    chosen = safe_courses(targets(np.zeros((0, 2)), np.zeros(2)), own_ship(0),
-                          TrialManoeuvre(0.0, TEN_KNOTS), 0.5 * MILE)
+    chosen = safe_courses(
+        targets(np.zeros((0, 2)), np.zeros(2)),
+        own_ship(0),
+        TrialManoeuvre(0.0, TEN_KNOTS),
+        0.5 * MILE,
+    )
     assert chosen.safe.all() and np.isinf(chosen.cpa).all() and (chosen.nearest == -1).all()
     np.testing.assert_allclose(np.degrees(chosen.sectors), [[0, 359]])
 
@@ -225,16 +257,20 @@ def test_the_countdown_ends_at_the_manoeuvre():
 def test_counting_down_does_not_change_where_own_ship_will_be():
     own, trial = own_ship(10), TrialManoeuvre(np.radians(80), 6.0, 100.0)
     later = own_ship(10, position=tuple(60.0 * own.velocity))
-    first, second = (paths(ship, some, np.array([trial.course])) for ship, some in (
-        (own, trial), (later, countdown(trial, 60.0))))
+    first, second = (
+        paths(ship, some, np.array([trial.course]))
+        for ship, some in ((own, trial), (later, countdown(trial, 60.0)))
+    )
     np.testing.assert_allclose(first.time[0, 1:] - 60.0, second.time[0, 1:], atol=1e-9)
     np.testing.assert_allclose(first.position[0, 1:], second.position[0, 1:], atol=1e-6)
 
 
 def test_own_ship_at_rest_begins_from_its_heading():
     own = own_ship(90, 0.0)
-    path = paths(own, TrialManoeuvre(np.radians(90), 5.0, 0.0, acceleration=0.1), np.radians([90.0]))
-    np.testing.assert_allclose(path.position[0, -1], [125.0, 0.0], atol=1e-6)     # v^2 / 2a
+    path = paths(
+        own, TrialManoeuvre(np.radians(90), 5.0, 0.0, acceleration=0.1), np.radians([90.0])
+    )
+    np.testing.assert_allclose(path.position[0, -1], [125.0, 0.0], atol=1e-6)  # v^2 / 2a
 
 
 def test_a_steady_turn_is_a_circle():
@@ -246,14 +282,17 @@ def test_a_steady_turn_is_a_circle():
     assert path.time[0, -1] == pytest.approx(90.0)
 
 
-@pytest.mark.parametrize(('values', 'named'), [
-    ({'course': np.nan}, 'trial course is nan rad; it must be finite'),
-    ({'speed': -1.0}, 'trial speed is -1 m/s; it must be between 0 and 51.4444 m/s'),
-    ({'speed': 60.0}, 'trial speed is 60 m/s'),
-    ({'delay': -1.0}, 'trial delay is -1 s; it must be between 0 and 3600 s'),
-    ({'turn_rate': 0.0}, 'trial turn_rate is 0 rad/s; it must be above 0'),
-    ({'acceleration': np.nan}, 'trial acceleration is nan m/s^2'),
-])
+@pytest.mark.parametrize(
+    ('values', 'named'),
+    [
+        ({'course': np.nan}, 'trial course is nan rad; it must be finite'),
+        ({'speed': -1.0}, 'trial speed is -1 m/s; it must be between 0 and 51.4444 m/s'),
+        ({'speed': 60.0}, 'trial speed is 60 m/s'),
+        ({'delay': -1.0}, 'trial delay is -1 s; it must be between 0 and 3600 s'),
+        ({'turn_rate': 0.0}, 'trial turn_rate is 0 rad/s; it must be above 0'),
+        ({'acceleration': np.nan}, 'trial acceleration is nan m/s^2'),
+    ],
+)
 def test_an_impossible_trial_is_refused(values, named):
     trial = TrialManoeuvre(1.0, 5.0)._replace(**values)
     with pytest.raises(ValueError, match=named.replace('^', r'\^')):

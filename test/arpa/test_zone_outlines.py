@@ -32,7 +32,8 @@ def test_each_kind_is_drawn_by_itself():
     everything = zones.parse(TEXT)
     guard, exclusion = (outlines(everything, kind, OWN, 0.3) for kind in (True, False))
     assert len(guard) == sum(
-        len(outlines(only(name), True, OWN, 0.3)) for name in ('ring', 'ahead'))
+        len(outlines(only(name), True, OWN, 0.3)) for name in ('ring', 'ahead')
+    )
     assert len(exclusion) == 4 + 3
 
 
@@ -53,8 +54,9 @@ def test_what_is_drawn_of_a_sector_is_its_border(heading):
     # A little to one side of each segment's middle is inside, to the other outside.
     middle, along = drawn.mean(1), np.diff(drawn, axis=1)[:, 0]
     across = along[:, ::-1] * [1, -1] / np.hypot(*along.T)[:, None]
-    one, other = (zones.inside(zone, middle + step * across, OWN, heading)[:, 0]
-                  for step in (15.0, -15.0))
+    one, other = (
+        zones.inside(zone, middle + step * across, OWN, heading)[:, 0] for step in (15.0, -15.0)
+    )
     assert (one != other).all()
 
 
@@ -62,8 +64,9 @@ def test_a_polygon_of_own_ship_turns_with_her_and_one_on_the_ground_does_not():
     heading = np.radians(90.0)
     wake = outlines(only('wake'), False, OWN, heading).reshape(-1, 2)
     ahead, starboard = unit_vector(heading), unit_vector(heading + np.pi / 2)
-    corners = [OWN + x * starboard + y * ahead for x, y in (
-        (-80, -900), (80, -900), (30, 0), (-30, 0))]
+    corners = [
+        OWN + x * starboard + y * ahead for x, y in ((-80, -900), (80, -900), (30, 0), (-30, 0))
+    ]
     assert sorted(set(map(tuple, np.round(wake, 6)))) == sorted(map(tuple, np.round(corners, 6)))
     quay = [outlines(only('quay'), False, OWN, heading) for heading in (0.0, 2.0, np.nan)]
     assert all(np.array_equal(drawn, quay[0]) for drawn in quay)

@@ -18,17 +18,30 @@ def at(range_, bearing_deg):
 
 
 def sees(text, range_, bearing_deg, heading_deg=0.0, own=ORIGIN):
-    return bool(inside(parse(text), own + at(range_, bearing_deg), own,
-                       math.radians(heading_deg))[0, 0])
+    return bool(
+        inside(parse(text), own + at(range_, bearing_deg), own, math.radians(heading_deg))[0, 0]
+    )
 
 
 BOW = '[{name: bow, kind: guard, range_m: [1000, 2000], bearing_deg: [315, 045]}]'
 
 
-@pytest.mark.parametrize(('range_', 'bearing', 'expected'), [
-    (1500, 0, True), (1500, 44.9, True), (1500, 315.1, True), (1500, 359.999, True),
-    (1500, 45.1, False), (1500, 314.9, False), (1500, 180, False),
-    (999, 0, False), (1001, 0, True), (1999, 0, True), (2001, 0, False)])
+@pytest.mark.parametrize(
+    ('range_', 'bearing', 'expected'),
+    [
+        (1500, 0, True),
+        (1500, 44.9, True),
+        (1500, 315.1, True),
+        (1500, 359.999, True),
+        (1500, 45.1, False),
+        (1500, 314.9, False),
+        (1500, 180, False),
+        (999, 0, False),
+        (1001, 0, True),
+        (1999, 0, True),
+        (2001, 0, False),
+    ],
+)
 def test_sector_over_the_bow(range_, bearing, expected):
     assert sees(BOW, range_, bearing) == expected
 
@@ -61,7 +74,13 @@ def test_so_they_do_whatever_the_rounding(start, width, heading):
 def test_a_sector_wider_than_half_a_turn():
     text = '[{name: all but astern, kind: guard, range_m: [0, 100], bearing_deg: [200, 160]}]'
     assert [sees(text, 50, b) for b in (0, 100, 159, 180, 201, 300)] == [
-        True, True, True, False, True, True]
+        True,
+        True,
+        True,
+        False,
+        True,
+        True,
+    ]
 
 
 def test_full_ring_and_its_hole():
@@ -77,7 +96,7 @@ def test_sector_agrees_with_angles_counted_by_hand(start, width, heading, bearin
     end = (start + width) % 360
     text = f'[{{name: s, kind: guard, range_m: [10, 20], bearing_deg: [{start!r}, {end!r}]}}]'
     turned = (bearing - heading - start) % 360
-    if min(turned, abs(turned - width), 360 - turned) > 1e-6:       # not on a side
+    if min(turned, abs(turned - width), 360 - turned) > 1e-6:  # not on a side
         assert sees(text, 15, bearing, heading) == (turned < width)
 
 
@@ -87,7 +106,7 @@ def polygon(corners, frame='ground', name='p', kind='exclusion'):
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.integers(0, 2 ** 32 - 1), st.integers(3, 12))
+@given(st.integers(0, 2**32 - 1), st.integers(3, 12))
 def test_polygon_agrees_with_the_angle_it_subtends(seed, count):
     """A position is inside where the corners turn once round it (the winding number)."""
     rng = np.random.default_rng(seed)
@@ -114,7 +133,7 @@ def test_a_position_on_the_side_that_two_polygons_share_is_in_one_of_them():
 
 def test_polygon_on_the_ship_has_corners_starboard_and_ahead():
     text = f'[{polygon([(10, 100), (60, 100), (60, 200), (10, 200)], "ship")}]'
-    assert sees(text, 150, 15)                          # ahead, a little to starboard
+    assert sees(text, 150, 15)  # ahead, a little to starboard
     assert not sees(text, 150, 345)
     assert sees(text, 150, 255, heading_deg=240)
     assert sees(text, 150, 255, heading_deg=240, own=np.array([5e4, -3e4]))
@@ -177,45 +196,68 @@ def test_the_key_tells_whether_a_zone_is_still_the_same():
         assert (parse(BOW.replace(*change)).key != before).all()
 
 
-@pytest.mark.parametrize(('text', 'told'), [
-    ('[', 'zones are not YAML'),
-    ('ring', "zones are 'ring'; they must be a list"),
-    ('{name: ring}', 'they must be a list'),
-    ('[ring]', "zone 1 is 'ring'; it must be a mapping"),
-    ('[{kind: guard, range_m: [0, 1]}]', 'zone 1 has no name'),
-    ('[{name: a, kind: guard, range_m: [0, 1]}, {name: a, kind: guard, range_m: [0, 1]}]',
-     'two zones have the name a'),
-    ('[{name: a, kind: guard, range_m: [0, 1], beering: 3}]', "zone a: 'beering' is not known"),
-    ('[{name: a, range_m: [0, 1]}]', "zone a: kind is ''; it must be one of guard, exclusion"),
-    ('[{name: a, kind: no, range_m: [0, 1]}]', "zone a: kind is 'no'"),
-    ('[{name: a, kind: guard}]', 'zone a has no outline; it must have one of range_nm'),
-    ('[{name: a, kind: guard, range_m: [0, 1], range_nm: [0, 1]}]', 'has range_m and range_nm'),
-    ('[{name: a, kind: guard, range_m: [0, 1], corners_m: []}]', 'has range_m and corners_m'),
-    ('[{name: a, kind: guard, range_m: [2, 1]}]', 'the first must be below the second'),
-    ('[{name: a, kind: guard, range_m: [1, 1]}]', 'the first must be below the second'),
-    ('[{name: a, kind: guard, range_m: [-1, 1]}]', 'two numbers between 0 and 370400'),
-    ('[{name: a, kind: guard, range_nm: [1, 201]}]', 'two numbers between 0 and 200'),
-    ('[{name: a, kind: guard, range_m: [1, .nan]}]', 'range_m is '),
-    ('[{name: a, kind: guard, range_m: [1, nan]}]', 'range_m is '),
-    ('[{name: a, kind: guard, range_m: 5}]', "range_m is '5'; it must be two numbers"),
-    ('[{name: a, kind: guard, range_m: [0, 1, 2]}]', 'it must be two numbers'),
-    ('[{name: a, kind: guard, range_m: [0, 1], bearing_deg: [0, 361]}]', 'between -360 and 360'),
-    ('[{name: a, kind: guard, range_m: [0, 1], bearing_deg: [10, 370]}]', 'between -360 and 360'),
-    ('[{name: a, kind: guard, range_m: [0, 1], bearing_deg: [0, 360]}]', 'for a full ring'),
-    ('[{name: a, kind: guard, range_m: [0, 1], fixed_to: ground}]', 'fixed_to does not go with'),
-    ('[{name: a, kind: guard, corners_m: [[0, 0], [1, 0]]}]', 'a list of 3 to 1000 corners'),
-    ('[{name: a, kind: guard, corners_m: [[0, 0], [1, 0], [1]]}]', 'corners_m[2] is'),
-    ('[{name: a, kind: guard, corners_m: [[0, 0], [1, 0], [1, x]]}]', 'corners_m[2] is'),
-    ('[{name: a, kind: guard, corners_m: [[0, 0], [1, 0], [1, 1]], fixed_to: sea}]',
-     'one of ship, ground'),
-    ('[{name: a, kind: guard, corners_m: [[0, 0], [1, 0], [1, 1]], bearing_deg: [1, 2]}]',
-     'bearing_deg does not go with corners_m'),
-    ('[{name: a, kind: guard, corners_m: [[0, 0], [9, 9], [9, 0], [0, 5]]}]', 'cross each other'),
-    ('[{name: a, kind: guard, corners_m: [[0, 0], [9, 9], [18, 18]]}]', 'enclose nothing'),
-    ('[{name: a, kind: guard, corners_m: [[0, 0], [9, 9], [0, 9], [0, 0]]}]', 'have no length'),
-    (str([{'name': str(k), 'kind': 'guard', 'range_m': [0, 1]} for k in range(101)]),
-     'there are 101 zones; there may be 100'),
-])
+@pytest.mark.parametrize(
+    ('text', 'told'),
+    [
+        ('[', 'zones are not YAML'),
+        ('ring', "zones are 'ring'; they must be a list"),
+        ('{name: ring}', 'they must be a list'),
+        ('[ring]', "zone 1 is 'ring'; it must be a mapping"),
+        ('[{kind: guard, range_m: [0, 1]}]', 'zone 1 has no name'),
+        (
+            '[{name: a, kind: guard, range_m: [0, 1]}, {name: a, kind: guard, range_m: [0, 1]}]',
+            'two zones have the name a',
+        ),
+        ('[{name: a, kind: guard, range_m: [0, 1], beering: 3}]', "zone a: 'beering' is not known"),
+        ('[{name: a, range_m: [0, 1]}]', "zone a: kind is ''; it must be one of guard, exclusion"),
+        ('[{name: a, kind: no, range_m: [0, 1]}]', "zone a: kind is 'no'"),
+        ('[{name: a, kind: guard}]', 'zone a has no outline; it must have one of range_nm'),
+        ('[{name: a, kind: guard, range_m: [0, 1], range_nm: [0, 1]}]', 'has range_m and range_nm'),
+        ('[{name: a, kind: guard, range_m: [0, 1], corners_m: []}]', 'has range_m and corners_m'),
+        ('[{name: a, kind: guard, range_m: [2, 1]}]', 'the first must be below the second'),
+        ('[{name: a, kind: guard, range_m: [1, 1]}]', 'the first must be below the second'),
+        ('[{name: a, kind: guard, range_m: [-1, 1]}]', 'two numbers between 0 and 370400'),
+        ('[{name: a, kind: guard, range_nm: [1, 201]}]', 'two numbers between 0 and 200'),
+        ('[{name: a, kind: guard, range_m: [1, .nan]}]', 'range_m is '),
+        ('[{name: a, kind: guard, range_m: [1, nan]}]', 'range_m is '),
+        ('[{name: a, kind: guard, range_m: 5}]', "range_m is '5'; it must be two numbers"),
+        ('[{name: a, kind: guard, range_m: [0, 1, 2]}]', 'it must be two numbers'),
+        (
+            '[{name: a, kind: guard, range_m: [0, 1], bearing_deg: [0, 361]}]',
+            'between -360 and 360',
+        ),
+        (
+            '[{name: a, kind: guard, range_m: [0, 1], bearing_deg: [10, 370]}]',
+            'between -360 and 360',
+        ),
+        ('[{name: a, kind: guard, range_m: [0, 1], bearing_deg: [0, 360]}]', 'for a full ring'),
+        (
+            '[{name: a, kind: guard, range_m: [0, 1], fixed_to: ground}]',
+            'fixed_to does not go with',
+        ),
+        ('[{name: a, kind: guard, corners_m: [[0, 0], [1, 0]]}]', 'a list of 3 to 1000 corners'),
+        ('[{name: a, kind: guard, corners_m: [[0, 0], [1, 0], [1]]}]', 'corners_m[2] is'),
+        ('[{name: a, kind: guard, corners_m: [[0, 0], [1, 0], [1, x]]}]', 'corners_m[2] is'),
+        (
+            '[{name: a, kind: guard, corners_m: [[0, 0], [1, 0], [1, 1]], fixed_to: sea}]',
+            'one of ship, ground',
+        ),
+        (
+            '[{name: a, kind: guard, corners_m: [[0, 0], [1, 0], [1, 1]], bearing_deg: [1, 2]}]',
+            'bearing_deg does not go with corners_m',
+        ),
+        (
+            '[{name: a, kind: guard, corners_m: [[0, 0], [9, 9], [9, 0], [0, 5]]}]',
+            'cross each other',
+        ),
+        ('[{name: a, kind: guard, corners_m: [[0, 0], [9, 9], [18, 18]]}]', 'enclose nothing'),
+        ('[{name: a, kind: guard, corners_m: [[0, 0], [9, 9], [0, 9], [0, 0]]}]', 'have no length'),
+        (
+            str([{'name': str(k), 'kind': 'guard', 'range_m': [0, 1]} for k in range(101)]),
+            'there are 101 zones; there may be 100',
+        ),
+    ],
+)
 def test_errors_name_the_zone_the_key_and_the_limits(text, told):
     with pytest.raises(ValueError) as error:
         parse(text)

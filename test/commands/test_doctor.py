@@ -9,9 +9,22 @@ from marine_tracker.commands import doctor
 def test_where_the_core_works_the_exit_code_is_0(command):
     done = command('doctor', '--listen', '0')
     assert done.returncode == 0 and done.stderr == ''
-    for name in ('Python', 'numpy', 'scipy', 'PyWavelets', 'PyYAML', 'rich', 'matplotlib',
-                 'configuration', 'Fast DDS profile', 'ROS_DISTRO', 'AMENT_PREFIX_PATH',
-                 'ROS_DOMAIN_ID', 'rclpy', 'ROS message packages'):
+    for name in (
+        'Python',
+        'numpy',
+        'scipy',
+        'PyWavelets',
+        'PyYAML',
+        'rich',
+        'matplotlib',
+        'configuration',
+        'Fast DDS profile',
+        'ROS_DISTRO',
+        'AMENT_PREFIX_PATH',
+        'ROS_DOMAIN_ID',
+        'rclpy',
+        'ROS message packages',
+    ):
         assert f'   {name}: ' in done.stdout, name
 
 
@@ -19,13 +32,19 @@ def test_json_holds_the_same_checks(command, tmp_path):
     done = command('doctor', '--listen', '0', '--json', '-', ROS_DOMAIN_ID='42')
     checks = {check['name']: check for check in json.loads(done.stdout)['checks']}
     assert checks['ROS_DOMAIN_ID']['found'] == '42'
-    assert checks['numpy'] == {'name': 'numpy', 'ok': True, 'advice': '', 'required': True,
-                               'found': checks['numpy']['found']}
+    assert checks['numpy'] == {
+        'name': 'numpy',
+        'ok': True,
+        'advice': '',
+        'required': True,
+        'found': checks['numpy']['found'],
+    }
 
 
 @pytest.mark.parametrize(('module', 'package'), doctor.REQUIRED.items())
-def test_a_required_package_that_cannot_be_imported_is_exit_code_1(command, tmp_path, module,
-                                                                   package):
+def test_a_required_package_that_cannot_be_imported_is_exit_code_1(
+    command, tmp_path, module, package
+):
     # A broken installation, found before the real one.
     (tmp_path / f'{module}.py').write_text('raise RuntimeError("half installed")')
     source = doctor.config.path().parent
@@ -40,7 +59,9 @@ def test_a_package_that_is_not_there_is_told_with_what_to_do(monkeypatch):
     check = {check.name: check for check in doctor.examine(0)}['no-such']
     assert not check.ok and not check.required
     assert doctor.line(check).splitlines() == [
-        'note   no-such: not installed', '       -> pip install no-such (for a test)']
+        'note   no-such: not installed',
+        '       -> pip install no-such (for a test)',
+    ]
 
 
 def test_a_profile_that_does_not_exist_is_told(monkeypatch):

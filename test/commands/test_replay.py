@@ -42,11 +42,18 @@ def test_twice_the_same_is_byte_equal_and_another_seed_is_not(tracks, tmp_path):
 
 def test_two_processes_give_byte_equal_files(command, recordings, tmp_path):
     for name in ('a', 'b'):
-        done = command('replay', recordings / 'autosea_joyride', '--estimator', 'imm', '--out',
-                       tmp_path / name, PYTHONHASHSEED={'a': '1', 'b': '2'}[name])
+        done = command(
+            'replay',
+            recordings / 'autosea_joyride',
+            '--estimator',
+            'imm',
+            '--out',
+            tmp_path / name,
+            PYTHONHASHSEED={'a': '1', 'b': '2'}[name],
+        )
         assert done.returncode == 0, done.stderr
         assert done.stdout.startswith('238 scans, ') and done.stdout.count('\n') == 1
-        assert done.stderr == ''                            # no progress bar without a terminal
+        assert done.stderr == ''  # no progress bar without a terminal
     assert (tmp_path / 'a').read_bytes() == (tmp_path / 'b').read_bytes()
 
 
@@ -58,8 +65,9 @@ def test_standard_output_gets_tracks_alone(command, tracks):
 
 def test_a_written_scenario_replays_and_scores_like_the_scenario_itself(tracks, tmp_path):
     chosen = scenario.load(SCENARIO)
-    csv_folder.write(tmp_path / 'folder', SCENARIO, radar.simulate(chosen, 1),
-                     chosen.tracker_parameters())
+    csv_folder.write(
+        tmp_path / 'folder', SCENARIO, radar.simulate(chosen, 1), chosen.tracker_parameters()
+    )
     again = track_file.read(replay(tmp_path / 'tracks.csv', tmp_path / 'folder'))
     first = track_file.read(tracks)
     assert again.track.tolist() == first.track.tolist()
@@ -67,7 +75,8 @@ def test_a_written_scenario_replays_and_scores_like_the_scenario_itself(tracks, 
     np.testing.assert_allclose(again.position, first.position, atol=0.01)
     figures = metrics.score(csv_folder.read(tmp_path / 'folder'), again).figures
     assert figures['truth_targets'] == len(
-        {int(target) for _, truth in radar.simulate(chosen, 1) for target in truth.target})
+        {int(target) for _, truth in radar.simulate(chosen, 1) for target in truth.target}
+    )
     assert figures['held'] > 0.95 and figures['never_confirmed'] == 0
 
 
@@ -91,17 +100,27 @@ def parameters_of(monkeypatch, folder, *arguments):
 def folder(tmp_path):
     (tmp_path / 'plots.csv').write_text('scan,time_s,range_m,bearing_deg\n')
     (tmp_path / 'own_ship.csv').write_text('scan,time_s,north_m,east_m\n0,0,0,0\n1,2.5,0,0\n')
-    (tmp_path / 'radar.yaml').write_text('range_sigma_m: 3.0\nbearing_sigma_deg: 0.9\n'
-                                         'max_target_speed_mps: 6.0\n')
+    (tmp_path / 'radar.yaml').write_text(
+        'range_sigma_m: 3.0\nbearing_sigma_deg: 0.9\nmax_target_speed_mps: 6.0\n'
+    )
     return tmp_path
 
 
 def test_parameters_overrule_each_other_in_the_documented_order(monkeypatch, folder):
     file = folder / 'mine.yaml'
     file.write_text('bearing_sigma_deg: 1.5\nmax_target_speed_mps: 7\nestimator: imm\n')
-    used = parameters_of(monkeypatch, folder, '--parameters', str(file),
-                         '--set', 'max_target_speed_mps=8', '--set', 'vessel_class=small_craft',
-                         '--estimator', 'cs_kalman')
+    used = parameters_of(
+        monkeypatch,
+        folder,
+        '--parameters',
+        str(file),
+        '--set',
+        'max_target_speed_mps=8',
+        '--set',
+        'vessel_class=small_craft',
+        '--estimator',
+        'cs_kalman',
+    )
     assert (used.range_sigma_m, used.bearing_sigma_deg) == (3.0, 1.5)
     assert (used.max_target_speed_mps, used.vessel_class) == (8.0, 'small_craft')
     assert used.estimator == 'cs_kalman'
@@ -109,22 +128,27 @@ def test_parameters_overrule_each_other_in_the_documented_order(monkeypatch, fol
 
 def test_a_nodes_parameter_file_is_taken_too(monkeypatch, folder):
     file = folder / 'node.yaml'
-    file.write_text('/**:\n  ros__parameters:\n    range_sigma_m: 9.0\n'
-                    'tracker:\n  ros__parameters:\n    bearing_sigma_deg: 2.0\n'
-                    'other:\n  ros__parameters:\n    bearing_sigma_deg: 3.0\n')
+    file.write_text(
+        '/**:\n  ros__parameters:\n    range_sigma_m: 9.0\n'
+        'tracker:\n  ros__parameters:\n    bearing_sigma_deg: 2.0\n'
+        'other:\n  ros__parameters:\n    bearing_sigma_deg: 3.0\n'
+    )
     used = parameters_of(monkeypatch, folder, '--parameters', str(file))
     assert (used.range_sigma_m, used.bearing_sigma_deg) == (9.0, 2.0)
 
 
-@pytest.mark.parametrize(('arguments', 'message'), [
-    (['--set', 'range_sigma=3'], 'unknown parameter range_sigma; did you mean range_sigma_m?'),
-    (['--set', 'range_sigma_m=-3'], 'parameter range_sigma_m is -3'),
-    (['--set', 'range_sigma_m=far'], "parameter range_sigma_m is 'far'"),
-    (['--set', 'range_sigma_m'], '--set range_sigma_m: it must be NAME=VALUE'),
-    (['--set', 'range_sigma_m=['], '--set range_sigma_m=[: its value is not YAML'),
-    (['--seed', '-1'], '--seed is -1; it must not be negative'),
-    (['--parameters', 'none.yaml'], 'none.yaml: no such file or directory'),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        (['--set', 'range_sigma=3'], 'unknown parameter range_sigma; did you mean range_sigma_m?'),
+        (['--set', 'range_sigma_m=-3'], 'parameter range_sigma_m is -3'),
+        (['--set', 'range_sigma_m=far'], "parameter range_sigma_m is 'far'"),
+        (['--set', 'range_sigma_m'], '--set range_sigma_m: it must be NAME=VALUE'),
+        (['--set', 'range_sigma_m=['], '--set range_sigma_m=[: its value is not YAML'),
+        (['--seed', '-1'], '--seed is -1; it must not be negative'),
+        (['--parameters', 'none.yaml'], 'none.yaml: no such file or directory'),
+    ],
+)
 def test_wrong_parameters_are_named(folder, capsys, arguments, message):
     assert cli.main(['replay', str(folder), '--out', str(folder / 'out.csv'), *arguments]) == 2
     assert capsys.readouterr().err.startswith(f'marine_tracker: {message}')
@@ -133,8 +157,19 @@ def test_wrong_parameters_are_named(folder, capsys, arguments, message):
 
 def test_a_parameter_file_of_other_nodes_is_refused(folder, capsys):
     (folder / 'node.yaml').write_text('player:\n  ros__parameters:\n    rate: 2.0\n')
-    assert cli.main(['replay', str(folder), '--out', str(folder / 'out.csv'),
-                     '--parameters', str(folder / 'node.yaml')]) == 2
+    assert (
+        cli.main(
+            [
+                'replay',
+                str(folder),
+                '--out',
+                str(folder / 'out.csv'),
+                '--parameters',
+                str(folder / 'node.yaml'),
+            ]
+        )
+        == 2
+    )
     assert 'has no parameters of the tracker; it has those of player' in capsys.readouterr().err
 
 
@@ -146,8 +181,9 @@ def test_a_recording_knows_how_many_scans_it_has(folder):
 def test_an_estimator_that_wants_doppler_warns_where_there_is_none(folder, capsys):
     replay(folder / 'out.csv', folder, '--estimator', 'alpha_beta')
     assert 'the plots tell no radial speeds, which alpha_beta wants' in capsys.readouterr().err
-    (folder / 'plots.csv').write_text('scan,time_s,range_m,bearing_deg,radial_speed_mps\n'
-                                      '0,0,100,0,5\n')
+    (folder / 'plots.csv').write_text(
+        'scan,time_s,range_m,bearing_deg,radial_speed_mps\n0,0,100,0,5\n'
+    )
     replay(folder / 'out.csv', folder, '--estimator', 'alpha_beta')
     assert capsys.readouterr().err == ''
 
@@ -167,4 +203,4 @@ def test_the_hf_radars_ships_are_held_with_the_shipped_parameters(tmp_path):
 def test_two_sources_of_one_scene_are_fused(tmp_path, capsys):
     out = tmp_path / 'tracks.csv'
     assert cli.main(['replay', 'two_radars_x', 'two_radars_s', '--out', str(out)]) == 0
-    assert capsys.readouterr().out.startswith('660 scans, ')    # 360 and 300
+    assert capsys.readouterr().out.startswith('660 scans, ')  # 360 and 300

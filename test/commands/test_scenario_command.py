@@ -53,7 +53,8 @@ def test_write_makes_a_recording_that_repeats_to_the_byte(tmp_path, capsys):
     # two bearing sigmas, .3 deg, at 8 NM
     assert recording.notes['seen_within_m'] == 155
     assert recording.tracker_parameters == pytest.approx(
-        scenario.load('clean').tracker_parameters())
+        scenario.load('clean').tracker_parameters()
+    )
 
 
 def test_unknown_scenario_ends_with_one_line(capsys):

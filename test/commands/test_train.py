@@ -10,8 +10,9 @@ from marine_tracker.networks import wavelet_network as net
 def test_training_by_command_gives_weights_that_load(tmp_path, command):
     """Start to end, short: 588 tracks and 30 steps of training."""
     file = tmp_path / 'w.npz'
-    done = command('train', 'gwnn', '--seed', 2, '--tracks', 588, '--steps', 30, '--out', file,
-                   timeout=110)
+    done = command(
+        'train', 'gwnn', '--seed', 2, '--tracks', 588, '--steps', 30, '--out', file, timeout=110
+    )
     assert done.returncode == 0, done.stderr
     assert 'steady, straight: position ratio' in done.stdout
     weights = gwnn.weights(str(file))
@@ -24,9 +25,23 @@ def test_training_for_ones_own_radar_and_vessels(tmp_path, command):
     """A scenario's radar and targets, boats by a file: weights for small craft."""
     file, kinds = tmp_path / 'w.npz', tmp_path / 'kinds.yaml'
     kinds.write_text('tug: {speed_mps: [0, 7], manoeuvres_per_scan: 0.05}\n')
-    done = command('train', 'gwnn', '--vessel-class', 'small_craft', '--kinds', kinds,
-                   '--scenario', 'busy_strait', '--tracks', 588, '--steps', 20, '--out', file,
-                   timeout=110)
+    done = command(
+        'train',
+        'gwnn',
+        '--vessel-class',
+        'small_craft',
+        '--kinds',
+        kinds,
+        '--scenario',
+        'busy_strait',
+        '--tracks',
+        588,
+        '--steps',
+        20,
+        '--out',
+        file,
+        timeout=110,
+    )
     assert done.returncode == 0, done.stderr
     assert 'tug, straight: position ratio' in done.stdout
     manifest = gwnn.weights(str(file), 'small_craft').manifest
@@ -36,11 +51,14 @@ def test_training_for_ones_own_radar_and_vessels(tmp_path, command):
 
 
 def test_wrong_options_are_told(tmp_path, command):
-    for options, text in ((('--steps', 0), '--steps is 0'), (('--seed', -1), '--seed is -1'),
-                          (('--out', tmp_path / 'no' / 'w.npz'), 'there is no folder'),
-                          (('--out', tmp_path / 'w.json'), 'that name is for'),
-                          (('--kinds', tmp_path / 'none.yaml'), 'none.yaml cannot be read'),
-                          (('--scenario', 'busy_street'), 'did you mean busy_strait?')):
+    for options, text in (
+        (('--steps', 0), '--steps is 0'),
+        (('--seed', -1), '--seed is -1'),
+        (('--out', tmp_path / 'no' / 'w.npz'), 'there is no folder'),
+        (('--out', tmp_path / 'w.json'), 'that name is for'),
+        (('--kinds', tmp_path / 'none.yaml'), 'none.yaml cannot be read'),
+        (('--scenario', 'busy_street'), 'did you mean busy_strait?'),
+    ):
         done = command('train', 'gwnn', *options)
         assert done.returncode == 2 and text in done.stderr
 

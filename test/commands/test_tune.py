@@ -9,21 +9,46 @@ from marine_tracker.estimators import imm
 
 @pytest.mark.parametrize('target', ['training', 'manoeuvre'])
 def test_a_short_search_gives_settings_and_judges_them_on_fresh_tracks(capsys, target):
-    assert cli.main(['tune', 'imm', '--for', target, '--evaluations', '3', '--tracks', '70',
-                     '--seed', '2', '--json', '-']) == 0
+    assert (
+        cli.main(
+            [
+                'tune',
+                'imm',
+                '--for',
+                target,
+                '--evaluations',
+                '3',
+                '--tracks',
+                '70',
+                '--seed',
+                '2',
+                '--json',
+                '-',
+            ]
+        )
+        == 0
+    )
     done = capsys.readouterr()
     found = json.loads(done.out)
     assert (found['target'], found['evaluations'], found['seed']) == (target, 3, 2)
-    imm.imm(imm.Modes(**{name: tuple(value) if isinstance(value, list) else value
-                         for name, value in found['settings'].items()}), 25.0)
+    imm.imm(
+        imm.Modes(
+            **{
+                name: tuple(value) if isinstance(value, list) else value
+                for name, value in found['settings'].items()
+            }
+        ),
+        25.0,
+    )
     assert len(found['best']) == 3
     figures = {figure['name']: figure for figure in found['figures']}
     seen = figures['tracks of the search: found']
     assert np.log(seen['value']) == pytest.approx(found['best'][-1])
     rival = f'shipped for {target}'
     ratio = figures[f'fresh tracks: found over {rival}']
-    assert ratio['value'] == pytest.approx(figures['fresh tracks: found']['value']
-                                           / figures[f'fresh tracks: {rival}']['value'])
+    assert ratio['value'] == pytest.approx(
+        figures['fresh tracks: found']['value'] / figures[f'fresh tracks: {rival}']['value']
+    )
     low, high = map(float, ratio['against'].strip('[]').split())
     assert low <= ratio['value'] <= high
     assert f'fresh tracks, sharp, manoeuvre: found over {rival}' in figures
@@ -31,10 +56,14 @@ def test_a_short_search_gives_settings_and_judges_them_on_fresh_tracks(capsys, t
     assert 'trying settings' not in done.err and 'Modes(noise=(' in done.err
 
 
-@pytest.mark.parametrize(('options', 'text'), [
-    (('--evaluations', '0'), '--evaluations is 0; it must be at least 1'),
-    (('--tracks', '69'), '--tracks is 69; it must be at least 70'),
-    (('--seed', '-1'), '--seed is -1; it must be at least 0')])
+@pytest.mark.parametrize(
+    ('options', 'text'),
+    [
+        (('--evaluations', '0'), '--evaluations is 0; it must be at least 1'),
+        (('--tracks', '69'), '--tracks is 69; it must be at least 70'),
+        (('--seed', '-1'), '--seed is -1; it must be at least 0'),
+    ],
+)
 def test_numbers_out_of_range_are_told(options, text, capsys):
     assert cli.main(['tune', 'imm', *options]) == 2
     assert capsys.readouterr().err == f'marine_tracker: {text}\n'

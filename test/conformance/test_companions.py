@@ -78,19 +78,30 @@ def test_only_what_the_fit_meets_is_demanded(outcomes):
 
 
 def test_a_limit_missed_is_told(outcomes):
-    worse = {key: Outcome(o.truth, np.where(np.arange(6) == 0, o.truth + 10 * (o.found - o.truth),
-                                            o.found)[:, [1, 1]]) for key, o in outcomes.items()}
-    worse = {key: Outcome(o.truth, np.stack([outcomes[key].found[:, 1], o.found[:, 1]], 1))
-             for key, o in worse.items()}
+    worse = {
+        key: Outcome(
+            o.truth,
+            np.where(np.arange(6) == 0, o.truth + 10 * (o.found - o.truth), o.found)[:, [1, 1]],
+        )
+        for key, o in outcomes.items()
+    }
+    worse = {
+        key: Outcome(o.truth, np.stack([outcomes[key].found[:, 1], o.found[:, 1]], 1))
+        for key, o in worse.items()
+    }
     named = {f.name: f for f in figures.figures(Results(('imm',), worse, {}))}
     assert named['imm: scenario 1, 3 min: relative course'].ok is False
     assert named['imm: largest ratio to the fit at 3 min'].ok is False
 
 
-@pytest.mark.parametrize(('arguments', 'message'), [
-    (['--runs', '0'], '--runs is 0; it must be at least 1'),
-    (['--seed', '-1'], '--seed is -1; it must be at least 0'),
-    (['--processes', '0'], '--processes is 0; it must be at least 1')])
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        (['--runs', '0'], '--runs is 0; it must be at least 1'),
+        (['--seed', '-1'], '--seed is -1; it must be at least 0'),
+        (['--processes', '0'], '--processes is 0; it must be at least 1'),
+    ],
+)
 def test_wrong_numbers_are_refused(capsys, arguments, message):
     assert main(['imo', *arguments]) == 2
     assert message in capsys.readouterr().err
@@ -104,15 +115,28 @@ def test_the_page_shows_figures_and_pictures(outcomes, tmp_path):
     assert '<h1>A &amp; B</h1>' in text and text.count('<img') == 2
     for picture in ('errors_3_min_2', 'tracks'):
         assert f'src="{picture}.png"' in text
-        assert (page.parent / f'{picture}.png').read_bytes().startswith(b'\x89PNG')
+        assert (written.parent / f'{picture}.png').read_bytes().startswith(b'\x89PNG')
     # The fit misses 0.3 kn, so it is in grey; the estimator meets 2.3 deg.
     assert '<td class="past">&le; 0.3</td>' in text and '<td class="met">&le; 2.3</td>' in text
 
 
 def test_the_command_prints_figures_and_writes_json(tmp_path, capsys):
     file = tmp_path / 'figures.json'
-    code = main(['imo', '--runs', '1', '--part', 'accuracy', '--estimator', 'cs_kalman',
-                 '--processes', '1', '--json', str(file)])
+    code = main(
+        [
+            'imo',
+            '--runs',
+            '1',
+            '--part',
+            'accuracy',
+            '--estimator',
+            'cs_kalman',
+            '--processes',
+            '1',
+            '--json',
+            str(file),
+        ]
+    )
     figures = json.loads(file.read_text())['figures']
     assert code == int(any(f['ok'] is False for f in figures))
     names = [f['name'] for f in figures]

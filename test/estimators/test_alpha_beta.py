@@ -11,7 +11,7 @@ from marine_tracker.types import take
 
 PERIOD, SPEED_SIGMA = 2.5, 0.5
 MODES = tuple(GAINS)
-PAPER = ('hf', 'method1', 'method2')        # these keep radial speed and bearing rate
+PAPER = ('hf', 'method1', 'method2')  # these keep radial speed and bearing rate
 
 
 def make(mode, max_speed=30.0):
@@ -36,13 +36,22 @@ def with_doppler(plots, velocity, rng=None):
 
 def misfit(speed=0.0, bearing=0.0, plots=5.0, mean_square=(0.0, 0.0)):
     one = np.ones(1)
-    return Misfit(0 * one, speed * one, bearing * one, 15 * one, 0.5 * one, 0.01 * one,
-                  plots * one, np.array([mean_square]))
+    return Misfit(
+        0 * one,
+        speed * one,
+        bearing * one,
+        15 * one,
+        0.5 * one,
+        0.01 * one,
+        plots * one,
+        np.array([mean_square]),
+    )
 
 
 def test_parameters_choose_the_mode():
     assert {field for field in MODES} == set(
-        TrackerParameters.__dataclass_fields__['alpha_beta_mode'].metadata['choices'])
+        TrackerParameters.__dataclass_fields__['alpha_beta_mode'].metadata['choices']
+    )
     for mode in MODES:
         assert ESTIMATORS['alpha_beta'](TrackerParameters(alpha_beta_mode=mode))
 
@@ -50,7 +59,8 @@ def test_parameters_choose_the_mode():
 def test_benedict_and_bordners_relation_holds_both_ways():
     alpha = np.linspace(0, 1, 11)
     np.testing.assert_allclose(
-        alpha_beta_gains.position_gain(alpha_beta_gains.rate_gain(alpha)), alpha, atol=1e-12)
+        alpha_beta_gains.position_gain(alpha_beta_gains.rate_gain(alpha)), alpha, atol=1e-12
+    )
 
 
 @pytest.mark.parametrize('mode', ['hf', 'hf_soft'])
@@ -78,8 +88,9 @@ def test_method2_is_a_straight_line_through_all_plots(plots_at):
     """Along one line of sight its range is the end of the least-squares line: polyfit's."""
     rng = np.random.default_rng(3)
     distance = 4000 + 6.0 * PERIOD * np.arange(25) + rng.normal(0, 15, 25)
-    state = track(make('method2'), [plots_at([[0.0, r]], k * PERIOD)
-                                    for k, r in enumerate(distance)])
+    state = track(
+        make('method2'), [plots_at([[0.0, r]], k * PERIOD) for k, r in enumerate(distance)]
+    )
     slope, start = np.polyfit(PERIOD * np.arange(25), distance, 1)
     assert state.mean[0, 1] == pytest.approx(start + slope * 24 * PERIOD, abs=1e-6)
     assert state.mean[0, 3] == pytest.approx(slope, abs=1e-8)
@@ -100,8 +111,9 @@ def test_doppler_tells_the_speed_along_the_line_of_sight_at_once(plots_at, mode)
     along = np.array([0.6, 0.8])
     assert state.mean[0, 2:] @ along == pytest.approx(velocity @ along, abs=0.01)
     assert np.sqrt(along @ state.covariance[0, 2:, 2:] @ along) == pytest.approx(
-        SPEED_SIGMA, rel=1e-2)
-    assert np.sqrt(state.covariance[0, 2, 2]) > 5       # across it nothing is known
+        SPEED_SIGMA, rel=1e-2
+    )
+    assert np.sqrt(state.covariance[0, 2, 2]) > 5  # across it nothing is known
 
 
 @pytest.mark.parametrize('mode', MODES)
@@ -128,8 +140,9 @@ def long_track(plots_at, mode, doppler, runs=200, scans=60, own=lambda t: np.zer
         p = plots_at(np.tile(start + velocity * time, (runs, 1)), time, own(time), rng=rng)
         # The radial speed is that along the true line of sight.
         true = unit_vector(to_range_bearing(start + velocity * time - own(time))[1]) @ velocity
-        plots.append(p._replace(radial_speed=true + rng.normal(0, SPEED_SIGMA, runs))
-                     if doppler else p)
+        plots.append(
+            p._replace(radial_speed=true + rng.normal(0, SPEED_SIGMA, runs)) if doppler else p
+        )
     state = track(make(mode), plots)
     truth = np.concatenate([start + velocity * time, velocity])
     return state.mean - truth, state
@@ -138,8 +151,9 @@ def long_track(plots_at, mode, doppler, runs=200, scans=60, own=lambda t: np.zer
 @pytest.mark.parametrize('mode', ['hf_soft', 'hf'])
 def test_doppler_makes_the_speed_better(plots_at, mode):
     """200 runs; RMS velocity error falls by a third at least."""
-    with_, without = (np.sqrt(np.mean(long_track(plots_at, mode, told)[0][:, 2:] ** 2))
-                      for told in (True, False))
+    with_, without = (
+        np.sqrt(np.mean(long_track(plots_at, mode, told)[0][:, 2:] ** 2)) for told in (True, False)
+    )
     assert with_ < 0.67 * without
 
 
@@ -151,8 +165,9 @@ def test_the_covariance_is_that_of_the_errors(plots_at, mode, doppler):
     error, state = long_track(plots_at, mode, doppler)
     for part in (slice(0, 2), slice(2, 4)):
         off = error[:, part]
-        nees = (off * np.linalg.solve(state.covariance[:, part, part], off[..., None])[..., 0]
-                ).sum(1)
+        nees = (off * np.linalg.solve(state.covariance[:, part, part], off[..., None])[..., 0]).sum(
+            1
+        )
         assert 0.4 < nees.mean() < 4.0
 
 
@@ -161,8 +176,9 @@ def test_own_ship_may_move(plots_at, mode):
     """The same errors from a ship at rest and one that steams by at 10 m/s, within their chance:
     RMS of 200 runs differ by less than a third."""
     rest, _ = long_track(plots_at, mode, True, scans=30)
-    moving, _ = long_track(plots_at, mode, True, scans=30,
-                           own=lambda t: np.array([10.0 * t, -3.0 * t]) - [500.0, 0.0])
+    moving, _ = long_track(
+        plots_at, mode, True, scans=30, own=lambda t: np.array([10.0 * t, -3.0 * t]) - [500.0, 0.0]
+    )
     one, two = (np.sqrt(np.mean(e[:, :2] ** 2)) for e in (rest, moving))
     assert two < 1.33 * one
 
@@ -171,8 +187,7 @@ def test_own_ship_may_move(plots_at, mode):
 def test_nothing_moves_across_faster_than_the_fastest_target(plots_at, mode):
     """Two plots a minute apart at 110 km, 2 deg of noise: 64 m/s, they say."""
     place = 110e3 * unit_vector(np.radians([[0.0], [2.0]]))
-    plots = [plots_at(place[k], 60.0 * k, range_sigma=800.0, bearing_sigma=0.017)
-             for k in range(2)]
+    plots = [plots_at(place[k], 60.0 * k, range_sigma=800.0, bearing_sigma=0.017) for k in range(2)]
     state = track(make(mode, max_speed=12.0), plots)
     assert np.hypot(*state.mean[0, 2:]) == pytest.approx(12.0, abs=0.5)
 
@@ -181,8 +196,10 @@ def test_only_the_soft_mode_keeps_the_ground_velocity_between_plots(plots_at):
     position, velocity = np.array([[0.0, 1500.0]]), np.array([10.0, 0.0])
     for mode in MODES:
         estimator = make(mode)
-        plots = [plots_at(position + velocity * t, t, range_sigma=2.0, bearing_sigma=0.001)
-                 for t in (0.0, PERIOD)]
+        plots = [
+            plots_at(position + velocity * t, t, range_sigma=2.0, bearing_sigma=0.001)
+            for t in (0.0, PERIOD)
+        ]
         state = track(estimator, plots)
         later = estimator.extrapolate(state, np.array([60.0]))
         miss = np.hypot(*(later.position[0] - position[0] - 60 * velocity))
@@ -207,11 +224,16 @@ def test_plots_of_a_second_radar_do_not_spoil_the_velocity(plots_at):
 
     def error(radars, seconds):
         rng = np.random.default_rng(8)
-        plots = [plots_at(np.tile(place + velocity * t, (400, 1)), t, rng=rng)
-                 for k in range(30) for t in k * PERIOD + np.array(seconds)]
-        state = track(ESTIMATORS['alpha_beta'](TrackerParameters(
-            scan_period_s=PERIOD, radars=radars)), plots)
+        plots = [
+            plots_at(np.tile(place + velocity * t, (400, 1)), t, rng=rng)
+            for k in range(30)
+            for t in k * PERIOD + np.array(seconds)
+        ]
+        state = track(
+            ESTIMATORS['alpha_beta'](TrackerParameters(scan_period_s=PERIOD, radars=radars)), plots
+        )
         return np.sqrt(np.mean((state.mean[:, 2:] - velocity) ** 2))
+
     of_one = error('', [0.0])
     assert error('[{topic: a}, {topic: b}]', [0.0, 0.5]) < of_one
     assert error('', [0.0, 0.5]) > 2 * of_one

@@ -13,12 +13,16 @@ MAX_SPEED = 25.0
 FIELDS = {'time': (), 'position': (2,), 'velocity': (2,), 'covariance': (4, 4)}
 
 
-@pytest.fixture(params=[(name, vessel) for name in ESTIMATORS for vessel in VESSEL_CLASSES],
-                ids='-'.join, scope='module')
+@pytest.fixture(
+    params=[(name, vessel) for name in ESTIMATORS for vessel in VESSEL_CLASSES],
+    ids='-'.join,
+    scope='module',
+)
 def estimator(request):
     name, vessel = request.param
-    return ESTIMATORS[name](TrackerParameters(estimator=name, vessel_class=vessel,
-                                              max_target_speed_mps=MAX_SPEED))
+    return ESTIMATORS[name](
+        TrackerParameters(estimator=name, vessel_class=vessel, max_target_speed_mps=MAX_SPEED)
+    )
 
 
 @pytest.fixture
@@ -31,8 +35,9 @@ def fleet(estimator, plots_at):
     for k in range(6):
         time = k * PERIOD + offset
         plots = plots_at(position + velocity * time[:, None], time, rng=rng)
-        state = (estimator.init(plots) if state is None
-                 else estimator.update(state, plots, np.arange(5)))
+        state = (
+            estimator.init(plots) if state is None else estimator.update(state, plots, np.arange(5))
+        )
     return state, time, position + velocity * time[:, None], velocity
 
 
@@ -64,8 +69,9 @@ def check_form(found, count):
         assert array.dtype == np.float64, name
         assert array.shape == (count,) + tail, name
         assert np.isfinite(array).all(), name
-    np.testing.assert_allclose(found.covariance, found.covariance.swapaxes(1, 2), rtol=1e-9,
-                               atol=1e-9)
+    np.testing.assert_allclose(
+        found.covariance, found.covariance.swapaxes(1, 2), rtol=1e-9, atol=1e-9
+    )
     if count:
         values = np.linalg.eigvalsh(found.covariance)
         assert (values > -1e-9 * values.max(1, keepdims=True)).all()
@@ -143,8 +149,11 @@ def test_tracks_do_not_depend_on_their_order(estimator, fleet, plots_at):
     same(take(straight, order), shuffled, exactly=False)
     # The rows may be named in any order too.
     same(estimator.update(state, take(plots, order), order), straight, exactly=False)
-    same(take(estimator.extrapolate(state, time + 3.0), order),
-         estimator.extrapolate(take(state, order), time[order] + 3.0), exactly=False)
+    same(
+        take(estimator.extrapolate(state, time + 3.0), order),
+        estimator.extrapolate(take(state, order), time[order] + 3.0),
+        exactly=False,
+    )
 
 
 def test_a_track_does_not_depend_on_the_others(estimator, fleet, plots_at):
@@ -154,8 +163,11 @@ def test_a_track_does_not_depend_on_the_others(estimator, fleet, plots_at):
     whole = estimator.update(state, plots, np.arange(5))
     part = estimator.update(take(state, few), take(plots, few), np.arange(2))
     same(take(whole, few), part, exactly=False)
-    same(take(estimator.extrapolate(state, time + 9.0), few),
-         estimator.extrapolate(take(state, few), time[few] + 9.0), exactly=False)
+    same(
+        take(estimator.extrapolate(state, time + 9.0), few),
+        estimator.extrapolate(take(state, few), time[few] + 9.0),
+        exactly=False,
+    )
 
 
 def test_rows_not_named_are_not_touched(estimator, fleet, plots_at):
@@ -175,14 +187,17 @@ def test_states_are_handled_by_rows(estimator, fleet):
 
     def ahead(rows_of):
         return estimator.extrapolate(rows_of, np.full(len(leaves(rows_of)[0]), time.max() + 5.0))
+
     a, b = take(state, slice(0, 2)), take(state, np.array([False, False, True, True, True]))
     same(ahead(append(a, b)), ahead(state), exactly=False)
     mask = np.array([True, False, True, False, False])
     turned = take(state, np.arange(5)[::-1])
-    same(ahead(where(mask, state, turned)), where(mask, ahead(state), ahead(turned)),
-         exactly=False)
-    same(ahead(put(state, np.array([4]), take(state, np.array([0])))),
-         take(ahead(state), np.array([0, 1, 2, 3, 0])), exactly=False)
+    same(ahead(where(mask, state, turned)), where(mask, ahead(state), ahead(turned)), exactly=False)
+    same(
+        ahead(put(state, np.array([4]), take(state, np.array([0])))),
+        take(ahead(state), np.array([0, 1, 2, 3, 0])),
+        exactly=False,
+    )
 
 
 def test_the_first_plot_is_all_that_a_new_track_knows(estimator, plots_at):
@@ -239,8 +254,11 @@ def test_steps_of_both_signs_and_none_mix_in_one_batch(estimator, fleet):
     together = estimator.extrapolate(state, time + step)
     for row in range(5):
         one = np.array([row])
-        same(take(together, one), estimator.extrapolate(take(state, one), (time + step)[one]),
-             exactly=False)
+        same(
+            take(together, one),
+            estimator.extrapolate(take(state, one), (time + step)[one]),
+            exactly=False,
+        )
 
 
 def test_uncertainty_grows_through_missed_scans(estimator, fleet):
@@ -296,8 +314,11 @@ def test_a_plot_that_is_not_a_number_harms_its_own_track_only(estimator, fleet, 
     sound = estimator.update(state, good, np.arange(5))
     same(take(poisoned, rest), take(sound, rest), exactly=False)
     same(take(begun, rest), take(estimator.init(good), rest), exactly=False)
-    same(take(ahead, rest), take(estimator.extrapolate(sound, time + 2 * PERIOD), rest),
-         exactly=False)
+    same(
+        take(ahead, rest),
+        take(estimator.extrapolate(sound, time + 2 * PERIOD), rest),
+        exactly=False,
+    )
 
 
 def test_own_ships_motion_changes_nothing_on_the_ground(estimator, plots_at):
@@ -310,9 +331,13 @@ def test_own_ships_motion_changes_nothing_on_the_ground(estimator, plots_at):
         for k in range(40):
             time = np.full(3, k * PERIOD)
             plots = plots_at(position + velocity * k * PERIOD, time, own(k * PERIOD))
-            state = (estimator.init(plots) if state is None
-                     else estimator.update(state, plots, np.arange(3)))
+            state = (
+                estimator.init(plots)
+                if state is None
+                else estimator.update(state, plots, np.arange(3))
+            )
         return estimator.extrapolate(state, time)
+
     rest = track(lambda t: np.zeros(2))
     moving = track(lambda t: 800 * np.array([np.sin(t / 80), 1 - np.cos(t / 80)]))
     truth = position + velocity * 39 * PERIOD
@@ -337,14 +362,13 @@ def test_a_straight_track_is_followed_within_its_own_covariance(estimator, plots
     for k in range(scans):
         truth = start + velocity * k * PERIOD
         plots = plots_at(np.tile(truth, (runs, 1)), k * PERIOD, rng=rng)
-        state = (estimator.init(plots) if state is None
-                 else estimator.update(state, plots, rows))
+        state = estimator.init(plots) if state is None else estimator.update(state, plots, rows)
     now = estimator.extrapolate(state, plots.time)
     plot_rms = np.sqrt(np.mean(np.sum((plots.position - truth) ** 2, 1)))
     error = now.position - truth
-    assert np.sqrt(np.mean(np.sum(error ** 2, 1))) < 0.95 * plot_rms
+    assert np.sqrt(np.mean(np.sum(error**2, 1))) < 0.95 * plot_rms
     off = now.velocity - velocity
-    assert np.sqrt(np.mean(np.sum(off ** 2, 1))) < 8.0
+    assert np.sqrt(np.mean(np.sum(off**2, 1))) < 8.0
     assert (np.abs(error.mean(0)) < 4 * error.std(0) / np.sqrt(runs)).all(), 'biased position'
     # Modes that turn either way pull the mean velocity in: by less than a twentieth.
     bound = 4 * off.std(0) / np.sqrt(runs) + 0.05 * np.hypot(*velocity)

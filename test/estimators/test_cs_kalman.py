@@ -16,9 +16,10 @@ from marine_tracker.estimators.cs_kalman import (
     predict,
 )
 
-RATES = [1 / 60, 1 / 20, 0.3, 2.0]          # 1/s, alpha
-TURNS = np.r_[np.logspace(-4, np.log10(5), 19),
-              SERIES_BELOW * (1 + np.array([-1e-3, -1e-12, 0, 1e-12, 1e-3]))]    # alpha T
+RATES = [1 / 60, 1 / 20, 0.3, 2.0]  # 1/s, alpha
+TURNS = np.r_[
+    np.logspace(-4, np.log10(5), 19), SERIES_BELOW * (1 + np.array([-1e-3, -1e-12, 0, 1e-12, 1e-3]))
+]  # alpha T
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
@@ -56,13 +57,17 @@ def noise(alpha, step):
 def variance(acceleration, limit):
     """Modified Rayleigh density, spec part A; the floor is a twentieth of its value at rest."""
     away = limit - acceleration if acceleration >= 0 else -limit - acceleration
-    return (4 - np.pi) / np.pi * max(away ** 2, 0.05 * limit ** 2)
+    return (4 - np.pi) / np.pi * max(away**2, 0.05 * limit**2)
 
 
 def moved(mean, covariance, step, alpha, limit=1.0):
     """`predict` of one state."""
-    mean, covariance = predict(np.array([mean], float), np.array([covariance], float),
-                               np.array([step], float), Manoeuvre(limit, alpha))
+    mean, covariance = predict(
+        np.array([mean], float),
+        np.array([covariance], float),
+        np.array([step], float),
+        Manoeuvre(limit, alpha),
+    )
     return mean[0], covariance[0]
 
 
@@ -74,8 +79,8 @@ def close(found, expected, relative=1e-9):
 def test_the_oracle_agrees_with_exact_integrals_where_these_are_simple():
     """alpha = 0 in all but name: a kick is a constant acceleration."""
     step = 3.0
-    close(integrate(1e-14, step, lambda k: k), [step ** 3 / 6, step ** 2 / 2, step], 1e-12)
-    close(noise(1e-14, step)[0], [step ** 5 / 20, step ** 4 / 8, step ** 3 / 6], 1e-12)
+    close(integrate(1e-14, step, lambda k: k), [step**3 / 6, step**2 / 2, step], 1e-12)
+    close(noise(1e-14, step)[0], [step**5 / 20, step**4 / 8, step**3 / 6], 1e-12)
 
 
 @pytest.mark.parametrize('alpha', RATES)
@@ -86,7 +91,7 @@ def test_the_transition_is_that_of_the_model(alpha):
         expected = transition(alpha, step)
         _, none = moved(np.zeros(6), np.zeros((6, 6)), step, alpha)
         for j in range(3):
-            big = 1e40          # beside it the process noise is nothing
+            big = 1e40  # beside it the process noise is nothing
             unit = np.zeros((6, 6))
             unit[j, j] = unit[3 + j, 3 + j] = big
             _, covariance = moved(np.zeros(6), unit, step, alpha)
@@ -110,8 +115,9 @@ def test_the_drive_of_the_mean_acceleration_is_that_of_the_model(alpha):
 
 
 @pytest.mark.parametrize('alpha', RATES)
-@pytest.mark.parametrize(('east', 'north', 'limit'),
-                         [(0.0, 0.3, 1.0), (-0.2, 0.25, 0.3), (5.0, -5.0, 2.0)])
+@pytest.mark.parametrize(
+    ('east', 'north', 'limit'), [(0.0, 0.3, 1.0), (-0.2, 0.25, 0.3), (5.0, -5.0, 2.0)]
+)
 def test_the_process_noise_is_that_of_the_model(alpha, east, north, limit):
     for turn in TURNS:
         step = turn / alpha
@@ -149,7 +155,7 @@ def test_the_variance_follows_the_rayleigh_density_and_keeps_its_floor(limit):
     for a in np.r_[np.linspace(-3, 3, 61) * limit, 0.0, limit, -limit]:
         found = acceleration_variance(a, limit)
         assert found == pytest.approx(variance(np.clip(a, -limit, limit), limit))
-        assert found >= 0.05 * (4 - np.pi) / np.pi * limit ** 2 * (1 - 1e-12)
+        assert found >= 0.05 * (4 - np.pi) / np.pi * limit**2 * (1 - 1e-12)
 
 
 def test_part_of_a_prediction_is_the_part_of_the_whole():
@@ -185,18 +191,24 @@ def test_the_filter_is_the_exact_posterior_of_its_model(condition, gaussian_plot
         covariance = root @ root.swapaxes(1, 2) + 9 * np.eye(2)
         noise_now = np.linalg.cholesky(covariance) @ rng.normal(size=(len(rows), 2, 1))
         return gaussian_plots(truth[rows] + noise_now[..., 0], covariance, time[rows])
+
     rows = np.arange(tracks)
     plots = plots_now()
     state = filter_.init(plots)
-    speed = 12.5 ** 2
-    priors = [(np.array([*plots.position[i][:1], 0, 0, *plots.position[i][1:], 0, 0]),
-               plots.covariance[i]) for i in range(tracks)]
+    speed = 12.5**2
+    priors = [
+        (
+            np.array([*plots.position[i][:1], 0, 0, *plots.position[i][1:], 0, 0]),
+            plots.covariance[i],
+        )
+        for i in range(tracks)
+    ]
     steps, seen = [[] for _ in rows], [[] for _ in rows]
     for k in range(1, scans):
         step = rng.uniform(0.1, 12.0, tracks)
         velocity += 0.6 * limit * step[:, None] * np.where(k % 6 < 3, 1, -1)
         truth, time = truth + velocity * step[:, None], time + step
-        rows = rng.permutation(tracks)[:1 + k % tracks]
+        rows = rng.permutation(tracks)[: 1 + k % tracks]
         plots = plots_now()
         for i, row in enumerate(rows):
             gap = time[row] - state.time[row]
@@ -216,8 +228,11 @@ def test_the_filter_is_the_exact_posterior_of_its_model(condition, gaussian_plot
         expected = condition(mean, start, steps[row], observe, seen[row])
         sigma = np.sqrt(np.diag(expected[1]))
         np.testing.assert_allclose((state.mean[row] - expected[0]) / sigma, 0, atol=1e-8)
-        np.testing.assert_allclose(state.covariance[row] / np.outer(sigma, sigma),
-                                   expected[1] / np.outer(sigma, sigma), atol=1e-8)
+        np.testing.assert_allclose(
+            state.covariance[row] / np.outer(sigma, sigma),
+            expected[1] / np.outer(sigma, sigma),
+            atol=1e-8,
+        )
         ahead = filter_.extrapolate(state, state.time)
         np.testing.assert_allclose(ahead.position[row], expected[0][[0, 3]], rtol=1e-8)
         np.testing.assert_allclose(ahead.velocity[row], expected[0][[1, 4]], rtol=1e-8, atol=1e-8)
@@ -230,12 +245,13 @@ def test_a_target_that_accelerates_twice_as_hard_as_assumed_is_not_lost(plots_at
     runs, speed, rate, period = 50, 15.0, 0.4 / 15.0, 60 / 22
     state, worst = None, 0.0
     for k in range(150):
-        course = rate * k * period                     # circles, 0.4 m/s^2
+        course = rate * k * period  # circles, 0.4 m/s^2
         truth = 2000 + speed / rate * np.array([np.sin(course), 1 - np.cos(course)])
         plots = plots_at(np.tile(truth, (runs, 1)), k * period, rng=rng)
-        state = (filter_.init(plots) if state is None
-                 else filter_.update(state, plots, np.arange(runs)))
+        state = (
+            filter_.init(plots) if state is None else filter_.update(state, plots, np.arange(runs))
+        )
         error = filter_.extrapolate(state, plots.time).position - truth
         if k > 20:
-            worst = max(worst, float(np.sqrt(np.mean(error ** 2))))
+            worst = max(worst, float(np.sqrt(np.mean(error**2))))
     assert worst < 150.0

@@ -17,7 +17,7 @@ from marine_tracker.types import Plots, append, put, take
 PERIOD = 60 / 22
 SPEED = 25.0
 SHIP = bank.BANKS['ship']
-SHARE = 40                      # tracks of a short trial
+SHARE = 40  # tracks of a short trial
 
 
 @pytest.fixture(scope='module')
@@ -27,22 +27,32 @@ def weights():
 
 def radar(count, **other):
     every = np.ones(count)
-    values = {'range_sigma': 25.0, 'bearing_sigma': np.radians(0.4), 'detection': 1.0,
-              'outliers': 0.0, 'truly': 1.0, 'period': PERIOD, **other}
+    values = {
+        'range_sigma': 25.0,
+        'bearing_sigma': np.radians(0.4),
+        'detection': 1.0,
+        'outliers': 0.0,
+        'truly': 1.0,
+        'period': PERIOD,
+        **other,
+    }
     return ship_tracks.RunRadar(**{name: value * every for name, value in values.items()})
 
 
 def make_trial(kind, seed=5, count=SHARE, scans=60, **other):
     rng = np.random.default_rng(seed)
-    ships = ship_tracks.sail([kind] * count, np.exp(rng.uniform(8, 9, count)),
-                             np.full((count, scans), PERIOD), rng)
+    ships = ship_tracks.sail(
+        [kind] * count, np.exp(rng.uniform(8, 9, count)), np.full((count, scans), PERIOD), rng
+    )
     return track_trials.trial(ships, radar(count, **other), rng)
 
 
 def silent(weights):
     """A network whose outputs are all zero."""
+
     def hush(network):
         return network._replace(outer=0 * network.outer, bias=0 * network.bias)
+
     return weights._replace(fusion=hush(weights.fusion), spread=hush(weights.spread))
 
 
@@ -57,8 +67,11 @@ def drive(estimator, on, state=None, scans=None):
     """The state after the trial's scans (from the first plot where there is no state)."""
     every = np.arange(len(on.seen))
     for k in scans or range(on.seen.shape[1]):
-        state = (estimator.init(on.plots[k]) if state is None
-                 else estimator.update(state, on.plots[k], every))
+        state = (
+            estimator.init(on.plots[k])
+            if state is None
+            else estimator.update(state, on.plots[k], every)
+        )
     return state
 
 
@@ -67,14 +80,15 @@ class TestBank:
         """The same plots through the estimators by themselves: the same expectations."""
         on = make_trial('sharp')
         state = bank.begin(SHIP, on.plots[0], SPEED)
-        alone = {'base': imm.imm(bank.TUNED_ON_ALL, SPEED),
-                 12: imm.imm(bank.TUNED_FOR_MANOEUVRE, SPEED),
-                 bank.CS: cs_kalman.cs_kalman(SHIP.settings.manoeuvre, SPEED)}
+        alone = {
+            'base': imm.imm(bank.TUNED_ON_ALL, SPEED),
+            12: imm.imm(bank.TUNED_FOR_MANOEUVRE, SPEED),
+            bank.CS: cs_kalman.cs_kalman(SHIP.settings.manoeuvre, SPEED),
+        }
         states = {key: one.init(on.plots[0]) for key, one in alone.items()}
         for plots in on.plots[1:]:
             state = bank.correct(SHIP, bank.expect(SHIP, state, plots), plots)
-            states = {key: alone[key].update(states[key], plots, np.arange(SHARE))
-                      for key in alone}
+            states = {key: alone[key].update(states[key], plots, np.arange(SHARE)) for key in alone}
         time = on.plots[-1].time + PERIOD
         ahead = bank.look(SHIP, state, np.array([PERIOD]))
         for key, one in alone.items():
@@ -90,12 +104,12 @@ class TestBank:
     def test_a_slow_filter_is_a_kalman_filter(self):
         on = make_trial('steady')
         state = drive_bank(on)
-        one = imm.imm(imm.Modes((PERIOD * SHIP.settings.slow[2] ** 2,), (0,), (1,), PERIOD),
-                      SPEED)
+        one = imm.imm(imm.Modes((PERIOD * SHIP.settings.slow[2] ** 2,), (0,), (1,), PERIOD), SPEED)
         alone = drive(one, on)
         expected = one.extrapolate(alone, on.plots[-1].time)
-        np.testing.assert_allclose(bank.look(SHIP, state, np.zeros(1)).experts[:2, 9].T,
-                                   expected.position, atol=1e-6)
+        np.testing.assert_allclose(
+            bank.look(SHIP, state, np.zeros(1)).experts[:2, 9].T, expected.position, atol=1e-6
+        )
 
     def test_left_and_right_turns_are_told_apart(self):
         """A ship that turns to starboard lies to the right of what left turns expect."""
@@ -105,8 +119,11 @@ class TestBank:
         state = None
         for k, position in enumerate(path):
             plots = plots_of(position[None], k * PERIOD)
-            state = (bank.begin(SHIP, plots, SPEED) if state is None
-                     else bank.correct(SHIP, bank.expect(SHIP, state, plots), plots))
+            state = (
+                bank.begin(SHIP, plots, SPEED)
+                if state is None
+                else bank.correct(SHIP, bank.expect(SHIP, state, plots), plots)
+            )
         ahead = bank.look(SHIP, state, np.array([PERIOD]))
         right, left = (ahead.experts[:2, j, 0] for j in bank.TURNS[1])
         heading = ahead.mean[2:, 0]
@@ -125,8 +142,15 @@ def plots_of(position, time):
     distance, bearing = to_range_bearing(position)
     where, covariance = polar_to_position(distance, bearing, 25.0, np.radians(0.4))
     count = len(position)
-    return Plots(np.full(count, float(time)), distance, bearing, np.zeros(count),
-                 np.zeros((count, 2)), where, covariance)
+    return Plots(
+        np.full(count, float(time)),
+        distance,
+        bearing,
+        np.zeros(count),
+        np.zeros((count, 2)),
+        where,
+        covariance,
+    )
 
 
 class TestInputs:
@@ -159,14 +183,18 @@ class TestFusion:
         own = track_trials.run(gwnn.gwnn(silent(weights), SPEED, PERIOD, fall=np.inf), on, False)
         base = track_trials.run(imm.imm(bank.TUNED_ON_ALL, SPEED), on, True)
         assert track_trials.rms(own.position, on.counts) == pytest.approx(
-            track_trials.rms(base.position, on.counts), rel=0.05)
+            track_trials.rms(base.position, on.counts), rel=0.05
+        )
 
-    @pytest.mark.parametrize(('vessel_class', 'modes'), [
-        ('ship', bank.TUNED_ON_ALL), ('small_craft', imm.PRESETS['small_craft'])])
+    @pytest.mark.parametrize(
+        ('vessel_class', 'modes'),
+        [('ship', bank.TUNED_ON_ALL), ('small_craft', imm.PRESETS['small_craft'])],
+    )
     def test_warming_up_a_track_is_the_imm(self, vessel_class, modes):
         on = make_trial('mix', scans=gwnn.WARM - 1)
-        network = gwnn.gwnn(gwnn.weights('', vessel_class), SPEED, PERIOD,
-                            vessel_class=vessel_class)
+        network = gwnn.gwnn(
+            gwnn.weights('', vessel_class), SPEED, PERIOD, vessel_class=vessel_class
+        )
         base = imm.imm(modes, SPEED)
         ours, theirs = drive(network, on), drive(base, on)
         assert (gwnn.account(ours).status == gwnn.WARMUP).all()
@@ -174,15 +202,15 @@ class TestFusion:
         for one, other in zip(network.extrapolate(ours, time), base.extrapolate(theirs, time)):
             np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-6)
 
-    @pytest.mark.parametrize(('kind', 'limit'), [('steady', 0.97), ('weave', 0.96),
-                                                 ('sharp', 1.0), ('agile', 0.95)])
+    @pytest.mark.parametrize(
+        ('kind', 'limit'), [('steady', 0.97), ('weave', 0.96), ('sharp', 1.0), ('agile', 0.95)]
+    )
     def test_it_beats_the_imm_tuned_on_its_own_training_tracks(self, weights, kind, limit):
         """120 tracks: the interval's upper end must stay below the limit."""
         on = make_trial(kind, seed=77, count=120, scans=90)
         own = track_trials.run(gwnn.gwnn(weights, SPEED, PERIOD), on, False)
         base = track_trials.run(imm.imm(bank.TUNED_ON_ALL, SPEED), on, True)
-        found = track_trials.ratio(own.position, base.position, on.counts,
-                                   np.random.default_rng(0))
+        found = track_trials.ratio(own.position, base.position, on.counts, np.random.default_rng(0))
         assert found.high < limit
 
     @pytest.mark.parametrize('kind', ['idle', 'steady', 'ferry', 'weave', 'rib'])
@@ -190,15 +218,19 @@ class TestFusion:
         """140 boats and their radars, fair and hard: the interval's upper end."""
         rng = np.random.default_rng(79)
         waters = training_tracks.WATERS['small_craft']
-        found = training_tracks.draw(waters._replace(kinds={kind: waters.kinds[kind]}),
-                                     np.zeros(140, int), 80, rng)
+        found = training_tracks.draw(
+            waters._replace(kinds={kind: waters.kinds[kind]}), np.zeros(140, int), 80, rng
+        )
         on = track_trials.trial(found.ships, found.radar, rng)
-        network = gwnn.gwnn(gwnn.weights('', 'small_craft'), SPEED, PERIOD,
-                            vessel_class='small_craft')
+        network = gwnn.gwnn(
+            gwnn.weights('', 'small_craft'), SPEED, PERIOD, vessel_class='small_craft'
+        )
         own = track_trials.run(network, on, False)
         base = track_trials.run(imm.imm(imm.PRESETS['small_craft'], SPEED), on, True)
-        for one, other, limit in ((own.position, base.position, 1.0),
-                                  (own.velocity, base.velocity, 1.0)):
+        for one, other, limit in (
+            (own.position, base.position, 1.0),
+            (own.velocity, base.velocity, 1.0),
+        ):
             assert track_trials.ratio(one, other, on.counts, rng).high < limit
 
     def test_it_knows_how_far_off_it_is(self, weights):
@@ -220,6 +252,7 @@ class TestFusion:
             mean = bank.base(SHIP, state.bank, time)[:4].T
             ahead = network.extrapolate(state, time)
             return ahead.position - mean[:, :2], ahead.velocity - mean[:, 2:]
+
         near, velocity = correction(gwnn.FADE)
         far, same = correction(gwnn.FADE + 10)
         np.testing.assert_allclose(same, velocity, atol=1e-9)
@@ -235,9 +268,11 @@ class TestFusion:
         network = gwnn.gwnn(weights, SPEED, PERIOD)
         time = on.plots[-1].time + PERIOD
         ahead = network.extrapolate(drive(network, on), time)
-        turn = np.array([[0.0, 1.0], [-1.0, 0.0]])                  # clockwise by 90 deg
-        turned = [p._replace(position=p.position @ turn.T,
-                             covariance=turn @ p.covariance @ turn.T) for p in on.plots]
+        turn = np.array([[0.0, 1.0], [-1.0, 0.0]])  # clockwise by 90 deg
+        turned = [
+            p._replace(position=p.position @ turn.T, covariance=turn @ p.covariance @ turn.T)
+            for p in on.plots
+        ]
         found = network.extrapolate(drive(network, on._replace(plots=turned)), time)
         np.testing.assert_allclose(found.position, ahead.position @ turn.T, atol=1e-5)
         np.testing.assert_allclose(found.velocity, ahead.velocity @ turn.T, atol=1e-6)
@@ -250,9 +285,11 @@ class TestFusion:
         later = on.plots[-1]._replace(time=on.plots[-1].time + PERIOD)
         whole = network.update(state, later, np.arange(SHARE))
         part = network.update(take(state, few), take(later, few), np.arange(3))
-        for one, other in zip(network.extrapolate(take(whole, few), later.time[few] + 1),
-                              network.extrapolate(part, later.time[few] + 1)):
-            np.testing.assert_allclose(one, other, rtol=1e-5, atol=1e-3)   # float32 inside
+        for one, other in zip(
+            network.extrapolate(take(whole, few), later.time[few] + 1),
+            network.extrapolate(part, later.time[few] + 1),
+        ):
+            np.testing.assert_allclose(one, other, rtol=1e-5, atol=1e-3)  # float32 inside
 
 
 class TestMonitor:
@@ -276,22 +313,25 @@ class TestMonitor:
         state = drive(network, on)
         alone = cs_kalman.cs_kalman(SHIP.settings.manoeuvre, SPEED)
         theirs = drive(alone, on)
-        fallen = np.flatnonzero((state.monitor.status == gwnn.FALLBACK)
-                                & (state.bank.time == on.plots[-1].time))
+        fallen = np.flatnonzero(
+            (state.monitor.status == gwnn.FALLBACK) & (state.bank.time == on.plots[-1].time)
+        )
         assert len(fallen) > 0.9 * SHARE
         time = on.plots[-1].time + PERIOD
         ours, cs = network.extrapolate(state, time), alone.extrapolate(theirs, time)
         # A plot that the bank refused makes a difference that dies out.
         close = np.abs(ours.position - cs.position)[fallen].max(1) < 1.0
         assert close.mean() > 0.9
-        np.testing.assert_allclose(ours.covariance[fallen], cs.covariance[fallen], rtol=0.1,
-                                   atol=1.0)
+        np.testing.assert_allclose(
+            ours.covariance[fallen], cs.covariance[fallen], rtol=0.1, atol=1.0
+        )
 
     @pytest.mark.parametrize('value', [np.nan, np.inf])
     def test_weights_that_are_not_numbers_leave_no_trace(self, weights, value):
         on = make_trial('mix')
-        bad = weights._replace(fusion=weights.fusion._replace(
-            outer=np.full_like(weights.fusion.outer, value)))
+        bad = weights._replace(
+            fusion=weights.fusion._replace(outer=np.full_like(weights.fusion.outer, value))
+        )
         network = gwnn.gwnn(bad, SPEED, PERIOD)
         with np.errstate(invalid='ignore'):
             state = drive(network, on)
@@ -311,8 +351,12 @@ class TestMonitor:
     def test_missed_plots_are_no_failure(self, weights):
         on = make_trial('steady', scans=60, detection=0.7)
         fallen = []
-        track_trials.run(gwnn.gwnn(weights, SPEED, PERIOD), on, False,
-                         lambda k, state: fallen.append(state.monitor.status == gwnn.FALLBACK))
+        track_trials.run(
+            gwnn.gwnn(weights, SPEED, PERIOD),
+            on,
+            False,
+            lambda k, state: fallen.append(state.monitor.status == gwnn.FALLBACK),
+        )
         assert np.mean(fallen) < 0.02
 
     def test_an_outlier_moves_no_settled_track(self, weights):
@@ -323,14 +367,16 @@ class TestMonitor:
         wild = wild._replace(position=wild.position + 800.0)
         after = network.update(state, wild, every)
         time = wild.time + PERIOD
-        apart = network.extrapolate(after, time).position - network.extrapolate(
-            state, time).position
+        apart = (
+            network.extrapolate(after, time).position - network.extrapolate(state, time).position
+        )
         assert np.median(np.hypot(*apart.T)) < 20.0
         # Three in a row are a target: then the filters follow.
         for k in (1, 2, 3):
             after = network.update(after, wild._replace(time=wild.time + k * PERIOD), every)
-        apart = network.extrapolate(after, time).position - network.extrapolate(
-            state, time).position
+        apart = (
+            network.extrapolate(after, time).position - network.extrapolate(state, time).position
+        )
         assert np.median(np.hypot(*apart.T)) > 200.0
 
 
@@ -347,8 +393,9 @@ class TestWeights:
     def test_what_is_saved_is_loaded(self, weights, tmp_path):
         gwnn_weights.save(tmp_path / 'w.npz', weights)
         again = gwnn.weights(str(tmp_path / 'w.npz'))
-        for one, other in zip(again.fusion[:5] + again.spread[:5],
-                              weights.fusion[:5] + weights.spread[:5]):
+        for one, other in zip(
+            again.fusion[:5] + again.spread[:5], weights.fusion[:5] + weights.spread[:5]
+        ):
             np.testing.assert_array_equal(one, other)
 
     def test_a_missing_file_is_named(self, tmp_path):
@@ -367,11 +414,14 @@ class TestWeights:
         with pytest.raises(ValueError, match='damaged'):
             gwnn.weights(str(file))
 
-    @pytest.mark.parametrize(('change', 'message'), [
-        ({'fusion_bias': lambda a: a + 1}, 'checksum does not match'),
-        ({'fusion_bias': None}, 'right arrays: fusion_bias'),
-        ({'manifest': {'format': 99}}, 'format 99'),
-    ])
+    @pytest.mark.parametrize(
+        ('change', 'message'),
+        [
+            ({'fusion_bias': lambda a: a + 1}, 'checksum does not match'),
+            ({'fusion_bias': None}, 'right arrays: fusion_bias'),
+            ({'manifest': {'format': 99}}, 'format 99'),
+        ],
+    )
     def test_tampering_is_noticed(self, weights, tmp_path, change, message):
         file = tmp_path / 'w.npz'
         gwnn_weights.save(file, weights)
@@ -399,9 +449,13 @@ class TestWeights:
         file = gwnn_weights.shipped('ship')
         marks = [bank.BANKS[name].mark for name in VESSEL_CLASSES]
         assert len(set(marks)) == len(marks)
-        with pytest.raises(ValueError, match=(
+        with pytest.raises(
+            ValueError,
+            match=(
                 f'of vessel class ship .settings {SHIP.mark}., not those of small_craft .settings '
-                f'{bank.BANKS["small_craft"].mark}.: train anew with --vessel-class small_craft')):
+                f'{bank.BANKS["small_craft"].mark}.: train anew with --vessel-class small_craft'
+            ),
+        ):
             gwnn.weights(str(file), 'small_craft')
 
     def test_weights_trained_over_other_filters_are_refused(self, weights, tmp_path):
@@ -412,8 +466,9 @@ class TestWeights:
 
     def test_weights_that_are_not_numbers_are_refused(self, weights, tmp_path):
         bias = np.full_like(weights.fusion.bias, np.nan)
-        gwnn_weights.save(tmp_path / 'w.npz',
-                          weights._replace(fusion=weights.fusion._replace(bias=bias)))
+        gwnn_weights.save(
+            tmp_path / 'w.npz', weights._replace(fusion=weights.fusion._replace(bias=bias))
+        )
         with pytest.raises(ValueError, match='fusion_bias holds values that are not finite'):
             gwnn.weights(str(tmp_path / 'w.npz'))
 
@@ -442,21 +497,27 @@ class TestLearning:
         bias[gwnn.AT_ONCE] += [0.6, -0.4]
         biased = weights._replace(fusion=weights.fusion._replace(bias=bias))
         on = make_trial('mix', seed=80, count=60, scans=90)
-        plain, learned = (track_trials.run(
-            gwnn.gwnn(biased, SPEED, PERIOD, fall=np.inf, learning=learning), on, False)
-            for learning in (False, True))
-        found = track_trials.ratio(learned.position, plain.position, on.counts,
-                                   np.random.default_rng(1))
+        plain, learned = (
+            track_trials.run(
+                gwnn.gwnn(biased, SPEED, PERIOD, fall=np.inf, learning=learning), on, False
+            )
+            for learning in (False, True)
+        )
+        found = track_trials.ratio(
+            learned.position, plain.position, on.counts, np.random.default_rng(1)
+        )
         assert found.high < 0.98
 
     @pytest.mark.parametrize('kind', ['steady', 'agile'])
     def test_it_spoils_no_more_than_one_part_in_a_hundred(self, weights, kind):
         on = make_trial(kind, seed=81, count=60, scans=90)
-        plain, learned = (track_trials.run(
-            gwnn.gwnn(weights, SPEED, PERIOD, learning=learning), on, False)
-            for learning in (False, True))
-        found = track_trials.ratio(learned.position, plain.position, on.counts,
-                                   np.random.default_rng(1))
+        plain, learned = (
+            track_trials.run(gwnn.gwnn(weights, SPEED, PERIOD, learning=learning), on, False)
+            for learning in (False, True)
+        )
+        found = track_trials.ratio(
+            learned.position, plain.position, on.counts, np.random.default_rng(1)
+        )
         assert found.value < 1.01
 
     def test_its_units_are_those_of_the_network(self, weights):
@@ -467,8 +528,9 @@ class TestLearning:
         said = np.concatenate([fusion.outer, fusion.bias[:, None]], 1)
         half = state.adapted.units.shape[2] // 2
         for axis in (0, 1):
-            for part, output in ((slice(0, half), gwnn.AT_ONCE), (slice(half, None),
-                                                                   gwnn.PER_SCAN)):
+            for part, output in (
+                (slice(0, half), gwnn.AT_ONCE),
+                (slice(half, None), gwnn.PER_SCAN),
+            ):
                 found = state.adapted.units[:, axis, part] @ said[output.start + axis]
-                np.testing.assert_allclose(found, state.output[:, output.start + axis],
-                                           atol=1e-4)
+                np.testing.assert_allclose(found, state.output[:, output.start + axis], atol=1e-4)

@@ -20,6 +20,7 @@ def pair():
 @pytest.fixture(scope='module')
 def run(plots_at):
     """States after `scans` plots of `runs` straight tracks, and the errors one scan ahead."""
+
     def follow(estimator, scans, runs, noisy=True, seed=5):
         rng = np.random.default_rng(seed)
         state, errors = None, []
@@ -32,6 +33,7 @@ def run(plots_at):
             errors.append(estimator.extrapolate(state, plots.time).position - truth)
             state = estimator.update(state, plots, np.arange(runs))
         return state, plots.time, np.array(errors)
+
     return follow
 
 
@@ -39,12 +41,15 @@ def test_until_the_network_is_warm_the_filter_answers(pair, run):
     estimator, base = pair
     for scans in (2, WARM_UP):
         state, time, _ = run(estimator, scans, 3)
-        found, filters = (e.extrapolate(s, time + PERIOD)
-                          for e, s in ((estimator, state), (base, state.base)))
+        found, filters = (
+            e.extrapolate(s, time + PERIOD) for e, s in ((estimator, state), (base, state.base))
+        )
         np.testing.assert_array_equal(found.position, filters.position)
     state, time, _ = run(estimator, WARM_UP + 1, 3)
-    assert (estimator.extrapolate(state, time + PERIOD).position
-            != base.extrapolate(state.base, time + PERIOD).position).all()
+    assert (
+        estimator.extrapolate(state, time + PERIOD).position
+        != base.extrapolate(state.base, time + PERIOD).position
+    ).all()
 
 
 def test_a_straight_track_is_predicted_better_than_by_the_filter_alone(pair, run):
@@ -91,8 +96,9 @@ def test_a_network_gone_bad_leaves_the_filter_and_learns_anew(pair, run, plots_a
 def test_plots_too_near_in_time_teach_nothing(pair, run, plots_at):
     estimator, _ = pair
     state, time, _ = run(estimator, 20, 2)
-    again = estimator.update(state, plots_at(np.tile(START + VELOCITY * time[0], (2, 1)),
-                                             time + 0.1), np.arange(2))
+    again = estimator.update(
+        state, plots_at(np.tile(START + VELOCITY * time[0], (2, 1)), time + 0.1), np.arange(2)
+    )
     np.testing.assert_array_equal(again.weights.inner, state.weights.inner)
     np.testing.assert_array_equal(again.taught, state.taught)
 
@@ -122,9 +128,12 @@ def test_a_target_at_rest_stays_where_it_is(pair, plots_at):
     state = None
     for k in range(80):
         plots = plots_at(place, k * PERIOD, rng=rng)
-        state = (estimator.init(plots) if state is None
-                 else estimator.update(state, plots, np.arange(50)))
+        state = (
+            estimator.init(plots)
+            if state is None
+            else estimator.update(state, plots, np.arange(50))
+        )
     ahead = estimator.extrapolate(state, plots.time + PERIOD)
     sigma = np.sqrt(np.mean((ahead.position - place) ** 2))
-    assert sigma < 20.0                                     # the plots': 15 m and 25 m
-    assert np.sqrt(np.mean(ahead.velocity ** 2)) < 2.0
+    assert sigma < 20.0  # the plots': 15 m and 25 m
+    assert np.sqrt(np.mean(ahead.velocity**2)) < 2.0

@@ -40,8 +40,12 @@ def white_acceleration(density, step):
 def chain(modes, step):
     """Mode transitions over a step: the matrix logarithm gives the rates in continuous time."""
     count = len(modes.stay)
-    matrix = np.array([[modes.stay[i] if i == j else (1 - modes.stay[i]) / (count - 1)
-                        for j in range(count)] for i in range(count)])
+    matrix = np.array(
+        [
+            [modes.stay[i] if i == j else (1 - modes.stay[i]) / (count - 1) for j in range(count)]
+            for i in range(count)
+        ]
+    )
     return expm(rates(matrix.tobytes(), count) * step / modes.period)
 
 
@@ -56,7 +60,7 @@ class PlainImm:
     def __init__(self, modes, z, R, time):
         self.modes, self.time, self.J = modes, time, len(modes.noise)
         self.x = [np.r_[z, 0, 0] for _ in range(self.J)]
-        P = np.diag([0, 0, MAX_SPEED ** 2 / 4, MAX_SPEED ** 2 / 4])
+        P = np.diag([0, 0, MAX_SPEED**2 / 4, MAX_SPEED**2 / 4])
         P[:2, :2] = R
         self.P = [P.copy() for _ in range(self.J)]
         self.mu = chain(modes, 1e6)[0]
@@ -69,8 +73,9 @@ class PlainImm:
         for j in range(J):
             share = [p[i, j] * self.mu[i] / c[j] for i in range(J)]
             x = sum(share[i] * self.x[i] for i in range(J))
-            P = sum(share[i] * (self.P[i] + np.outer(self.x[i] - x, self.x[i] - x))
-                    for i in range(J))
+            P = sum(
+                share[i] * (self.P[i] + np.outer(self.x[i] - x, self.x[i] - x)) for i in range(J)
+            )
             F = expm(turn_flow(self.modes.turn_rate[j]) * step)
             xs.append(F @ x)
             Ps.append(F @ P @ F.T + white_acceleration(self.modes.noise[j], step))
@@ -85,7 +90,7 @@ class PlainImm:
             K = Ps[j] @ OBSERVE.T @ np.linalg.inv(S)
             rest = np.eye(4) - K @ OBSERVE
             self.x[j] = xs[j] + K @ (z - OBSERVE @ xs[j])
-            self.P[j] = rest @ Ps[j] @ rest.T + K @ R @ K.T         # Joseph
+            self.P[j] = rest @ Ps[j] @ rest.T + K @ R @ K.T  # Joseph
         self.mu = c * likelihood / (c @ likelihood)
         self.time = time
 
@@ -120,6 +125,7 @@ def test_the_bank_is_the_plain_imm_track_by_track(gaussian_plots, modes):
     def plots_now(rows):
         noisy = truth[rows] + rng.multivariate_normal([0, 0], R, len(rows))
         return gaussian_plots(noisy, np.tile(R, (len(rows), 1, 1)), time[rows])
+
     plots = plots_now(np.arange(tracks))
     state = filter_.init(plots)
     plain = [PlainImm(modes, plots.position[i], R, time[i]) for i in range(tracks)]
@@ -129,7 +135,7 @@ def test_the_bank_is_the_plain_imm_track_by_track(gaussian_plots, modes):
             flow = expm(turn_flow(rate[i] if 5 < k < 12 else 0.0) * step[i])
             truth[i], velocity[i] = np.split(flow @ np.r_[truth[i], velocity[i]], 2)
         time = time + step
-        rows = rng.permutation(tracks)[:1 + k % tracks]
+        rows = rng.permutation(tracks)[: 1 + k % tracks]
         plots = plots_now(rows)
         state = filter_.update(state, plots, rows)
         for i, row in enumerate(rows):
@@ -153,13 +159,14 @@ def test_one_mode_is_the_exact_posterior_of_its_model(condition, gaussian_plots,
     z = np.cumsum(rng.normal(0, 20, (count, 2)), 0) + [2000.0, -1000.0]
     state, steps = None, []
     for k in range(count):
-        plots = gaussian_plots(z[k:k + 1], R[None], time[k:k + 1])
+        plots = gaussian_plots(z[k : k + 1], R[None], time[k : k + 1])
         state = filter_.init(plots) if k == 0 else filter_.update(state, plots, np.array([0]))
         if k:
             gap = time[k] - time[k - 1]
-            steps.append((expm(turn_flow(turn_rate) * gap), np.zeros(4),
-                          white_acceleration(noise, gap)))
-    start = np.diag([0, 0, MAX_SPEED ** 2 / 4, MAX_SPEED ** 2 / 4])
+            steps.append(
+                (expm(turn_flow(turn_rate) * gap), np.zeros(4), white_acceleration(noise, gap))
+            )
+    start = np.diag([0, 0, MAX_SPEED**2 / 4, MAX_SPEED**2 / 4])
     start[:2, :2] = R
     expected = condition(np.r_[z[0], 0, 0], start, steps, OBSERVE, [(p, R) for p in z[1:]])
     agree(state.mean[0, 0], state.covariance[0, 0], *expected)
@@ -173,17 +180,20 @@ def test_after_two_plots_the_bank_is_the_exact_mixture(gaussian_plots, modes):
     filter_ = imm(modes, MAX_SPEED)
     R, z = np.diag([225.0, 900.0]), np.array([[1000.0, 500.0], [1040.0, 470.0]])
     gap = 4.0
-    first, second = (gaussian_plots(z[k:k + 1], R[None], np.array([k * gap])) for k in (0, 1))
+    first, second = (gaussian_plots(z[k : k + 1], R[None], np.array([k * gap])) for k in (0, 1))
     state = filter_.update(filter_.init(first), second, np.array([0]))
     now = filter_.extrapolate(state, second.time)
-    prior = np.diag([225.0, 900.0, MAX_SPEED ** 2 / 4, MAX_SPEED ** 2 / 4])
+    prior = np.diag([225.0, 900.0, MAX_SPEED**2 / 4, MAX_SPEED**2 / 4])
     ahead = np.linalg.matrix_power(chain(modes, modes.period), 4096)[0] @ chain(modes, gap)
     evidence, means, covariances = [], [], []
     for q, w in zip(modes.noise, modes.turn_rate):
         F, Q = expm(turn_flow(w) * gap), white_acceleration(q, gap)
-        joint = np.block([[F @ prior @ F.T + Q, (F @ prior @ F.T + Q) @ OBSERVE.T],
-                          [OBSERVE @ (F @ prior @ F.T + Q),
-                           OBSERVE @ (F @ prior @ F.T + Q) @ OBSERVE.T + R]])
+        joint = np.block(
+            [
+                [F @ prior @ F.T + Q, (F @ prior @ F.T + Q) @ OBSERVE.T],
+                [OBSERVE @ (F @ prior @ F.T + Q), OBSERVE @ (F @ prior @ F.T + Q) @ OBSERVE.T + R],
+            ]
+        )
         x = F @ np.r_[z[0], 0, 0]
         evidence.append(multivariate_normal(x[:2], joint[4:, 4:]).pdf(z[1]))
         gain = joint[:4, 4:] @ np.linalg.inv(joint[4:, 4:])
@@ -191,8 +201,9 @@ def test_after_two_plots_the_bank_is_the_exact_mixture(gaussian_plots, modes):
         covariances.append(joint[:4, :4] - gain @ joint[4:, :4])
     weight = ahead * evidence / (ahead @ evidence)
     mean = weight @ np.array(means)
-    spread = sum(w * (P + np.outer(m - mean, m - mean))
-                 for w, m, P in zip(weight, means, covariances))
+    spread = sum(
+        w * (P + np.outer(m - mean, m - mean)) for w, m, P in zip(weight, means, covariances)
+    )
     agree(moves(now, 0), now.covariance[0], mean, spread)
 
 
@@ -236,8 +247,9 @@ def turn_matrices(rate, step):
     """[N, J, 4, 4]: what the modes make of each unit state."""
     turns = bank(np.zeros(len(rate)), rate, ())
     units = np.tile(np.eye(4)[:, :, None, None], (1, 1, len(rate), len(step)))
-    return np.stack([move_means(turns, unit, step) for unit in units.swapaxes(0, 1)],
-                    -1).transpose(2, 1, 0, 3)
+    return np.stack([move_means(turns, unit, step) for unit in units.swapaxes(0, 1)], -1).transpose(
+        2, 1, 0, 3
+    )
 
 
 def test_turns_are_arcs_clockwise_for_a_positive_rate():

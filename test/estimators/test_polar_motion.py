@@ -23,8 +23,9 @@ def test_there_and_back_nothing_changes(mean):
 def test_rates_are_what_range_and_bearing_change_by(mean):
     polar, _ = to_polar(mean, ORIGIN)
     step = 1e-3
-    ahead, behind = (to_polar(mean + np.c_[s * mean[:, 2:], np.zeros((40, 2))], ORIGIN)[0]
-                     for s in (step, -step))
+    ahead, behind = (
+        to_polar(mean + np.c_[s * mean[:, 2:], np.zeros((40, 2))], ORIGIN)[0] for s in (step, -step)
+    )
     np.testing.assert_allclose((ahead - behind)[:, 0] / (2 * step), polar[:, 1], atol=1e-5)
     turned = np.angle(np.exp(1j * (ahead - behind)[:, 2]))
     np.testing.assert_allclose(turned / (2 * step), polar[:, 3], atol=1e-9)

@@ -36,12 +36,13 @@ def chain(mean, step):
     for a in mean[2::3]:
         held = np.clip(a, -LIMIT, LIMIT)
         room = LIMIT - abs(held)
-        variance = (4 - np.pi) / np.pi * max(room ** 2, 0.05 * LIMIT ** 2)
+        variance = (4 - np.pi) / np.pi * max(room**2, 0.05 * LIMIT**2)
         density = np.diag([0, 0, 2 * ALPHA * variance])
         loan = expm(np.block([[-singer, density], [np.zeros((3, 3)), singer.T]]) * step)
         noises.append(loan[3:, 3:].T @ loan[:3, 3:])
-        driven = expm(np.block([[singer, np.array([[0], [0], [ALPHA * held]])],
-                                [np.zeros((1, 4))]]) * step)
+        driven = expm(
+            np.block([[singer, np.array([[0], [0], [ALPHA * held]])], [np.zeros((1, 4))]]) * step
+        )
         drives.append(driven[:3, 3])
     return block_diag(move, move), np.concatenate(drives), block_diag(*noises)
 
@@ -51,14 +52,16 @@ def chain(mean, step):
 def test_the_transform_is_orthonormal_and_its_details_see_no_level(wavelet, depth):
     rows = analysis(wavelet, depth)
     np.testing.assert_allclose(rows @ rows.T, np.eye(SIZE), atol=1e-10)
-    np.testing.assert_allclose(rows[SIZE >> depth:] @ np.ones(SIZE), 0, atol=1e-10)
+    np.testing.assert_allclose(rows[SIZE >> depth :] @ np.ones(SIZE), 0, atol=1e-10)
 
 
 def test_haar_is_sums_and_differences():
     half = np.sqrt(0.5)
     np.testing.assert_allclose(
         np.abs(analysis('haar', 2)),
-        [[0.5] * 4, [0.5] * 4, [half, half, 0, 0], [0, 0, half, half]], atol=1e-12)
+        [[0.5] * 4, [0.5] * 4, [half, half, 0, 0], [0, 0, half, half]],
+        atol=1e-12,
+    )
 
 
 @pytest.mark.parametrize('wavelet', WAVELETS)
@@ -93,8 +96,9 @@ def test_all_subbands_are_the_exact_posterior_at_block_ends(condition, wavelet):
     for i in range(len(mean)):
         # Mean and variance of the acceleration are held through a block.
         chains = [chain(begins[k // SIZE][i], steps[i, k]) for k in range(2 * SIZE)]
-        exact, sure = condition(mean[i], covariance[i], chains, OBSERVE,
-                                list(zip(position[i], noise[i], strict=True)))
+        exact, sure = condition(
+            mean[i], covariance[i], chains, OBSERVE, list(zip(position[i], noise[i], strict=True))
+        )
         np.testing.assert_allclose(state[i], exact, rtol=1e-9, atol=1e-8)
         np.testing.assert_allclose(spread[i], sure, rtol=1e-8, atol=1e-8)
 
@@ -111,8 +115,8 @@ def test_all_subbands_smooth_inside_the_block_as_the_joint_gaussian_does(wavelet
     for j in range(SIZE):
         move, drive, kick = chain(mean[0], step[j])
         now, last = move @ now, move @ last + drive
-        now[:, 6 * (j + 1):6 * (j + 2)] = np.eye(6)
-        weight[6 * j:6 * (j + 1)] = now
+        now[:, 6 * (j + 1) : 6 * (j + 2)] = np.eye(6)
+        weight[6 * j : 6 * (j + 1)] = now
         centre.append(last)
         source.append(kick)
     joint = weight @ block_diag(*source) @ weight.T
@@ -137,15 +141,21 @@ def test_the_coarse_level_moves_the_block_as_a_whole():
     np.testing.assert_allclose(shift, np.tile(shift[:, :1], (1, SIZE, 1)), atol=1e-9)
     # Monte Carlo of the same linear rule: the gain is read off unit innovations.
     flat = before.mean.reshape(3, -1)
-    gain = np.stack([correct(before, before.mean[..., ::3] + unit.reshape(1, SIZE, 2), noise,
-                             coarse('haar', 2)).mean.reshape(3, -1) - flat
-                     for unit in np.eye(2 * SIZE)], -1)
+    gain = np.stack(
+        [
+            correct(
+                before, before.mean[..., ::3] + unit.reshape(1, SIZE, 2), noise, coarse('haar', 2)
+            ).mean.reshape(3, -1)
+            - flat
+            for unit in np.eye(2 * SIZE)
+        ],
+        -1,
+    )
     seen = np.kron(np.eye(SIZE), OBSERVE)
     for i in range(3):
         draws = 60000
         error = rng.multivariate_normal(np.zeros(24), before.covariance[i], draws)
-        off = np.concatenate([rng.multivariate_normal(np.zeros(2), r, draws)
-                              for r in noise[i]], 1)
+        off = np.concatenate([rng.multivariate_normal(np.zeros(2), r, draws) for r in noise[i]], 1)
         left = error - (error @ seen.T + off) @ gain[i].T
         found = left.var(0) / np.diag(after.covariance[i])
         assert (np.abs(found - 1) < 5 * np.sqrt(2 / draws)).all()
@@ -169,7 +179,8 @@ def test_two_plots_in_turn_are_the_weighted_one():
     turn, spread = predict(mean, covariance, time[:, 0], MANOEUVRE)
     once = kalman_update(turn, spread, fused - turn[:, ::3], sure, at)
     for k in (0, 1):
-        turn, spread, _, _ = kalman_update(turn, spread, position[:, k] - turn[:, ::3],
-                                           noise[:, k], at)
+        turn, spread, _, _ = kalman_update(
+            turn, spread, position[:, k] - turn[:, ::3], noise[:, k], at
+        )
     np.testing.assert_allclose(once[0], turn, rtol=1e-10, atol=1e-9)
     np.testing.assert_allclose(once[1], spread, rtol=1e-9, atol=1e-9)

@@ -50,27 +50,34 @@ def test_a_block_is_the_coarse_correction_of_all_four_states(filter_, tracked, o
     surprised = []
     found = wavelet_cs.newest(filter_.update(state, plots, ALL))
     time = np.concatenate([state.time, plots.time[:, None]], 1)
-    block = wavelet_block.predict(state.mean[:, 0], state.covariance[:, 0], np.diff(time),
-                                  MANOEUVRE)
+    block = wavelet_block.predict(
+        state.mean[:, 0], state.covariance[:, 0], np.diff(time), MANOEUVRE
+    )
     seen = np.concatenate([state.position, plots.position[:, None]], 1)
     noise = np.concatenate([state.noise, plots.covariance[:, None]], 1)
     for i in ALL:
         weight = 1 / np.trace(noise[i], axis1=1, axis2=2)
         weight /= weight.sum()
-        mean_of = np.kron(weight, np.eye(6))                    # of the block's states
+        mean_of = np.kron(weight, np.eye(6))  # of the block's states
         own = mean_of @ block.covariance[i] @ mean_of.T
-        spread = sum(w ** 2 * r for w, r in zip(weight, noise[i], strict=True))
+        spread = sum(w**2 * r for w, r in zip(weight, noise[i], strict=True))
         position = own[::3, ::3] @ np.linalg.inv(own[::3, ::3] + spread)
         tau = time[i, 4] - time[i, 0]
         kalman = (own[1, 0] + own[4, 3], own[2, 0] + own[5, 3]) / (own[0, 0] + own[3, 3])
         innovation = weight @ (seen[i] - block.mean[i][:, ::3])
         surprised.append(innovation @ np.linalg.inv(own[::3, ::3] + spread) @ innovation > 4.6)
         limit = np.inf if surprised[-1] else 0.5593 / tau
-        shape = np.array([1, min(limit, kalman[0]), min(
-            limit / tau * 0.1559 / 0.5593 / (1 + 0.83 * tau / 60), kalman[1])])
+        shape = np.array(
+            [
+                1,
+                min(limit, kalman[0]),
+                min(limit / tau * 0.1559 / 0.5593 / (1 + 0.83 * tau / 60), kalman[1]),
+            ]
+        )
         gain = np.concatenate([np.outer(shape, row) for row in position])
-        np.testing.assert_allclose(found.mean[i], block.mean[i, -1] + gain @ innovation,
-                                   rtol=1e-10, atol=1e-9)
+        np.testing.assert_allclose(
+            found.mean[i], block.mean[i, -1] + gain @ innovation, rtol=1e-10, atol=1e-9
+        )
         last = np.concatenate([np.zeros((6, 18)), np.eye(6)], 1)
         error = last - gain @ mean_of[::3]
         joseph = error @ block.covariance[i] @ error.T + gain @ spread @ gain.T
@@ -88,12 +95,14 @@ def test_the_shape_of_the_gain_is_what_the_papers_recursion_comes_to(alpha, step
     for _ in range(60):
         block = wavelet_block.predict(np.zeros((1, 6)), covariance, steps, manoeuvre).covariance[0]
         own = to_mean @ block @ to_mean.T
-        spread = own[::3, ::3] + 15.0 ** 2 / 4 * np.eye(2)
+        spread = own[::3, ::3] + 15.0**2 / 4 * np.eye(2)
         gain = own[:, ::3] @ np.linalg.inv(spread)
         covariance = (block[-6:, -6:] - gain @ spread @ gain.T)[None]
     tau = 4 * step
-    limit = wavelet_cs.VELOCITY_GAIN / tau, (
-        wavelet_cs.ACCELERATION_GAIN / (1 + wavelet_cs.FALL * alpha * tau) / tau ** 2)
+    limit = (
+        wavelet_cs.VELOCITY_GAIN / tau,
+        (wavelet_cs.ACCELERATION_GAIN / (1 + wavelet_cs.FALL * alpha * tau) / tau**2),
+    )
     np.testing.assert_allclose(gain[:3, 0], [1, *limit], rtol=0.01)
 
 
@@ -111,8 +120,9 @@ def test_a_plot_that_tells_nothing_pushes_none_out_of_the_block(filter_, tracked
     for a, b in zip(filter_.update(state, vague, ALL), state, strict=True):
         np.testing.assert_array_equal(a, b)
     # Row by row: the others take their plots.
-    mixed = plots._replace(covariance=np.where(
-        (ALL == 2)[:, None, None], vague.covariance, plots.covariance))
+    mixed = plots._replace(
+        covariance=np.where((ALL == 2)[:, None, None], vague.covariance, plots.covariance)
+    )
     after, whole = filter_.update(state, mixed, ALL), filter_.update(state, plots, ALL)
     others = np.array([0, 1, 3])
     for a, b in zip(take(after, others), take(whole, others), strict=True):
@@ -135,12 +145,17 @@ def test_turns_are_followed_through_missed_plots_whatever_a_max(plots_at):
         for k in range(len(way)):
             plots = plots_at(np.tile(place[k], (runs, 1)), k * PERIOD, rng=rng)
             rows = np.flatnonzero(rng.random(runs) < 0.75)
-            state = (estimator.init(plots) if state is None
-                     else estimator.update(state, take(plots, rows), rows))
+            state = (
+                estimator.init(plots)
+                if state is None
+                else estimator.update(state, take(plots, rows), rows)
+            )
             if k >= 40:
                 off.append(estimator.extrapolate(state, plots.time).velocity - way[k])
         return np.sqrt(np.mean(np.square(off)))
-    found = [errors(wavelet_cs.wavelet_cs(Manoeuvre(limit, 1 / 60), 25.0))
-             for limit in (0.5, 1.0, 3.0)]
+
+    found = [
+        errors(wavelet_cs.wavelet_cs(Manoeuvre(limit, 1 / 60), 25.0)) for limit in (0.5, 1.0, 3.0)
+    ]
     assert max(found) < 1.1 * min(found)
     assert max(found) < 0.5 * errors(cs_kalman.cs_kalman(Manoeuvre(3.0, 1 / 60), 25.0))

@@ -43,9 +43,11 @@ def roughen(path):
     path.write_text('\n'.join([','.join(header.split(',')[i] for i in keep), *rough]) + '\n')
 
 
-@pytest.mark.parametrize(('rough', 'options'), [
-    (False, {}), (True, {'cutoff': 60.0, 'bias_deg': -1.8, 'lag': 0.5})],
-    ids=['tracks and notes', 'rough tracks and options'])
+@pytest.mark.parametrize(
+    ('rough', 'options'),
+    [(False, {}), (True, {'cutoff': 60.0, 'bias_deg': -1.8, 'lag': 0.5})],
+    ids=['tracks and notes', 'rough tracks and options'],
+)
 @pytest.mark.parametrize('name', ['autosea_joyride', 'autoferry_03', 'autoferry_13'])
 def test_every_figure_agrees(recordings, scorer, tmp_path, name, rough, options):
     tracks, figures = tmp_path / 'tracks.csv', tmp_path / 'figures.json'
@@ -53,9 +55,19 @@ def test_every_figure_agrees(recordings, scorer, tmp_path, name, rough, options)
     if rough:
         roughen(tracks)
     flags = {'cutoff': '--c', 'bias_deg': '--bias-deg', 'lag': '--lag-s'}
-    subprocess.run([sys.executable, scorer, recordings / name, tracks, '--json', figures,
-                    *(f'{flags[key]}={value}' for key, value in options.items())],
-                   check=True, capture_output=True)
+    subprocess.run(
+        [
+            sys.executable,
+            scorer,
+            recordings / name,
+            tracks,
+            '--json',
+            figures,
+            *(f'{flags[key]}={value}' for key, value in options.items()),
+        ],
+        check=True,
+        capture_output=True,
+    )
     theirs = json.loads(figures.read_text())
     ours = metrics.score(csv_folder.read(recordings / name), track_file.read(tracks), **options)
     assert set(theirs) == {*ours.figures, 'recording', 'per_target', 'false_counts_uncooperative'}

@@ -27,8 +27,9 @@ def test_the_traffic_is_what_it_says():
     """1,000 targets, 500 false plots, 30 scans: 24 NM, 30 kn, 90 % seen, one time a scan."""
     scene = benchmark.traffic(1000, 500, 30, 1)
     assert scene.position.shape == scene.velocity.shape == (30, 1000, 2)
-    np.testing.assert_allclose(np.diff(scene.position, axis=0),
-                               scene.velocity[:-1] * 60 / 22, atol=1e-6)
+    np.testing.assert_allclose(
+        np.diff(scene.position, axis=0), scene.velocity[:-1] * 60 / 22, atol=1e-6
+    )
     assert np.hypot(*scene.velocity[0].T).max() <= 30 * 1852 / 3600
     assert np.hypot(*scene.position[0].T).max() <= 24 * 1852
     turned = np.abs(scene.velocity[-1] - scene.velocity[0]).max(1) > 1e-9
@@ -47,7 +48,8 @@ def test_the_plots_lie_where_the_targets_are():
     scene = benchmark.traffic(50, 0, 6, 2)
     for scan, truth in zip(scene.scans, scene.position, strict=True):
         place = scan.plots.range[:, None] * np.stack(
-            [np.sin(scan.plots.bearing), np.cos(scan.plots.bearing)], -1)
+            [np.sin(scan.plots.bearing), np.cos(scan.plots.bearing)], -1
+        )
         apart = np.hypot(*(place[:, None] - truth).transpose(2, 0, 1)).min(1)
         assert (apart < 6 * np.hypot(20, scan.plots.range * np.radians(0.5))).all()
 
@@ -72,7 +74,7 @@ def test_a_tracker_without_tracks_keeps_nothing():
     assert lost.kept == 0 and np.isnan(lost.rmse)
     none = benchmark._result(turns, [np.zeros((0, 2))] * 3, scene)
     assert none.kept == 0
-    right = benchmark._result(turns, list(scene.position[benchmark.WARM_UP:]), scene)
+    right = benchmark._result(turns, list(scene.position[benchmark.WARM_UP :]), scene)
     assert right.kept == 1 and right.rmse == 0
 
 
@@ -86,8 +88,24 @@ def test_stone_soup_keeps_the_targets_in_the_same_run():
 
 
 def command(capsys, *words):
-    assert cli.main(['bench', '--tracks', '15', '--clutter', '5', '--scans', '2', '--alone',
-                     '--json', '-', *words]) == 0
+    assert (
+        cli.main(
+            [
+                'bench',
+                '--tracks',
+                '15',
+                '--clutter',
+                '5',
+                '--scans',
+                '2',
+                '--alone',
+                '--json',
+                '-',
+                *words,
+            ]
+        )
+        == 0
+    )
     return {figure['name']: figure for figure in json.loads(capsys.readouterr().out)['figures']}
 
 
@@ -95,8 +113,11 @@ def test_the_command_tells_cost_and_ratio_to_cs_kalman(capsys):
     """The ratio is that of the times told beside it."""
     figures = command(capsys, '--estimator', 'imm')
     for name in ('imm', 'cs_kalman'):
-        assert {f'{name}: of that, extrapolation and update', f'{name}: targets kept',
-                f'{name}: position RMSE'} <= set(figures)
+        assert {
+            f'{name}: of that, extrapolation and update',
+            f'{name}: targets kept',
+            f'{name}: position RMSE',
+        } <= set(figures)
     ratio = figures['imm: ratio of a scan']
     whole = {name: figures[f'{name}: CPU time of a scan']['value'] for name in ('imm', 'cs_kalman')}
     assert ratio['value'] == pytest.approx(whole['imm'] / whole['cs_kalman'])

@@ -29,7 +29,8 @@ def test_gospa_is_the_least_over_all_pairings():
             + (targets + tracks - 2 * len(chosen)) * 5000.0
             for count in range(min(targets, tracks) + 1)
             for chosen in itertools.combinations(range(targets), count)
-            for order in itertools.permutations(range(tracks), count))
+            for order in itertools.permutations(range(tracks), count)
+        )
         assert sum(gospa_parts(distance, 100.0)) == pytest.approx(least)
 
 

@@ -12,9 +12,11 @@ from marine_tracker.evaluation.parallel import Job
 def test_results_come_in_order_whatever_the_number_of_processes():
     planned = [Job(pow, (2, k)) for k in range(5)] + [Job(os.getpid, ())]
     told = []
-    found = [parallel.run(planned, processes, lambda done, whole: told.append((done, whole)))
-             for processes in (1, 2)]
-    assert found[0][:-1] == found[1][:-1] == [2 ** k for k in range(5)]
+    found = [
+        parallel.run(planned, processes, lambda done, whole: told.append((done, whole)))
+        for processes in (1, 2)
+    ]
+    assert found[0][:-1] == found[1][:-1] == [2**k for k in range(5)]
     assert os.getpid() not in (found[0][-1], found[1][-1])
     once = [(done, 6) for done in range(7)]
     assert told == once + once

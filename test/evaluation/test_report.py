@@ -9,8 +9,13 @@ from marine_tracker.evaluation.report import Figure, at_least, at_most
 
 
 def test_the_table_shows_names_values_units_limits_and_verdicts():
-    text = report.table([Figure('scans', 12), at_most('rmse', 3.25, 5.5, 'm', 'the sketch'),
-                         at_least('held', None, 0.9)])
+    text = report.table(
+        [
+            Figure('scans', 12),
+            at_most('rmse', 3.25, 5.5, 'm', 'the sketch'),
+            at_least('held', None, 0.9),
+        ]
+    )
     lines = [line.split() for line in text.splitlines()]
     assert lines[0] == ['figure', 'value', 'unit', 'limit', 'against']
     assert lines[1] == ['scans', '12']
@@ -22,17 +27,28 @@ def test_columns_that_say_nothing_are_left_out():
     assert report.table([Figure('scans', 12)]).splitlines()[0].split() == ['figure', 'value']
 
 
-@pytest.mark.parametrize(('figure', 'ok'), [
-    (at_most('a', 5.5, 5.5), True), (at_most('a', 5.6, 5.5), False),
-    (at_least('a', 5.5, 5.5), True), (at_least('a', 5.4, 5.5), False),
-    (at_most('a', None, 5.5), False), (at_least('a', math.nan, 5.5), False)])
+@pytest.mark.parametrize(
+    ('figure', 'ok'),
+    [
+        (at_most('a', 5.5, 5.5), True),
+        (at_most('a', 5.6, 5.5), False),
+        (at_least('a', 5.5, 5.5), True),
+        (at_least('a', 5.4, 5.5), False),
+        (at_most('a', None, 5.5), False),
+        (at_least('a', math.nan, 5.5), False),
+    ],
+)
 def test_limits_are_inclusive_and_nothing_measured_fails(figure, ok):
     assert figure.ok is ok
 
 
 def test_json_has_the_six_keys_and_plain_numbers(tmp_path, capsys):
-    figures = [Figure('a', np.float32(1.5)), Figure('b', np.int64(3), 'm'), Figure('c', math.nan),
-               at_most('d', np.float64(2), 3, against='x')]
+    figures = [
+        Figure('a', np.float32(1.5)),
+        Figure('b', np.int64(3), 'm'),
+        Figure('c', math.nan),
+        at_most('d', np.float64(2), 3, against='x'),
+    ]
     path = tmp_path / 'figures.json'
     assert report.publish('title', figures, str(path), {'seed': 4}) == 0
     assert capsys.readouterr().out.startswith('title\nfigure')
@@ -42,7 +58,8 @@ def test_json_has_the_six_keys_and_plain_numbers(tmp_path, capsys):
         {'name': 'a', 'value': 1.5, 'unit': '', 'limit': None, 'ok': None, 'against': None},
         {'name': 'b', 'value': 3, 'unit': 'm', 'limit': None, 'ok': None, 'against': None},
         {'name': 'c', 'value': None, 'unit': '', 'limit': None, 'ok': None, 'against': None},
-        {'name': 'd', 'value': 2.0, 'unit': '', 'limit': '<= 3', 'ok': True, 'against': 'x'}]
+        {'name': 'd', 'value': 2.0, 'unit': '', 'limit': '<= 3', 'ok': True, 'against': 'x'},
+    ]
 
 
 def test_json_on_standard_output_stands_alone(capsys):
@@ -52,9 +69,20 @@ def test_json_on_standard_output_stands_alone(capsys):
     assert err.startswith('title')
 
 
-@pytest.mark.parametrize(('value', 'text'), [
-    (0.0, '0.000'), (1234.5678, '1234.568'), (1e-9, '1e-09'), (3.2e7, '3.2e+07'), (7, '7'),
-    (None, '-'), (math.inf, '-'), ('imm', 'imm'), (True, 'True')])
+@pytest.mark.parametrize(
+    ('value', 'text'),
+    [
+        (0.0, '0.000'),
+        (1234.5678, '1234.568'),
+        (1e-9, '1e-09'),
+        (3.2e7, '3.2e+07'),
+        (7, '7'),
+        (None, '-'),
+        (math.inf, '-'),
+        ('imm', 'imm'),
+        (True, 'True'),
+    ],
+)
 def test_numbers_are_readable(value, text):
     assert report.number(value) == text
 

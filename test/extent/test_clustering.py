@@ -13,8 +13,15 @@ def plots(position, time=0.0):
     position = np.asarray(position, float)
     count = len(position)
     range_, bearing = to_range_bearing(position)
-    return Plots(np.full(count, time), range_, bearing, np.arange(count) % 30.0,
-                 np.zeros((count, 2)), position, np.tile(np.eye(2), (count, 1, 1)))
+    return Plots(
+        np.full(count, time),
+        range_,
+        bearing,
+        np.arange(count) % 30.0,
+        np.zeros((count, 2)),
+        position,
+        np.tile(np.eye(2), (count, 1, 1)),
+    )
 
 
 def line(start, end, count):
@@ -24,7 +31,7 @@ def line(start, end, count):
 def gate(middle, half_length, half_beam, velocity=(0.0, 0.0), time=0.0):
     """Of hulls that lie north-south, one row for each middle."""
     middle = np.reshape(np.asarray(middle, float), (-1, 2))
-    area = np.tile(np.diag([float(half_beam) ** 2, half_length ** 2]), (len(middle), 1, 1))
+    area = np.tile(np.diag([float(half_beam) ** 2, half_length**2]), (len(middle), 1, 1))
     return Gates(np.full(len(middle), time), middle, np.tile(velocity, (len(middle), 1)), area)
 
 
@@ -43,8 +50,10 @@ def test_clusters_are_the_connected_components_of_cells_that_touch(seed):
     for i in range(300):
         for j in range(300):
             near = np.hypot(*(cells.position[i] - cells.position[j])) <= 40
-            touch[i, j] = near or (abs(distance[i] - distance[j]) <= 1.5 * DEPTH and abs(
-                wrap_angle(bearing[i] - bearing[j])) <= 1.5 * BEAM)
+            touch[i, j] = near or (
+                abs(distance[i] - distance[j]) <= 1.5 * DEPTH
+                and abs(wrap_angle(bearing[i] - bearing[j])) <= 1.5 * BEAM
+            )
     expected, left = set(), set(range(300))
     while left:
         part, edge = set(), {left.pop()}
@@ -70,12 +79,14 @@ def test_cluster_tells_centroid_scatter_size_and_strongest_cell():
     along = np.linalg.eigh(np.cov(position.T))[1][:, -1]
     assert found.size[0] == pytest.approx(np.ptp(position @ along))
     assert np.linalg.eigvalsh(found.noise[0]) == pytest.approx(
-        [(0.4 * BEAM * np.hypot(*position.mean(0))) ** 2, (0.55 * DEPTH) ** 2][::-1], rel=1e-2)
+        [(0.4 * BEAM * np.hypot(*position.mean(0))) ** 2, (0.55 * DEPTH) ** 2][::-1], rel=1e-2
+    )
 
 
 def test_cells_of_one_gate_are_one_cluster_though_they_do_not_touch():
-    cells = plots(np.concatenate([line([1000, 1000], [1000, 1050], 6),
-                                  line([1000, 1110], [1000, 1160], 6)]))
+    cells = plots(
+        np.concatenate([line([1000, 1000], [1000, 1050], 6), line([1000, 1110], [1000, 1160], 6)])
+    )
     alone = cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))
     assert len(alone.cells) == 2
     held = cluster(cells, DEPTH, BEAM, in_gates(cells, gate([1000, 1080], 110, 30)))
@@ -83,10 +94,12 @@ def test_cells_of_one_gate_are_one_cluster_though_they_do_not_touch():
 
 
 def test_ships_side_by_side_stay_two_and_are_crowded():
-    cells = plots(np.concatenate([line([1000, 1000], [1000, 1150], 12),
-                                  line([1030, 1000], [1030, 1150], 12)]))
-    found = cluster(cells, DEPTH, BEAM,
-                    in_gates(cells, gate([[1000, 1075], [1030, 1075]], 110, 20)))
+    cells = plots(
+        np.concatenate([line([1000, 1000], [1000, 1150], 12), line([1030, 1000], [1030, 1150], 12)])
+    )
+    found = cluster(
+        cells, DEPTH, BEAM, in_gates(cells, gate([[1000, 1075], [1030, 1075]], 110, 20))
+    )
     assert found.cells.tolist() == [12, 12] and sorted(found.gate) == [0, 1]
     assert found.crowded.all()
 
@@ -102,8 +115,9 @@ def test_what_sticks_out_of_a_gate_belongs_to_it_but_a_coast_does_not():
 
 
 def test_land_is_never_drawn_into_a_hull():
-    cells = plots(np.concatenate([line([1000, 1000], [1000, 1150], 12),
-                                  line([1030, 1000], [1060, 1100], 8)]))
+    cells = plots(
+        np.concatenate([line([1000, 1000], [1000, 1150], 12), line([1030, 1000], [1060, 1100], 8)])
+    )
     place = in_gates(cells, gate([1000, 1075], 85, 10))
     found = cluster(cells, DEPTH, BEAM, place._replace(land=np.arange(20) >= 12))
     assert found.cells[found.gate == 0].tolist() == [12]

@@ -27,7 +27,8 @@ class Run:
 
     def step(self, scan):
         (self.memory, self.known), self.report, self.plain, self.shapes = self.extents.track(
-            self.tracker, self.memory, self.known, scan)
+            self.tracker, self.memory, self.known, scan
+        )
         return self.report
 
     def become(self, extent):
@@ -47,8 +48,10 @@ def one_ship():
 
 def test_extent_off_passes_plots_untouched(one_ship):
     loaded, scans = one_ship
-    plain, off = Tracker(TrackerParameters(**loaded.tracker_parameters())), Run(
-        loaded.tracker_parameters(), 'off')
+    plain, off = (
+        Tracker(TrackerParameters(**loaded.tracker_parameters())),
+        Run(loaded.tracker_parameters(), 'off'),
+    )
     memory = plain.start()
     for scan, _ in scans[:8]:
         memory, report = plain.step(memory, scan)
@@ -110,7 +113,7 @@ def test_extents_can_be_switched_on_in_an_empty_scan(one_ship):
     run.become('gp')
     none = np.zeros(0)
     run.step(scans[6][0]._replace(plots=PolarPlots(none, none, none, none)))
-    assert len(run.report.tracks.id) > 20           # on single cells
+    assert len(run.report.tracks.id) > 20  # on single cells
     for scan, _ in scans[7:]:
         run.step(scan)
     assert len(run.report.tracks.id) <= 2
@@ -151,8 +154,12 @@ def test_a_coast_gives_hardly_any_track_and_no_ship_is_lost_by_it():
 
 def test_parts_of_a_hull_become_one_unless_both_are_known_for_long():
     area = np.tile(np.diag([400.0, 2500.0]), (3, 1, 1))
-    gates = Gates(np.zeros(3), np.array([[0.0, 0], [0, 80], [300, 0]]),
-                  np.array([[0.0, 6], [0.3, 6], [0, 6]]), area)
+    gates = Gates(
+        np.zeros(3),
+        np.array([[0.0, 0], [0, 80], [300, 0]]),
+        np.array([[0.0, 6], [0.3, 6], [0, 6]]),
+        area,
+    )
     certain = np.tile(0.1 * np.eye(2), (3, 1, 1))
     merged, kept = one_a_ship(gates, certain, np.array([False, True, True]))
     assert kept.tolist() == [0, 2]

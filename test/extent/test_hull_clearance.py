@@ -3,24 +3,29 @@ import pytest
 
 from marine_tracker.extent.hull_clearance import hull_clearance
 
-BOX = np.array([[-10.0, 100], [10, 100], [10, -100], [-10, -100]])      # 200 m, north-south
+BOX = np.array([[-10.0, 100], [10, 100], [10, -100], [-10, -100]])  # 200 m, north-south
 
 
 def clearance(position, velocity, outline=BOX):
-    return hull_clearance(outline[None], np.array([position], float),
-                          np.array([velocity], float))[0]
+    return hull_clearance(outline[None], np.array([position], float), np.array([velocity], float))[
+        0
+    ]
 
 
-@pytest.mark.parametrize('position, velocity, expected', [
-    ((500, 0), (0, 5), 490),            # abeam and drawing ahead: her side is nearest now
-    ((500, -1000), (0, 5), 490),        # will pass to the east
-    ((0, 1000), (5, 0), 900),           # her stern is nearest now, and she goes away sideways
-    ((-1000, 150), (5, 0), 50),         # crosses ahead: passes with her stern 50 m off
-    ((-1000, 90), (5, 0), 0),           # runs us down
-    ((0, 1000), (0, -5), 0),            # head-on
-    ((0, 1000), (0, 5), 900),           # opening
-    ((5, 20), (0, 0), 0),               # we lie within her
-    ((300, 0), (0, 0), 290)])           # at rest together
+@pytest.mark.parametrize(
+    'position, velocity, expected',
+    [
+        ((500, 0), (0, 5), 490),  # abeam and drawing ahead: her side is nearest now
+        ((500, -1000), (0, 5), 490),  # will pass to the east
+        ((0, 1000), (5, 0), 900),  # her stern is nearest now, and she goes away sideways
+        ((-1000, 150), (5, 0), 50),  # crosses ahead: passes with her stern 50 m off
+        ((-1000, 90), (5, 0), 0),  # runs us down
+        ((0, 1000), (0, -5), 0),  # head-on
+        ((0, 1000), (0, 5), 900),  # opening
+        ((5, 20), (0, 0), 0),  # we lie within her
+        ((300, 0), (0, 0), 290),
+    ],
+)  # at rest together
 def test_clearance_of_a_box(position, velocity, expected):
     assert clearance(position, velocity) == pytest.approx(expected, abs=1.0)
 

@@ -11,7 +11,7 @@ from marine_tracker.types import Extrapolation
 
 PERIOD, SPEED = 60 / 22, 6.0
 LENGTH, BEAM, SIGMA = 200.0, 32.0, 3.0
-OWN = np.array([2000.0, 0.0])           # to the east: her starboard side is lit
+OWN = np.array([2000.0, 0.0])  # to the east: her starboard side is lit
 
 
 class Sea:
@@ -23,30 +23,57 @@ class Sea:
 
     @property
     def middle(self):
-        return np.column_stack([-500.0 * (self.ids - 5), np.full(len(self.ids),
-                                                                 SPEED * PERIOD * self.k)])
+        return np.column_stack(
+            [-500.0 * (self.ids - 5), np.full(len(self.ids), SPEED * PERIOD * self.k)]
+        )
 
     def step(self, count=20, crowded=False, seen=True, turned=0.0, sigma=SIGMA):
         """One scan: `count` points a ship, of hulls `turned` rad off their course."""
         ships = len(self.ids)
-        place = np.column_stack([np.full(ships * count, BEAM / 2),
-                                 self.rng.uniform(-LENGTH / 2, LENGTH / 2, ships * count)])
+        place = np.column_stack(
+            [
+                np.full(ships * count, BEAM / 2),
+                self.rng.uniform(-LENGTH / 2, LENGTH / 2, ships * count),
+            ]
+        )
         sin, cos = np.sin(turned), np.cos(turned)
         place = place @ np.array([[cos, -sin], [sin, cos]])
         of = np.repeat(np.arange(ships), count)
         cells = self.middle[of] + place + sigma * self.rng.standard_normal(place.shape)
         centroid = cells.reshape(ships, count, 2).mean(1)
         off = cells.reshape(ships, count, 2) - centroid[:, None]
-        noise = np.tile(SIGMA ** 2 * np.eye(2), (ships, 1, 1))
+        noise = np.tile(SIGMA**2 * np.eye(2), (ships, 1, 1))
         nothing, mask = np.zeros(ships), np.full(ships, crowded)
-        clusters = Clusters(nothing, centroid, off.swapaxes(1, 2) @ off, np.full(ships, count),
-                            noise, nothing, nothing, np.full(ships, -1), mask, mask & False, of)
+        clusters = Clusters(
+            nothing,
+            centroid,
+            off.swapaxes(1, 2) @ off,
+            np.full(ships, count),
+            noise,
+            nothing,
+            nothing,
+            np.full(ships, -1),
+            mask,
+            mask & False,
+            of,
+        )
         tracked = Extrapolation(
-            np.full(ships, PERIOD * self.k), centroid, np.tile([0.0, SPEED], (ships, 1)),
-            np.tile(np.diag([25.0, 25, 1, 1]), (ships, 1, 1)))
+            np.full(ships, PERIOD * self.k),
+            centroid,
+            np.tile([0.0, SPEED], (ships, 1)),
+            np.tile(np.diag([25.0, 25, 1, 1]), (ships, 1, 1)),
+        )
         taken = np.arange(ships) if seen else np.full(ships, -1)
-        self.known = hulls.step(self.known, self.ids, tracked.time, tracked, clusters, taken,
-                                Edge(of, cells, noise), OWN)
+        self.known = hulls.step(
+            self.known,
+            self.ids,
+            tracked.time,
+            tracked,
+            clusters,
+            taken,
+            Edge(of, cells, noise),
+            OWN,
+        )
         self.k += 1
         return self.known
 
@@ -57,14 +84,20 @@ def test_an_outline_takes_over_after_ten_clusters_and_finds_the_centre():
     assert (np.array(methods[:9]) == BY_RANDOM_MATRIX).all()
     assert (np.array(methods[12:]) == BY_GAUSSIAN_PROCESS).all()
     middle = sea.middle - [0, SPEED * PERIOD]
-    plain, outlined = (np.hypot(*(mean[:, :2] - middle).T).mean() for mean in (
-        sea.known.matrix.mean, sea.known.outline.mean))
+    plain, outlined = (
+        np.hypot(*(mean[:, :2] - middle).T).mean()
+        for mean in (sea.known.matrix.mean, sea.known.outline.mean)
+    )
     assert plain > 12 and outlined < 0.5 * plain
 
 
-@pytest.mark.parametrize('change', [
-    {'count': 8},                       # too few cells
-    {'sigma': 3.0, 'crowded': True}])   # another hull touches
+@pytest.mark.parametrize(
+    'change',
+    [
+        {'count': 8},  # too few cells
+        {'sigma': 3.0, 'crowded': True},
+    ],
+)  # another hull touches
 def test_no_outline_without_cells_of_her_own(change):
     sea = Sea()
     for _ in range(20):
@@ -110,7 +143,7 @@ def test_rows_follow_the_tracks_ids():
     for _ in range(4):
         sea.step()
     x = sea.known.matrix.mean[:, 0]
-    sea.ids = np.array([7, 5])          # 6 is lost, the others come in another order
+    sea.ids = np.array([7, 5])  # 6 is lost, the others come in another order
     known = sea.step()
     assert known.id.tolist() == [7, 5]
     assert known.matrix.mean[:, 0] == pytest.approx(x[[2, 0]], abs=5)
@@ -125,7 +158,7 @@ def test_track_without_a_cluster_starts_with_no_idea_of_size():
     assert known.scans == [0] and np.isfinite(known.matrix.extent).all()
     for _ in range(8):
         known = sea.step()
-    found = hulls.shapes(known, np.tile(SIGMA ** 2 * np.eye(2), (1, 1, 1)), sea.middle)
+    found = hulls.shapes(known, np.tile(SIGMA**2 * np.eye(2), (1, 1, 1)), sea.middle)
     assert found.extended == [True] and found.length[0] == pytest.approx(LENGTH, rel=0.15)
 
 
@@ -133,13 +166,14 @@ def test_heading_comes_from_the_course_under_way_and_from_the_axis_at_rest():
     sea = Sea()
     for _ in range(9):
         known = sea.step()
-    noise = np.tile(SIGMA ** 2 * np.eye(2), (1, 1, 1))
+    noise = np.tile(SIGMA**2 * np.eye(2), (1, 1, 1))
     certain = known.matrix.covariance * np.diag([1, 1, 0.1, 0.1]) * np.diag([1, 1, 0.1, 0.1])[None]
     known = known._replace(matrix=known.matrix._replace(covariance=certain))
     under_way = hulls.shapes(known, noise, sea.middle)
     assert hulls.SOURCES[under_way.source[0]] == 'course'
-    at_rest = known._replace(matrix=known.matrix._replace(
-        mean=known.matrix.mean * [1, 1, 0.01, 0.01]))
+    at_rest = known._replace(
+        matrix=known.matrix._replace(mean=known.matrix.mean * [1, 1, 0.01, 0.01])
+    )
     found = hulls.shapes(at_rest, noise, sea.middle)
     assert hulls.SOURCES[found.source[0]] == 'axis'
     for shapes in (under_way, found):
@@ -156,5 +190,5 @@ def test_length_is_that_of_cells_spread_over_the_hull_and_its_fringe():
     matrix = sea.step().matrix
     extent = 4 * (np.diag([30.0, variance])[None] - noise * [[1, 0], [0, 1]])
     found = hulls.size(matrix._replace(extent=np.abs(extent)), noise)
-    exact = np.sqrt(12 * (variance - 100) + 4 * fringe ** 2) - 2 * fringe
+    exact = np.sqrt(12 * (variance - 100) + 4 * fringe**2) - 2 * fringe
     assert found.length[0] == pytest.approx(exact) == pytest.approx(LENGTH, abs=2)

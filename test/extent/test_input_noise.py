@@ -14,8 +14,7 @@ F = (4 + 1.2 * np.cos(2 * PRIOR.angle) + 0.8 * np.sin(3 * PRIOR.angle))[None]
 
 
 def noisy(variant, angle, deviation, rng=None):
-    return noisy_radius(PRIOR, CIRCLE, F, np.array([angle]), np.array([deviation ** 2]), variant,
-                        rng)
+    return noisy_radius(PRIOR, CIRCLE, F, np.array([angle]), np.array([deviation**2]), variant, rng)
 
 
 def integrated(angle, deviation):
@@ -24,8 +23,12 @@ def integrated(angle, deviation):
     weights = weights / weights.sum()
     at = radius(PRIOR, CIRCLE, F, (angle + deviation * nodes)[None])
     mean = at.mean[0] @ weights
-    return (mean, at.slope[0] @ weights, weights @ at.weight[0],
-            at.variance[0] @ weights + (at.mean[0] - mean) ** 2 @ weights)
+    return (
+        mean,
+        at.slope[0] @ weights,
+        weights @ at.weight[0],
+        at.variance[0] @ weights + (at.mean[0] - mean) ** 2 @ weights,
+    )
 
 
 @pytest.mark.parametrize('variant', NODES)
@@ -34,7 +37,7 @@ def test_nodes_are_even_and_have_the_moments_of_a_unit_normal(variant):
     assert weights.sum() == pytest.approx(1)
     assert weights @ nodes == pytest.approx(0, abs=1e-15)
     if len(nodes) > 1:
-        assert weights @ nodes ** 2 == pytest.approx(1)
+        assert weights @ nodes**2 == pytest.approx(1)
 
 
 @pytest.mark.parametrize('deviation', [0.02, 0.2, 0.6])

@@ -17,13 +17,24 @@ TURN = 2 * np.pi
 def target(prior, f, semi_axes=(1.0, 1.0), heading=0.5, covariance=0.0):
     """One row at [100, 200] m."""
     motion = np.array([[100.0, 200.0, 3.0, 4.0, heading, 0.0]])
-    return start(Model(prior, 'gp', 0.0, 0.0), np.zeros(1), motion, covariance * np.eye(6),
-                 np.broadcast_to(f, (1, len(prior.angle))), np.array([semi_axes]))
+    return start(
+        Model(prior, 'gp', 0.0, 0.0),
+        np.zeros(1),
+        motion,
+        covariance * np.eye(6),
+        np.broadcast_to(f, (1, len(prior.angle))),
+        np.array([semi_axes]),
+    )
 
 
 def matrix(extent):
-    return random_matrix.start(np.zeros(1), np.zeros((1, 2)), np.eye(2)[None],
-                               Velocity(np.zeros((1, 2)), np.eye(2)[None]), np.array([extent]))
+    return random_matrix.start(
+        np.zeros(1),
+        np.zeros((1, 2)),
+        np.eye(2)[None],
+        Velocity(np.zeros((1, 2)), np.eye(2)[None]),
+        np.array([extent]),
+    )
 
 
 def test_an_elliptic_ship_has_its_length_beam_area_and_axis():
@@ -68,10 +79,10 @@ def test_deviations_are_those_of_drawn_outlines(prior, axes):
 
 
 def test_a_random_matrix_is_an_ellipse():
-    outline = outline_measures.of_random_matrix(matrix(np.diag([100.0 ** 2, 16.0 ** 2])))
+    outline = outline_measures.of_random_matrix(matrix(np.diag([100.0**2, 16.0**2])))
     np.testing.assert_allclose(outline.points[0, [0, 90]], [[0, 16], [100, 0]], atol=1e-9)
     assert outline_measures.area(outline.points)[0] == pytest.approx(np.pi * 1600, rel=0.02)
-    twice = outline_measures.of_random_matrix(matrix(np.diag([100.0 ** 2, 16.0 ** 2])), size=2.0)
+    twice = outline_measures.of_random_matrix(matrix(np.diag([100.0**2, 16.0**2])), size=2.0)
     np.testing.assert_allclose(twice.points, 2 * outline.points)
 
 
@@ -81,8 +92,14 @@ def test_errors_of_drawn_outlines_are_calibrated():
     truth = 4 + np.cos(2 * PAPER.angle)
     covariance = 0.01 * PAPER.covariance
     f = rng.multivariate_normal(truth, covariance, 400)
-    state = start(Model(PAPER, 'gp', 0.0, 0.0), np.zeros(400), np.zeros((400, 6)), np.eye(6), f,
-                  np.ones((400, 2)))
+    state = start(
+        Model(PAPER, 'gp', 0.0, 0.0),
+        np.zeros(400),
+        np.zeros((400, 6)),
+        np.eye(6),
+        f,
+        np.ones((400, 2)),
+    )
     state.covariance[:, FIRST_RADIUS:, FIRST_RADIUS:] = covariance
     found = outline_measures.error(state, PAPER, truth)
     assert abs(np.square(found.mahalanobis).mean() - 36) < 4 * np.sqrt(72 / 400)
@@ -93,10 +110,12 @@ def test_errors_of_drawn_outlines_are_calibrated():
 def test_the_shape_error_is_zero_on_the_truth_and_grows_with_place():
     def egg(angle):
         return 4 + np.cos(angle)
+
     state = target(PAPER, egg(PAPER.angle))
     points = outline_measures.of_gaussian_process(state, PAPER).points
     centre, heading = state.mean[:, :2], state.mean[:, 4]
     assert outline_measures.shape_error(points, centre, heading, egg)[0] < 0.01
     assert outline_measures.shape_error(points, centre, heading + np.pi, egg)[0] == pytest.approx(
-        2 / np.sqrt(2), rel=0.02)
+        2 / np.sqrt(2), rel=0.02
+    )
     assert outline_measures.shape_error(points + 1.0, centre, heading, egg)[0] > 0.7

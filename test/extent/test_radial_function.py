@@ -12,18 +12,20 @@ SHIP = contour(24, 0.2, 0.1, np.pi / 14, folds=2, mean=1.0, power=4.0)
 def direct(prior, a, b):
     """k(a, b) as printed in the paper, with folds."""
     half = prior.folds * (a[:, None] - b) / 2
-    return (prior.deviation ** 2 * np.exp(-2 * np.sin(half) ** 2 / prior.scale ** 2)
-            + prior.mean_deviation ** 2)
+    return (
+        prior.deviation**2 * np.exp(-2 * np.sin(half) ** 2 / prior.scale**2)
+        + prior.mean_deviation**2
+    )
 
 
 @pytest.mark.parametrize('prior', [PAPER, SHIP], ids=['paper', 'ship'])
 def test_the_radius_is_the_posterior_of_the_process_given_f(prior):
     """Conditioned on f in one joint Gaussian of f and the radii asked for."""
-    rng, prior = np.random.default_rng(1), prior._replace(power=2.0)     # the base is a circle
+    rng, prior = np.random.default_rng(1), prior._replace(power=2.0)  # the base is a circle
     f = prior.mean + rng.multivariate_normal(np.zeros(len(prior.angle)), prior.covariance)
     asked = rng.uniform(-10, 10, 20)
     found = radius(prior, np.ones((1, 2)), f[None], asked[None])
-    gram = direct(prior, prior.angle, prior.angle) + 1e-6 * prior.deviation ** 2 * np.eye(len(f))
+    gram = direct(prior, prior.angle, prior.angle) + 1e-6 * prior.deviation**2 * np.eye(len(f))
     cross = direct(prior, asked, prior.angle)
     expected = prior.mean + cross @ np.linalg.solve(gram, f - prior.mean)
     left = direct(prior, asked, asked) - cross @ np.linalg.solve(gram, cross.T)
@@ -51,8 +53,9 @@ def test_outlines_repeat_after_a_turn_and_those_of_two_folds_after_half_a_turn()
     angle = rng.uniform(-3, 3, (1, 50))
     for prior, period in ((PAPER, 2 * np.pi), (SHIP, np.pi)):
         f = rng.uniform(0.5, 1.5, (1, len(prior.angle)))
-        one, other = (radius(prior, np.array([[50.0, 10.0]]), f, angle + turn)
-                      for turn in (0, period))
+        one, other = (
+            radius(prior, np.array([[50.0, 10.0]]), f, angle + turn) for turn in (0, period)
+        )
         for a, b in zip(one, other):
             np.testing.assert_allclose(a, b, atol=1e-9)
     half = [kernel(PAPER, turn)[0] for turn in (0.0, np.pi)]
@@ -63,8 +66,9 @@ def test_outlines_repeat_after_a_turn_and_those_of_two_folds_after_half_a_turn()
 def test_the_base_is_met_where_its_equation_says(power):
     axes, angle = np.array([[100.0, 16.0]]), np.linspace(0, 2 * np.pi, 41)[None]
     size, _ = lame(axes[:, None], power, angle)
-    np.testing.assert_allclose(np.abs(size * np.cos(angle) / 100) ** power
-                               + np.abs(size * np.sin(angle) / 16) ** power, 1)
+    np.testing.assert_allclose(
+        np.abs(size * np.cos(angle) / 100) ** power + np.abs(size * np.sin(angle) / 16) ** power, 1
+    )
 
 
 def test_bad_priors_are_refused():

@@ -13,18 +13,26 @@ from marine_tracker.types import take
 
 def still(count, extent, weight=6.0):
     """Rows at rest at the origin."""
+
     def each(matrix):
         return np.tile(matrix, (count, 1, 1))
 
-    return rm.start(np.zeros(count), np.zeros((count, 2)), each(4.0 * np.eye(2)),
-                    Velocity(np.zeros((count, 2)), each(0.1 * np.eye(2))), each(extent), weight)
+    return rm.start(
+        np.zeros(count),
+        np.zeros((count, 2)),
+        each(4.0 * np.eye(2)),
+        Velocity(np.zeros((count, 2)), each(0.1 * np.eye(2))),
+        each(extent),
+        weight,
+    )
 
 
 def box(rng, shape, length, beam, heading):
     """Points all over a box, east and north."""
     ahead, abeam = (size * rng.uniform(-0.5, 0.5, shape) for size in (length, beam))
-    return (ahead[..., None] * unit_vector(heading)
-            + abeam[..., None] * unit_vector(heading + np.pi / 2))
+    return ahead[..., None] * unit_vector(heading) + abeam[..., None] * unit_vector(
+        heading + np.pi / 2
+    )
 
 
 def scans(state, points, noise, step=2.7, model=rm.SHIP):
@@ -34,8 +42,15 @@ def scans(state, points, noise, step=2.7, model=rm.SHIP):
         state = rm.predict(state, np.full(len(every), k * step), model)
         centroid = cells.mean(1)
         off = cells - centroid[:, None]
-        state = rm.update(state, every, centroid, np.einsum('nci,ncj->nij', off, off),
-                          np.full(len(every), cells.shape[1]), noise, model)
+        state = rm.update(
+            state,
+            every,
+            centroid,
+            np.einsum('nci,ncj->nij', off, off),
+            np.full(len(every), cells.shape[1]),
+            noise,
+            model,
+        )
     return state
 
 
@@ -46,7 +61,7 @@ def test_a_box_is_found_in_spite_of_smear(heading):
     noise = np.tile(smear(2000.0, np.radians(20.0), 10.0, np.radians(0.75)), (60, 1, 1))
     points = box(rng, (40, 60, 20), 200.0, 30.0, heading)
     points += rng.multivariate_normal(np.zeros(2), noise[0], points.shape[:-1])
-    found = rm.measures(scans(still(60, 40.0 ** 2 * np.eye(2)), points, noise), noise)
+    found = rm.measures(scans(still(60, 40.0**2 * np.eye(2)), points, noise), noise)
     assert abs(found.length.mean() / 200 - 1) < 0.02
     assert abs(found.beam.mean() / 30 - 1) < 0.15
     off = np.mod(found.axis - heading + np.pi / 2, np.pi) - np.pi / 2
@@ -60,11 +75,17 @@ def test_deviations_are_those_of_repeated_trials():
     forgetful = rm.SHIP._replace(memory=1e9)
     points = rng.multivariate_normal(np.zeros(2), np.diag([400.0, 6400.0]) / 4, (30, 200, 15))
     points += 5 * rng.standard_normal(points.shape)
-    found = rm.measures(scans(still(200, 40.0 ** 2 * np.eye(2)), points, noise, model=forgetful),
-                        noise, size=rm.ELLIPSE)
+    found = rm.measures(
+        scans(still(200, 40.0**2 * np.eye(2)), points, noise, model=forgetful),
+        noise,
+        size=rm.ELLIPSE,
+    )
     axis = np.mod(found.axis + np.pi / 2, np.pi) - np.pi / 2
-    for values, told in ((found.length, found.length_sd), (found.beam, found.beam_sd),
-                         (axis, found.axis_sd)):
+    for values, told in (
+        (found.length, found.length_sd),
+        (found.beam, found.beam_sd),
+        (axis, found.axis_sd),
+    ):
         assert values.std() / told.mean() == pytest.approx(1, abs=0.35)
 
 
@@ -129,8 +150,9 @@ def test_a_known_extent_leaves_a_plain_kalman_filter(condition):
     steps, plots = [], []
     for k, count in enumerate((3, 8, 1, 5), 1):
         transition, kick = (m[0] for m in rm.constant_velocity(np.array([2.5])))
-        steps.append((np.kron(transition, np.eye(2)), np.zeros(4),
-                      rm.SHIP.noise * np.kron(kick, np.eye(2))))
+        steps.append(
+            (np.kron(transition, np.eye(2)), np.zeros(4), rm.SHIP.noise * np.kron(kick, np.eye(2)))
+        )
         z = rng.normal(0, 10, 2)
         plots.append((z, (extent / 4 + noise) / count))
         state = rm.predict(state, np.array([2.5 * k]), rm.SHIP._replace(memory=1e30))
@@ -148,5 +170,5 @@ def test_a_round_extent_tells_no_axis():
 def test_smear_lies_along_and_across_the_line_of_sight():
     found = smear(np.array([2000.0, 1000.0]), np.radians([90.0, 0.0]), 10.0, np.radians(1.0))
     far, near = (0.4 * np.radians(1.0) * range_ for range_ in (2000, 1000))
-    np.testing.assert_allclose(found[0], np.diag([5.5 ** 2, far ** 2]), atol=1e-9)
-    np.testing.assert_allclose(found[1], np.diag([near ** 2, 5.5 ** 2]), atol=1e-9)
+    np.testing.assert_allclose(found[0], np.diag([5.5**2, far**2]), atol=1e-9)
+    np.testing.assert_allclose(found[1], np.diag([near**2, 5.5**2]), atol=1e-9)

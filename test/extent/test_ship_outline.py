@@ -14,10 +14,15 @@ def ship(heading, course, position=(1000.0, 1000.0), length=200.0, beam=32.0):
     """A random matrix of that length and beam, and its measures."""
     ahead = unit_vector(np.array(heading))
     abeam = unit_vector(np.array(heading + np.pi / 2))
-    extent = (length ** 2 * np.outer(ahead, ahead) + beam ** 2 * np.outer(abeam, abeam)) / BOX_SPREAD ** 2
+    extent = (length**2 * np.outer(ahead, ahead) + beam**2 * np.outer(abeam, abeam)) / BOX_SPREAD**2
     matrix = random_matrix.start(
-        np.array([5.0]), np.array([position]), 4.0 * np.eye(2)[None],
-        Velocity(6 * unit_vector(np.array([course])), 0.01 * np.eye(2)[None]), extent[None], 500.0)
+        np.array([5.0]),
+        np.array([position]),
+        4.0 * np.eye(2)[None],
+        Velocity(6 * unit_vector(np.array([course])), 0.01 * np.eye(2)[None]),
+        extent[None],
+        500.0,
+    )
     return matrix, random_matrix.measures(matrix, np.zeros((1, 2, 2)))
 
 
@@ -43,4 +48,4 @@ def test_the_outline_begins_behind_the_lit_side(heading):
     assert measured.length[0] == pytest.approx(200, rel=0.01)
     assert measured.beam[0] == pytest.approx(2 * half, rel=0.01)
     assert np.linalg.eigvalsh(state.covariance).min() > 0
-    assert state.covariance[0, HEADING, HEADING] >= ship_outline.HEADING_SD ** 2
+    assert state.covariance[0, HEADING, HEADING] >= ship_outline.HEADING_SD**2

@@ -33,19 +33,25 @@ def test_the_short_form_meets_what_is_demanded(result):
 def test_doppler_is_worth_something_at_sea(result):
     values = {f.name: f.value for f in result.figures}
     for track in ('straight', 'turns'):
-        with_, without = (values[f'marine, {track}, hf_soft {how}: course']
-                          for how in ('with Doppler', 'without'))
+        with_, without = (
+            values[f'marine, {track}, hf_soft {how}: course'] for how in ('with Doppler', 'without')
+        )
         assert with_ < 0.75 * without
 
 
 def test_every_demand_of_the_full_form_is_there(result):
     limits = {f.name: f.limit for f in result.figures if f.limit}
     assert limits == {
-        'method2: crossing ship lost': '>= 60', 'hf: crossing ship lost': '<= 6',
-        'hf_soft: crossing ship lost': '<= 2', 'polar Kalman: crossing ship lost': '<= 1',
-        'hf_soft: R': '<= 0.6', 'hf_soft: v': '<= 0.4', 'hf_soft: theta': '<= 0.75',
+        'method2: crossing ship lost': '>= 60',
+        'hf: crossing ship lost': '<= 6',
+        'hf_soft: crossing ship lost': '<= 2',
+        'polar Kalman: crossing ship lost': '<= 1',
+        'hf_soft: R': '<= 0.6',
+        'hf_soft: v': '<= 0.4',
+        'hf_soft: theta': '<= 0.75',
         'marine, straight, hf_soft with Doppler: position': '<= 16',
-        'marine, straight, hf_soft with Doppler: course': '<= 5.5'}
+        'marine, straight, hf_soft with Doppler: course': '<= 5.5',
+    }
 
 
 def test_claims_that_do_not_hold_are_told(result):
@@ -57,9 +63,13 @@ def test_every_filter_gets_the_same_plots_and_a_seed_repeats(result):
     on = hf_trials.scene()
     one, two = ([p for p, _ in hf_trials.observe(on, 3, 8)] for _ in range(2))
     assert all(np.array_equal(a, b) for a, b in zip(one, two, strict=True))
-    figures = alpha_beta.hf_figures({name: alpha_beta.summary(hf_trials.run(
-        estimator, on, RUNS, 5)) for name, estimator in alpha_beta.filters(on).items()
-        if name in ('hf', 'hf_soft')})
+    figures = alpha_beta.hf_figures(
+        {
+            name: alpha_beta.summary(hf_trials.run(estimator, on, RUNS, 5))
+            for name, estimator in alpha_beta.filters(on).items()
+            if name in ('hf', 'hf_soft')
+        }
+    )
     assert set(figures) < set(result.figures)
 
 
@@ -88,11 +98,13 @@ def test_the_polar_kalman_filter_settles_where_riccatis_equation_says():
     state = None
     for k in range(3000):
         plots = hf_trials.as_plots(np.array([[1e5, 0.0, 0.5]]), step * k, sigma)
-        state = estimator.init(plots) if state is None else estimator.update(
-            state, plots, np.array([0]))
+        state = (
+            estimator.init(plots)
+            if state is None
+            else estimator.update(state, plots, np.array([0]))
+        )
     f = np.array([[1.0, step], [0.0, 1.0]])
-    q = polar_kalman.SPEED_NOISE * np.array([[step ** 3 / 3, step ** 2 / 2],
-                                             [step ** 2 / 2, step]])
+    q = polar_kalman.SPEED_NOISE * np.array([[step**3 / 3, step**2 / 2], [step**2 / 2, step]])
     r = np.diag(sigma[:2] ** 2)
     ahead = solve_discrete_are(f.T, np.eye(2), q, r)
     after = ahead - ahead @ np.linalg.solve(ahead + r, ahead)

@@ -11,13 +11,19 @@ from marine_tracker.lab.compare import compare, pictures
 from marine_tracker.lab.compare.compare import Errors
 from marine_tracker.simulation import scenario
 
-FOUND = {name: {'one': Errors(10.0 + k, 1.0, 0.99), 'two': Errors(np.nan, np.nan)}
-         for k, name in enumerate(ESTIMATORS)}
+FOUND = {
+    name: {'one': Errors(10.0 + k, 1.0, 0.99), 'two': Errors(np.nan, np.nan)}
+    for k, name in enumerate(ESTIMATORS)
+}
 
 
 def test_scenes_without_data_are_the_simulated_ones():
     assert list(compare.scenes_of(20, 1, None)) == [
-        *marine_table.TRACKS, 'sharp turns', 'boat', 'busy strait']
+        *marine_table.TRACKS,
+        'sharp turns',
+        'boat',
+        'busy strait',
+    ]
 
 
 def test_a_folder_without_recordings_is_named(tmp_path):
@@ -62,19 +68,23 @@ def test_the_table_is_written_between_its_marks_only(tmp_path):
 
 def test_the_picture_is_drawn(tmp_path):
     pytest.importorskip('matplotlib')
-    file, = draw(tmp_path, [pictures.picture(FOUND)])
+    (file,) = draw(tmp_path, [pictures.picture(FOUND)])
     assert file.name == 'compare.png' and file.stat().st_size > 10_000
 
 
 @pytest.mark.slow
 def test_a_run_tells_every_estimator_in_every_scene_and_of_the_encounters(monkeypatch, tmp_path):
     monkeypatch.setattr(compare.imazu_encounters, 'IMAZU', ((180,),))
-    monkeypatch.setattr(compare, 'ESTIMATORS', {name: ESTIMATORS[name]
-                                                for name in ('cs_kalman', 'imm')})
+    monkeypatch.setattr(
+        compare, 'ESTIMATORS', {name: ESTIMATORS[name] for name in ('cs_kalman', 'imm')}
+    )
     page = tmp_path / 'page.md'
     page.write_text(f'{compare.BEGIN}\n{compare.END}')
     found = compare.run(4, 1, page=str(page), processes=1)
     names = {figure.name for figure in found.figures}
-    assert {'imm, busy strait: held', 'cs_kalman, boat: velocity',
-            'imm, Imazu: warned with 6 minutes left'} <= names
+    assert {
+        'imm, busy strait: held',
+        'cs_kalman, boat: velocity',
+        'imm, Imazu: warned with 6 minutes left',
+    } <= names
     assert 'busy strait' in page.read_text() and len(found.pictures) == 1

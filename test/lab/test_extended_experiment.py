@@ -29,8 +29,11 @@ SPARSE = Case('complex', 0.8)
 @pytest.fixture(scope='module')
 def sparse():
     """All filters but the sampled one, which takes longest, on the same 30 runs."""
-    trials = {variant: gaussian_process_trial(SPARSE, variant, RUNS, SEED)
-              for variant in VARIANTS if variant != 'gp_mc'}
+    trials = {
+        variant: gaussian_process_trial(SPARSE, variant, RUNS, SEED)
+        for variant in VARIANTS
+        if variant != 'gp_mc'
+    }
     return {**trials, RANDOM_MATRIX: random_matrix_trial(SPARSE, RUNS, SEED)}
 
 
@@ -47,7 +50,7 @@ def test_points_lie_evenly_along_the_outline():
     abeam = off @ [np.cos(turn), -np.sin(turn)]
     # Of a diamond's side, evenly: |x| / 5 is uniform on 0 to 1.
     for along, half in ((ahead[used], 5), (abeam[used], 3)):
-        expected = half ** 2 / 3 + SIGMA ** 2
+        expected = half**2 / 3 + SIGMA**2
         assert np.square(along).mean() == pytest.approx(expected, rel=4 * np.sqrt(2 / used.sum()))
 
 
@@ -81,8 +84,9 @@ def test_a_random_matrix_does_better_than_the_plain_filter_on_few_points(sparse)
 
 def test_sampling_and_its_fixed_nodes_agree():
     """12 runs of 100 s: the difference of two filters on the same points."""
-    sampled, fixed = (gaussian_process_trial(SPARSE, variant, 12, SEED)
-                      for variant in ('gp_mc', 'gp_q15'))
+    sampled, fixed = (
+        gaussian_process_trial(SPARSE, variant, 12, SEED) for variant in ('gp_mc', 'gp_q15')
+    )
     assert abs(sampled.rmse - fixed.rmse) < 0.2
     assert abs(sampled.bound - fixed.bound) < 0.2
 
@@ -94,14 +98,15 @@ def test_the_jacobian_is_within_the_figure_demanded():
 def made_up(**of_gp_mc):
     """Findings in which all the paper's claims hold, but for what is given of gp_mc."""
     drawn = Drawn(NOTHING)
-    trials = {'gp': ExtendedTrial(1.1, 12.0, 0.8, 0.5, 1.2, 1.0, drawn),
-              'gp_ts': ExtendedTrial(1.05, 8.0, 0.9, 0.7, 1.1, 1.0, drawn),
-              'gp_ss': ExtendedTrial(1.05, 8.0, 0.9, 0.8, 1.1, 1.0, drawn),
-              'gp_mc': ExtendedTrial(1.0, 6.0, 0.99, 0.9, 1.0, 1.0, drawn)._replace(**of_gp_mc),
-              'gp_q15': ExtendedTrial(1.0, 6.0, 0.99, 0.9, 1.0, 1.0, drawn),
-              RANDOM_MATRIX: ExtendedTrial(np.nan, np.nan, np.nan, np.nan, 1.3, 1.0, drawn)}
-    return {(case, name): trial for case in figures.CASES
-            for name, trial in trials.items()}
+    trials = {
+        'gp': ExtendedTrial(1.1, 12.0, 0.8, 0.5, 1.2, 1.0, drawn),
+        'gp_ts': ExtendedTrial(1.05, 8.0, 0.9, 0.7, 1.1, 1.0, drawn),
+        'gp_ss': ExtendedTrial(1.05, 8.0, 0.9, 0.8, 1.1, 1.0, drawn),
+        'gp_mc': ExtendedTrial(1.0, 6.0, 0.99, 0.9, 1.0, 1.0, drawn)._replace(**of_gp_mc),
+        'gp_q15': ExtendedTrial(1.0, 6.0, 0.99, 0.9, 1.0, 1.0, drawn),
+        RANDOM_MATRIX: ExtendedTrial(np.nan, np.nan, np.nan, np.nan, 1.3, 1.0, drawn),
+    }
+    return {(case, name): trial for case in figures.CASES for name, trial in trials.items()}
 
 
 def test_verdicts_follow_the_figures():
@@ -116,8 +121,7 @@ def test_verdicts_follow_the_figures():
 
 
 def test_a_missed_limit_is_told():
-    missed = {figure.name for figure in figures.demands(made_up(rmse=1.5))
-              if figure.ok is False}
+    missed = {figure.name for figure in figures.demands(made_up(rmse=1.5)) if figure.ok is False}
     assert 'complex, .8 a frame, gp_mc: RMSE, demanded' in missed
     assert 'complex, .8 a metre, gp_mc: RMSE, demanded' in missed
 

@@ -30,7 +30,7 @@ def test_the_published_limit_of_the_spacing_is_that_of_the_estimate():
 def test_the_frame_operator_lies_within_the_bounds_over_both_signs(q, b):
     low, high = estimated_bounds(q, b, both_signs=True)
     lowest, highest = measured_bounds(q, b)
-    slack = 0.002 * high            # of grid, circle and levels left out
+    slack = 0.002 * high  # of grid, circle and levels left out
     assert low - slack <= lowest < highest <= high + slack
 
 

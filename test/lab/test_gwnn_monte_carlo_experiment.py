@@ -13,8 +13,17 @@ from marine_tracker.lab.gwnn.trials import ALONE, BRIEFLY, FLEETS, IMM, OWN, TAN
 from marine_tracker.networks.wavelet_network import forward
 from marine_tracker.training.track_trials import Ratio
 
-OTHERS = (ALONE, TANH, BRIEFLY, 'IMM for manoeuvre', 'IMM as shipped', 'CV/CV', 'CV', 'CS',
-          'CS of the fallback')
+OTHERS = (
+    ALONE,
+    TANH,
+    BRIEFLY,
+    'IMM for manoeuvre',
+    'IMM as shipped',
+    'CV/CV',
+    'CV',
+    'CS',
+    'CS of the fallback',
+)
 
 
 def ratio(value, half=0.01):
@@ -26,8 +35,9 @@ def cell(vessel_class='ship', kind='mix', phase='straight', own=0.95, other=1.1)
     sizes = {OWN: own, **dict.fromkeys(OTHERS, other)}
     to_imm = {name: ratio(size) for name, size in sizes.items()}
     over = {name: ratio(own / sizes.get(name, 1.0)) for name in (IMM, *OTHERS)}
-    return Cell(vessel_class, kind, phase, {**sizes, IMM: 1.0}, to_imm, dict(to_imm), over, 2.0,
-                0.001)
+    return Cell(
+        vessel_class, kind, phase, {**sizes, IMM: 1.0}, to_imm, dict(to_imm), over, 2.0, 0.001
+    )
 
 
 def findings(*ships):
@@ -35,10 +45,13 @@ def findings(*ships):
     fair = {('ship', f'{i}'): [one] for i, one in enumerate(ships)}
     fair['small_craft', 'rib'] = [cell('small_craft', 'rib', 'manoeuvre')]
     return figures.Findings(
-        fair, {('ship', 'mix'): [cell(own=1.02)]},
+        fair,
+        {('ship', 'mix'): [cell(own=1.02)]},
         {('ship', 'mix'): [cell(own=0.8), cell(phase='manoeuvre', own=1.2)]},
-        {('ship', 'mix'): (np.arange(10.0), ratio(1.0))}, {('ship', 'mix'): [ratio(1.05), None]},
-        20.0)
+        {('ship', 'mix'): (np.arange(10.0), ratio(1.0))},
+        {('ship', 'mix'): [ratio(1.05), None]},
+        20.0,
+    )
 
 
 def named(figures):
@@ -56,8 +69,7 @@ class TestTracks:
         for kind in trials.kinds(vessel_class):
             if kind in trials.RECORDED:
                 continue
-            on = trials.trial(vessel_class, kind, 30, fleet.radar, np.random.default_rng(1),
-                                   None)
+            on = trials.trial(vessel_class, kind, 30, fleet.radar, np.random.default_rng(1), None)
             assert on.seen.shape[0] <= 30 and on.seen.shape[1] == trials.SCANS
             distance = np.hypot(*np.moveaxis(on.ships.position, -1, 0))
             assert distance.min() > fleet.nearest
@@ -67,13 +79,14 @@ class TestTracks:
 
     def test_recorded_tracks_are_put_where_the_others_are(self, recordings):
         fleet = FLEETS['small_craft']
-        on = trials.trial('small_craft', 'boat', 20, fleet.radar, np.random.default_rng(2),
-                               recordings)
+        on = trials.trial(
+            'small_craft', 'boat', 20, fleet.radar, np.random.default_rng(2), recordings
+        )
         middle = np.hypot(*on.ships.position[:, trials.SCANS // 2].T)
         assert fleet.ranges[0] < middle.min() and middle.max() < fleet.ranges[1]
         speed = np.hypot(*np.moveaxis(on.ships.velocity, -1, 0))
         moved = np.hypot(*np.moveaxis(np.diff(on.ships.position, axis=1), -1, 0))
-        assert moved.sum() == pytest.approx(2.0 * speed[:, 1:].sum(), rel=0.02)     # 30 rpm
+        assert moved.sum() == pytest.approx(2.0 * speed[:, 1:].sum(), rel=0.02)  # 30 rpm
 
     def test_recorded_tracks_need_their_folder(self):
         radar, rng = FLEETS['ship'].radar, np.random.default_rng(1)
@@ -82,16 +95,22 @@ class TestTracks:
 
 
 class TestCells:
-    @pytest.mark.parametrize(('vessel_class', 'kind', 'phase'), [
-        ('ship', 'steady', 'straight'), ('ship', 'weave', 'manoeuvre'),
-        ('small_craft', 'weave', 'manoeuvre')])
+    @pytest.mark.parametrize(
+        ('vessel_class', 'kind', 'phase'),
+        [
+            ('ship', 'steady', 'straight'),
+            ('ship', 'weave', 'manoeuvre'),
+            ('small_craft', 'weave', 'manoeuvre'),
+        ],
+    )
     def test_the_shipped_network_beats_the_tuned_imm(self, monkeypatch, vessel_class, kind, phase):
         """Found with 100 runs: .91, .91 and .87. 30 runs of 80 scans know that to .02 (deviation);
         .97 is three deviations or more above."""
         monkeypatch.setattr(trials, 'SCANS', 80)
         weights = {OWN: gwnn.weights(vessel_class=vessel_class)}
-        found, = trials.cells(vessel_class, kind, 30, FLEETS[vessel_class].radar, 3, None,
-                                   weights)
+        (found,) = trials.cells(
+            vessel_class, kind, 30, FLEETS[vessel_class].radar, 3, None, weights
+        )
         assert (found.kind, found.phase) == (kind, phase)
         assert found.position[OWN].value < 0.97
         assert found.idle < 0.05
@@ -108,8 +127,7 @@ class TestCells:
 
 class TestFigures:
     def test_the_mean_of_cells_is_geometric_and_its_interval_shrinks(self):
-        mean = figures.geometric_mean([Ratio(0.8, 0.7, 0.8 ** 2 / 0.7),
-                                            Ratio(1.25, 1.25, 1.25)])
+        mean = figures.geometric_mean([Ratio(0.8, 0.7, 0.8**2 / 0.7), Ratio(1.25, 1.25, 1.25)])
         half = np.sqrt(0.8 / 0.7)
         assert mean == pytest.approx((1.0, 1 / half, half))
         four = figures.geometric_mean([ratio(1.0)] * 4)
@@ -135,7 +153,7 @@ class TestFigures:
         assert found[f'mix, manoeuvre, {figures.SIGMA}: position ratio'].ok is False
         assert found['mix: scans to fallback after a break of 3 sigma, p90'].value == 8.1
         assert found['mix, random weights: position ratio'].ok is True
-        assert found['mix, weights not numbers: position ratio'].ok is False      # not finite
+        assert found['mix, weights not numbers: position ratio'].ok is False  # not finite
         assert found['position ratio, geometric mean over the cells'].ok is True
         mean = found['position ratio, geometric mean over the cells, CV/CV']
         assert mean.value == pytest.approx(1.1)
@@ -157,8 +175,9 @@ class TestClaims:
         assert found['errors some 4 % below those of the strongest IMM'].verdict == BORNE_OUT
 
     def test_a_lost_cell_is_named_and_the_rest_is_in_part(self):
-        found = claims_by_text(cell(), cell(phase='manoeuvre'),
-                       cell(kind='agile', phase='manoeuvre', own=1.05))
+        found = claims_by_text(
+            cell(), cell(phase='manoeuvre'), cell(kind='agile', phase='manoeuvre', own=1.05)
+        )
         assert found[self.BETTER].verdict == IN_PART
         assert '2 of 3 cells won, 1 lost: agile, manoeuvre 1.050' in found[self.BETTER].found
 
@@ -190,8 +209,9 @@ class TestFailures:
     def test_broken_weights_are_off_by_what_they_should(self):
         weights = gwnn.weights()
         seen = np.zeros((1, len(weights.fusion.centre)))
-        off = (forward(failures.broken(weights, [3.0, -1.0]).fusion, seen)
-               - forward(weights.fusion, seen))
+        off = forward(failures.broken(weights, [3.0, -1.0]).fusion, seen) - forward(
+            weights.fusion, seen
+        )
         np.testing.assert_allclose(off[0, gwnn.AT_ONCE], [3.0, -1.0], rtol=1e-5)
         np.testing.assert_allclose(np.delete(off[0], range(13, 15)), 0.0, atol=1e-6)
 
@@ -206,10 +226,15 @@ def test_pictures_show_every_cell_and_draw(tmp_path):
         assert file.read_bytes().startswith(b'\x89PNG') and file.stat().st_size > 10000
 
 
-@pytest.mark.parametrize(('options', 'text'), [
-    (('--processes', '0'), '--processes is 0; it must be at least 1'),
-    (('--data', 'nowhere'), '--data is nowhere; it holds neither of'),
-    (('--runs', '0'), '--runs is 0'), (('--seed', '-1'), '--seed is -1')])
+@pytest.mark.parametrize(
+    ('options', 'text'),
+    [
+        (('--processes', '0'), '--processes is 0; it must be at least 1'),
+        (('--data', 'nowhere'), '--data is nowhere; it holds neither of'),
+        (('--runs', '0'), '--runs is 0'),
+        (('--seed', '-1'), '--seed is -1'),
+    ],
+)
 def test_wrong_options_are_told(capsys, options, text):
     assert main(['experiments', 'gwnn_monte_carlo', *options]) == 2
     assert text in capsys.readouterr().err
@@ -221,8 +246,22 @@ def test_both_parts_in_one_report(tmp_path, capsys):
     """Few runs: no limit is judged; every figure is there and nothing depends on the processes."""
     told = []
     for processes in ('1', '2'):
-        main(['experiments', 'gwnn', '--runs', '6', '--seed', '3', '--processes', processes,
-              '--pictures', str(tmp_path), '--json', '-'])
+        main(
+            [
+                'experiments',
+                'gwnn',
+                '--runs',
+                '6',
+                '--seed',
+                '3',
+                '--processes',
+                processes,
+                '--pictures',
+                str(tmp_path),
+                '--json',
+                '-',
+            ]
+        )
         printed = capsys.readouterr()
         told.append(json.loads(printed.out))
     names = {figure['name'] for figure in told[0]['figures']}

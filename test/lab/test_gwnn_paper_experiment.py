@@ -67,26 +67,43 @@ def test_all_limits_are_met_with_few_seeds(figures):
 
 
 def test_the_networks_converge_in_the_papers_order(figures):
-    plots = [figures[f'Fig 2, 3, plots to 1.852 m: {name}'].value for name in (
-        'GWNN, variable step', 'BP, variable step', 'BP, equal step')]
+    plots = [
+        figures[f'Fig 2, 3, plots to 1.852 m: {name}'].value
+        for name in ('GWNN, variable step', 'BP, variable step', 'BP, equal step')
+    ]
     assert plots[0] * 5 < plots[1] < plots[2]
 
 
 def test_honest_findings_are_in_the_table(figures):
     assert figures["eq 20-22, 1/q at which max|psi'| = 1/2q"].value < 0.9
-    assert (figures['eq 20-21 fails at 1/q = 0.9: one net input'].value
-            > figures['eq 20-21 fails at 1/q = 0.6: one net input'].value)
+    assert (
+        figures['eq 20-21 fails at 1/q = 0.9: one net input'].value
+        > figures['eq 20-21 fails at 1/q = 0.6: one net input'].value
+    )
     line = figures['Fig 5, peak in the turn: line through two plots'].value
     assert line == pytest.approx(3.73, abs=0.05)
-    assert all(line < figure.value for name, figure in figures.items()
-               if name.startswith('Fig 5') and 'line' not in name)
-    assert (figures['noise of a radar, 15 m: GWNN'].value
-            > figures['noise of a radar, 15 m: the plots'].value)
+    assert all(
+        line < figure.value
+        for name, figure in figures.items()
+        if name.startswith('Fig 5') and 'line' not in name
+    )
+    assert (
+        figures['noise of a radar, 15 m: GWNN'].value
+        > figures['noise of a radar, 15 m: the plots'].value
+    )
 
 
 def test_every_claim_has_its_verdict(result):
     assert {claim.source for claim in result.claims} == {
-        'Fig 1', 'Fig 2, 3', 'Fig 4', 'Fig 5', 'abstract', 'eq 20-22', 'below eq 14', 'eq 23'}
+        'Fig 1',
+        'Fig 2, 3',
+        'Fig 4',
+        'Fig 5',
+        'abstract',
+        'eq 20-22',
+        'below eq 14',
+        'eq 23',
+    }
     verdicts = {claim.source: claim.verdict for claim in result.claims}
     assert verdicts['Fig 2, 3'] == BORNE_OUT
     assert verdicts['abstract'] == NOT_BORNE_OUT
@@ -96,8 +113,20 @@ def test_every_claim_has_its_verdict(result):
 def test_the_command_prints_claims_and_draws_pictures(figures, tmp_path, capsys):
     pytest.importorskip('matplotlib')
     out = tmp_path / 'pictures'
-    code = main(['experiments', 'gwnn_paper', '--runs', '2', '--seed', str(SEED),
-                 '--pictures', str(out), '--json', '-'])
+    code = main(
+        [
+            'experiments',
+            'gwnn_paper',
+            '--runs',
+            '2',
+            '--seed',
+            str(SEED),
+            '--pictures',
+            str(out),
+            '--json',
+            '-',
+        ]
+    )
     printed = capsys.readouterr()
     told = json.loads(printed.out)
     assert code == (0 if all(figure['ok'] is not False for figure in told['figures']) else 1)
@@ -106,13 +135,19 @@ def test_the_command_prints_claims_and_draws_pictures(figures, tmp_path, capsys)
     assert 'Fig 5: "in the sharp turn the GWNN errs less than the BP network":' in printed.err
     files = sorted(out.iterdir())
     assert [file.stem for file in files] == [
-        'eq20_22_robustness', 'fig1_steady', 'fig2_3_convergence', 'fig4_noise', 'fig5_sharp_turn']
+        'eq20_22_robustness',
+        'fig1_steady',
+        'fig2_3_convergence',
+        'fig4_noise',
+        'fig5_sharp_turn',
+    ]
     for file in files:
         assert file.read_bytes().startswith(b'\x89PNG') and file.stat().st_size > 10000
 
 
 def test_other_seeds_give_other_figures_and_the_same_seed_the_same():
-    one, same, other = (paper.steady(3, np.random.default_rng(seed), scans=120)[1]
-                        for seed in (1, 1, 2))
+    one, same, other = (
+        paper.steady(3, np.random.default_rng(seed), scans=120)[1] for seed in (1, 1, 2)
+    )
     np.testing.assert_array_equal(one, same)
     assert (one != other).all()

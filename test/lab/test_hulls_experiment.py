@@ -27,14 +27,17 @@ def test_ship_passes_her_distance_half_way_on_the_bearing_of_the_aspect():
 @pytest.mark.slow
 def test_outline_halves_the_bias_close_by():
     case = Case(200, 1000.0, 45.0, FINE)
-    plain, outlined = (np.mean([run(case, extent, seed).centre for seed in (31, 32, 33)], 0)
-                       for extent in ('random_matrix', 'gp'))
+    plain, outlined = (
+        np.mean([run(case, extent, seed).centre for seed in (31, 32, 33)], 0)
+        for extent in ('random_matrix', 'gp')
+    )
     assert np.hypot(*outlined) <= 0.5 * np.hypot(*plain)
 
 
 @pytest.mark.slow
 def test_traffic_is_tracked_and_painted():
     from matplotlib.figure import Figure
+
     hulls, coast = (traffic.track(name, 'random_matrix', 3) for name in ('hulls', 'coast'))
     assert hulls.confirmed <= 7 and hulls.held.min() > 0.95
     canvas = Figure(figsize=(11, 5.5), layout='constrained')

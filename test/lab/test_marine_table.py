@@ -38,7 +38,8 @@ def test_the_table_is_reproduced(figures, name):
     for track, (position, velocity) in zip(marine_table.TRACKS, PUBLISHED[name], strict=True):
         assert figures[f'{name}, {track}: position'].value == pytest.approx(position, rel=0.25)
         assert figures[f'{name}, {track}: velocity'].value == pytest.approx(
-            velocity, rel=0.25, abs=0.15)
+            velocity, rel=0.25, abs=0.15
+        )
 
 
 @pytest.mark.parametrize('leg', marine_table.TRACKS.values(), ids=marine_table.TRACKS)
@@ -47,26 +48,31 @@ def test_the_tracks_are_arcs_at_constant_speed(leg):
     np.testing.assert_allclose(np.hypot(*velocity.T), leg.speed)
     chords = np.hypot(*np.diff(position, axis=0).T) / marine_table.PERIOD
     assert (chords <= leg.speed * (1 + 1e-9)).all()
-    assert chords.min() > 0.995 * leg.speed * np.sinc(leg.turn_rate * marine_table.PERIOD
-                                                      / 2 / np.pi)
+    assert chords.min() > 0.995 * leg.speed * np.sinc(
+        leg.turn_rate * marine_table.PERIOD / 2 / np.pi
+    )
     distance = np.hypot(*position.T)
     assert distance.min() > 100 and distance.max() < 10000
     middle = velocity[marine_table.FIRST_TURN + leg.turning + 5]
-    turned = np.degrees(np.arccos(np.clip(middle @ velocity[0] / leg.speed ** 2, -1, 1)))
-    assert turned == pytest.approx(np.degrees(leg.turn_rate) * leg.turning * marine_table.PERIOD,
-                                   abs=1e-4)
+    turned = np.degrees(np.arccos(np.clip(middle @ velocity[0] / leg.speed**2, -1, 1)))
+    assert turned == pytest.approx(
+        np.degrees(leg.turn_rate) * leg.turning * marine_table.PERIOD, abs=1e-4
+    )
     np.testing.assert_allclose(velocity[-1], velocity[0], atol=1e-9)
 
 
 def test_the_same_seed_gives_the_same_errors():
     leg = marine_table.TRACKS['turns']
     filter_ = marine_table.cv(0.05)
-    assert (marine_table.errors(filter_, leg, 3, 5) == marine_table.errors(filter_, leg, 3, 5)
-            != marine_table.errors(filter_, leg, 3, 6))
+    assert (
+        marine_table.errors(filter_, leg, 3, 5)
+        == marine_table.errors(filter_, leg, 3, 5)
+        != marine_table.errors(filter_, leg, 3, 6)
+    )
 
 
 def test_the_command_prints_every_figure(capsys, monkeypatch):
-    monkeypatch.setattr(marine_table, 'SCANS', 230)        # the figures are judged above
+    monkeypatch.setattr(marine_table, 'SCANS', 230)  # the figures are judged above
     assert 'marine_table' in EXPERIMENTS
     code = cli.main(['experiments', 'marine_table', '--runs', '2', '--seed', '3', '--json', '-'])
     out = json.loads(capsys.readouterr().out)

@@ -24,8 +24,9 @@ def model(variant='gp'):
 
 
 def start(motion, covariance, f):
-    return gp.start(model(), np.zeros(len(motion)), motion, covariance, f,
-                    np.ones((len(motion), 2)))
+    return gp.start(
+        model(), np.zeros(len(motion)), motion, covariance, f, np.ones((len(motion), 2))
+    )
 
 
 def test_the_bound_of_a_linear_filter_is_its_covariance():
@@ -34,8 +35,14 @@ def test_the_bound_of_a_linear_filter_is_its_covariance():
     state = start(motion, 1e-9 * np.eye(6), np.full((1, 36), 4.0))
     noise = np.eye(2)[None]
     bound = bound_step(state.covariance[0], 0.0, state, cells, np.array([12]), noise, model())
-    found, _ = gp.update(gp.predict(state, np.zeros(1), model()), np.array([0]), cells,
-                         np.array([12]), noise, model())
+    found, _ = gp.update(
+        gp.predict(state, np.zeros(1), model()),
+        np.array([0]),
+        cells,
+        np.array([12]),
+        noise,
+        model(),
+    )
     np.testing.assert_allclose(bound[6:, 6:], found.covariance[0, 6:, 6:], atol=1e-5)
 
 
@@ -43,8 +50,15 @@ def test_without_cells_the_bound_is_the_prediction():
     motion, cells = scene(np.random.default_rng(2), 3, 1)
     state = start(motion, np.diag([1, 1, 0.1, 0.1, 0.1, 0.001]), np.full((3, 36), 4.0))
     later = state._replace(time=np.full(3, 2.0))
-    bound = bound_step(state.covariance[0], 0.0, later, cells, np.zeros(3, int),
-                       np.tile(np.eye(2), (3, 1, 1)), model())
+    bound = bound_step(
+        state.covariance[0],
+        0.0,
+        later,
+        cells,
+        np.zeros(3, int),
+        np.tile(np.eye(2), (3, 1, 1)),
+        model(),
+    )
     moved = gp.predict(state, later.time, model())
     np.testing.assert_allclose(bound, moved.covariance[0], rtol=1e-5, atol=1e-6)
 
@@ -56,9 +70,17 @@ def test_information_is_the_mean_over_the_rows():
     bounds = []
     for rows in (motion, five):
         state = start(rows, np.diag([1, 1, 0.1, 0.1, 0.1, 0.001]), np.full((len(rows), 36), 4.0))
-        bounds.append(bound_step(state.covariance[0], 0.0, state,
-                                 np.repeat(cells, len(rows), 0), np.full(len(rows), 6),
-                                 np.tile(np.eye(2), (len(rows), 1, 1)), model()))
+        bounds.append(
+            bound_step(
+                state.covariance[0],
+                0.0,
+                state,
+                np.repeat(cells, len(rows), 0),
+                np.full(len(rows), 6),
+                np.tile(np.eye(2), (len(rows), 1, 1)),
+                model(),
+            )
+        )
     np.testing.assert_allclose(bounds[0], bounds[1], rtol=1e-6, atol=1e-9)
 
 
@@ -67,8 +89,15 @@ def test_input_noise_widens_the_bound(variant):
     motion, cells = scene(np.random.default_rng(4), 50, 10)
     f = np.tile(4 + np.cos(3 * PRIOR.angle), (50, 1))
     state = start(motion, np.diag([1, 1, 0.1, 0.1, 0.1, 0.001]), f)
-    arguments = (state.covariance[0], 0.0, state, cells, np.full(50, 10),
-                 np.tile(np.eye(2), (50, 1, 1)))
-    plain, wide = (np.trace(bound_step(*arguments, model(name))[6:, 6:])
-                   for name in ('gp', variant))
+    arguments = (
+        state.covariance[0],
+        0.0,
+        state,
+        cells,
+        np.full(50, 10),
+        np.tile(np.eye(2), (50, 1, 1)),
+    )
+    plain, wide = (
+        np.trace(bound_step(*arguments, model(name))[6:, 6:]) for name in ('gp', variant)
+    )
     assert wide > 1.05 * plain

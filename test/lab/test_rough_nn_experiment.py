@@ -28,8 +28,9 @@ def test_the_target_moves_by_newtons_law():
     after = np.maximum(time - change, 0)
     before = np.minimum(time, change)
     np.testing.assert_allclose(x[:, 1], 300 + 5 * before + 25 * after)
-    np.testing.assert_allclose(x[:, 0], 300 * time + 2.5 * before ** 2 + 5 * before * after
-                               + 12.5 * after ** 2)
+    np.testing.assert_allclose(
+        x[:, 0], 300 * time + 2.5 * before**2 + 5 * before * after + 12.5 * after**2
+    )
 
 
 def test_runs_are_the_axes_of_tracks():
@@ -47,11 +48,14 @@ def test_an_imm_that_never_leaves_the_wide_filter_is_f1(monkeypatch):
 
     def plots():
         return trials.plots_of(setting, x, 10, np.random.default_rng(3))
+
     imm = [mean for mean, _ in trials.run_imm(setting, plots())]
-    estimator = trials.cs_rough_nn.parallel(setting.manoeuvre, 1.0,
-                                            trials.cs_rough_nn.weights('bp'))
-    wide = list(trials._states(estimator, setting, plots(),
-                               lambda state: state.wide.mean.reshape(-1, 3)))
+    estimator = trials.cs_rough_nn.parallel(
+        setting.manoeuvre, 1.0, trials.cs_rough_nn.weights('bp')
+    )
+    wide = list(
+        trials._states(estimator, setting, plots(), lambda state: state.wide.mean.reshape(-1, 3))
+    )
     np.testing.assert_allclose(imm, wide, rtol=1e-4, atol=1e-3)
 
 
@@ -81,8 +85,13 @@ def test_networks_are_calm_with_any_radar(figures):
 def test_the_paper_is_not_flattered(result):
     verdicts = {claim.claim: claim.verdict for claim in result.claims}
     assert len(verdicts) == 7
-    assert verdicts['the rough network tracks every manoeuvre (weak, strong, changing) better '
-                    'than the BP network'] == NOT_BORNE_OUT
+    assert (
+        verdicts[
+            'the rough network tracks every manoeuvre (weak, strong, changing) better '
+            'than the BP network'
+        ]
+        == NOT_BORNE_OUT
+    )
     assert verdicts['the rough network shortens the delay in manoeuvres'] == NOT_BORNE_OUT
     assert verdicts['the parallel filter is accurate without manoeuvre and quick in it'] == IN_PART
     assert verdicts['an IMM of the same two filters beats the rough network'] == IN_PART
@@ -92,16 +101,30 @@ def test_the_interval_of_a_ratio_is_that_of_pairs():
     """Errors that go together leave the ratio sharp, however much they scatter."""
     rng = np.random.default_rng(1)
     common = rng.exponential(1.0, 200)
-    found = {('s', 't', name): type('Cell', (), {'of_runs': scale * common})
-             for name, scale in (('a', 1.21), ('b', 1.0))}
+    found = {
+        ('s', 't', name): type('Cell', (), {'of_runs': scale * common})
+        for name, scale in (('a', 1.21), ('b', 1.0))
+    }
     assert rough_nn.ratio(found, 's', 't', 'a', 'b') == pytest.approx((1.1, 1.1, 1.1))
 
 
 def test_the_command_prints_verdicts_and_draws_pictures(tmp_path, capsys):
     pytest.importorskip('matplotlib')
     out = tmp_path / 'pictures'
-    main(['experiments', 'rough_nn', '--runs', '4', '--seed', '3', '--pictures', str(out),
-          '--json', '-'])
+    main(
+        [
+            'experiments',
+            'rough_nn',
+            '--runs',
+            '4',
+            '--seed',
+            '3',
+            '--pictures',
+            str(out),
+            '--json',
+            '-',
+        ]
+    )
     printed = capsys.readouterr()
     assert len(json.loads(printed.out)['claims']) == 7
     assert 'better than the BP network": ' in printed.err

@@ -12,7 +12,7 @@ def scene():
 
 
 def rms(course):
-    return np.sqrt(np.nanmean(course.position[:, :two_radars.SEEN_BY_BOTH] ** 2))
+    return np.sqrt(np.nanmean(course.position[:, : two_radars.SEEN_BY_BOTH] ** 2))
 
 
 def test_the_fused_track_is_better_than_either_and_outlives_one(scene):
@@ -20,14 +20,14 @@ def test_the_fused_track_is_better_than_either_and_outlives_one(scene):
     assert rms(scene['both']) < 0.95 * min(rms(scene['X band']), rms(scene['S band']))
     for way in ('both', 'both, S band silent'):
         assert not np.isnan(scene[way].position).any()
-    assert np.isnan(scene['S band'].position[:, -1]).mean() > 0.9     # the boat
+    assert np.isnan(scene['S band'].position[:, -1]).mean() > 0.9  # the boat
 
 
 def test_the_ratio_has_an_interval_that_holds_it():
     rng = np.random.default_rng(2)
     square = rng.chisquare(8, 60)
     value, low, high = two_radars._ratio(1.1 * square, square, rng)
-    assert (low, value, high) == pytest.approx((np.sqrt(1.1),) * 3)     # pairs are kept together
+    assert (low, value, high) == pytest.approx((np.sqrt(1.1),) * 3)  # pairs are kept together
     value, low, high = two_radars._ratio(rng.chisquare(8, 60), square, rng)
     assert low < value < high and low > 0.7 and high < 1.4
 

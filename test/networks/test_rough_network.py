@@ -13,6 +13,7 @@ def random_inputs(count, neurons, seed=3):
 
 def by_hand(network, inputs):
     """[lower, upper] of the output node for one sample, node by node as the paper writes it."""
+
     def f(x):
         return 2 / (1 + np.exp(-x)) - 1
 
@@ -22,8 +23,11 @@ def by_hand(network, inputs):
         in_lower = sum(wl * low + wu * up for (low, up), (wl, wu) in zip(below, to_lower))
         a, b = f(in_upper - theta[1]), f(in_lower - theta[0])
         return min(a, b), max(a, b)
-    hidden = [node(inputs, network.inner[:, :, j, 0], network.inner[:, :, j, 1],
-                   network.inner_theta[j]) for j in range(6)]
+
+    hidden = [
+        node(inputs, network.inner[:, :, j, 0], network.inner[:, :, j, 1], network.inner_theta[j])
+        for j in range(6)
+    ]
     return node(hidden, network.outer[:, :, 0], network.outer[:, :, 1], network.outer_theta)
 
 
@@ -56,11 +60,16 @@ def test_one_neuron_to_a_node_is_the_plain_network():
 def test_alike_neurons_and_inputs_make_a_rough_network_a_plain_one():
     plain = net.draw(PLAIN, np.random.default_rng(2), 1.0)
     form = np.eye(2)
-    rough = net.Network(plain.inner * form[None, :, None], np.repeat(plain.inner_theta, 2, 1),
-                        plain.outer * form, np.repeat(plain.outer_theta, 2))
+    rough = net.Network(
+        plain.inner * form[None, :, None],
+        np.repeat(plain.inner_theta, 2, 1),
+        plain.outer * form,
+        np.repeat(plain.outer_theta, 2),
+    )
     x = random_inputs(50, 1)
-    np.testing.assert_allclose(net.forward(rough, np.repeat(x, 2, 2)), net.forward(plain, x),
-                               rtol=1e-12)
+    np.testing.assert_allclose(
+        net.forward(rough, np.repeat(x, 2, 2)), net.forward(plain, x), rtol=1e-12
+    )
 
 
 @pytest.mark.parametrize('form', [ROUGH, PLAIN], ids=['rough', 'plain'])
@@ -72,8 +81,9 @@ def test_the_gradient_is_that_of_finite_differences(form):
     assert found.shape == (30, len(vector))
     for i in range(len(vector)):
         moved = step * (np.arange(len(vector)) == i)
-        ahead, behind = (net.forward(net.from_vector(v, form), inputs)
-                         for v in (vector + moved, vector - moved))
+        ahead, behind = (
+            net.forward(net.from_vector(v, form), inputs) for v in (vector + moved, vector - moved)
+        )
         np.testing.assert_allclose(found[:, i], (ahead - behind) / (2 * step), atol=1e-8)
 
 

@@ -34,16 +34,18 @@ def test_what_is_saved_is_what_is_loaded(kind, tmp_path):
 def test_a_wrong_bit_is_noticed_wherever_it_is(tmp_path):
     whole = rough_weights.shipped('rough').read_bytes()
     file = tmp_path / 'w.npz'
-    for place in range(100, len(whole) - 1500, 37):      # the end is the archive's own index
-        file.write_bytes(whole[:place] + bytes([whole[place] ^ 4]) + whole[place + 1:])
+    for place in range(100, len(whole) - 1500, 37):  # the end is the archive's own index
+        file.write_bytes(whole[:place] + bytes([whole[place] ^ 4]) + whole[place + 1 :])
         try:
             found = rough_weights.load(file, 'rough')
         except ValueError:
             continue
         # Some bytes of an archive mean nothing: then all must be as it was.
-        for one, other in zip(found.network + found.quiet,
-                              cs_rough_nn.weights('rough').network
-                              + cs_rough_nn.weights('rough').quiet, strict=True):
+        for one, other in zip(
+            found.network + found.quiet,
+            cs_rough_nn.weights('rough').network + cs_rough_nn.weights('rough').quiet,
+            strict=True,
+        ):
             np.testing.assert_array_equal(one, other)
 
 
@@ -52,15 +54,18 @@ def test_files_that_are_none_are_refused(tmp_path):
     with pytest.raises(ValueError, match=r'w\.npz cannot be read: No such file'):
         rough_weights.load(file, 'rough')
     whole = rough_weights.shipped('rough').read_bytes()
-    for text in (b'', b'nothing', whole[:len(whole) // 2]):
+    for text in (b'', b'nothing', whole[: len(whole) // 2]):
         file.write_bytes(text)
         with pytest.raises(ValueError, match='no file of `marine_tracker train rough_nn`'):
             rough_weights.load(file, 'rough')
 
 
 def test_weights_of_another_network_are_refused(tmp_path):
-    with pytest.raises(ValueError, match=r'another network: inner has shape \(3, 1, 6, 1\); it '
-                                         r'must be \(3, 2, 6, 2\)'):
+    with pytest.raises(
+        ValueError,
+        match=r'another network: inner has shape \(3, 1, 6, 1\); it '
+        r'must be \(3, 2, 6, 2\)',
+    ):
         rough_weights.load(rough_weights.shipped('bp'), 'rough')
     with pytest.raises(ValueError, match='does not hold the right arrays'):
         rough_weights.load(weight_file.FOLDER / 'gwnn_ship.npz', 'rough')

@@ -50,8 +50,9 @@ def test_hidden_units_are_the_scaling_functions_and_wavelets_of_the_paper():
     expected = [(2, k, wavelets.scaling) for k in shifts]
     expected += [(m, k, wavelets.wavelet) for m in range(3) for k in shifts]
     for unit, (m, k, shape) in enumerate(expected):
-        np.testing.assert_allclose(value[:, unit], 2 ** (-m / 2) * shape(t / 2 ** m - k, 1.2),
-                                   atol=1e-14)
+        np.testing.assert_allclose(
+            value[:, unit], 2 ** (-m / 2) * shape(t / 2**m - k, 1.2), atol=1e-14
+        )
 
 
 def test_plain_units_are_the_sigmoid_of_the_input_layer(inputs):
@@ -101,7 +102,8 @@ def test_jacobian_is_that_of_differences(either, inputs):
         push = np.zeros(INPUTS)
         push[i] = step
         slope = (net.forward(either, inputs + push) - net.forward(either, inputs - push)) / (
-            2 * step)
+            2 * step
+        )
         np.testing.assert_allclose(found[:, :, i], slope, rtol=1e-6, atol=1e-8)
 
 
@@ -111,19 +113,26 @@ def test_gradients_are_those_of_differences(either, inputs, part):
 
     def loss(one):
         return 0.5 * np.square(net.forward(one, inputs) - target).sum()
+
     form = net.units(either.layout)
     layer = net.squash(either, inputs)
     value, tanh = net.hidden(form, layer @ either.inner)
-    gradients = dict(zip(('inner', 'outer', 'bias'), net.backward(
-        either, form, layer, value, tanh, net.forward(either, inputs) - target)))
+    gradients = dict(
+        zip(
+            ('inner', 'outer', 'bias'),
+            net.backward(either, form, layer, value, tanh, net.forward(either, inputs) - target),
+        )
+    )
     weights = getattr(either, part)
     rng = np.random.default_rng(7)
     for _ in range(20):
         at = tuple(rng.integers(0, size) for size in weights.shape)
         push = np.zeros_like(weights)
         push[at] = 1e-6
-        slope = (loss(either._replace(**{part: weights + push}))
-                 - loss(either._replace(**{part: weights - push}))) / 2e-6
+        slope = (
+            loss(either._replace(**{part: weights + push}))
+            - loss(either._replace(**{part: weights - push}))
+        ) / 2e-6
         assert gradients[part][at] == pytest.approx(slope, rel=1e-5, abs=1e-7)
 
 
@@ -144,9 +153,12 @@ def test_adam_trains_it_to_a_function_of_two_variables():
         layer = net.squash(network, x)
         value, tanh = net.hidden(form, layer @ network.inner)
         error = value @ net.connect(network.outer) + network.bias - x[:, :1] * x[:, 1:]
-        moments = adam.step(parameters, net.backward(network, form, layer, value, tanh,
-                                                     error / len(x)),
-                            moments, adam.cosine(step, 300, 0.02, 10))
+        moments = adam.step(
+            parameters,
+            net.backward(network, form, layer, value, tanh, error / len(x)),
+            moments,
+            adam.cosine(step, 300, 0.02, 10),
+        )
     x = np.random.default_rng(9).normal(size=(2000, 2))
     error = net.forward(network, x)[:, 0] - x[:, 0] * x[:, 1]
     assert np.square(error).mean() < 0.1

@@ -9,7 +9,7 @@ import threading
 import time
 from pathlib import Path
 
-os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'         # before any message is imported
+os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'  # before any message is imported
 
 import pytest
 
@@ -17,7 +17,7 @@ from marine_tracker.processes import end_with_parent
 
 HERE = Path(__file__).resolve().parent
 CHECKOUT = HERE.parents[1]
-PATIENCE = 60.0                                     # s, for what takes one second when idle
+PATIENCE = 60.0  # s, for what takes one second when idle
 
 
 def pytest_collection_modifyitems(items):
@@ -32,6 +32,7 @@ def domain():
     """A ROS domain that nobody else on this machine uses."""
     pytest.importorskip('rclpy', reason='no rclpy: the nodes are not tested')
     from marine_tracker.nodes import domain as domains
+
     os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
     with contextlib.ExitStack() as stack:
         try:
@@ -62,9 +63,11 @@ class Graph:
         import rclpy
         from rclpy.context import Context
         from rclpy.executors import SingleThreadedExecutor
+
         self.context = Context()
-        rclpy.init(context=self.context,
-                   signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+        rclpy.init(
+            context=self.context, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO
+        )
         self.executor = SingleThreadedExecutor(context=self.context)
         self.nodes, self.errors = [], []
         self._stop = threading.Event()
@@ -87,14 +90,21 @@ class Graph:
     def make(self, kind, arguments=(), **parameters):
         """A node of this package with parameters and ROS arguments."""
         from rclpy.parameter import Parameter
-        return self.add(kind(
-            context=self.context, cli_args=['--ros-args', *arguments] if arguments else None,
-            parameter_overrides=[Parameter(name, value=value)
-                                 for name, value in parameters.items()]))
+
+        return self.add(
+            kind(
+                context=self.context,
+                cli_args=['--ros-args', *arguments] if arguments else None,
+                parameter_overrides=[
+                    Parameter(name, value=value) for name, value in parameters.items()
+                ],
+            )
+        )
 
     def bystander(self, name='bystander', namespace=''):
         """A plain node to publish and listen with."""
         from rclpy.node import Node
+
         return self.add(Node(name, namespace=namespace, context=self.context))
 
     def close(self):
@@ -143,8 +153,13 @@ class Process:
         with open(self.log, 'wb') as log:
             self.process = subprocess.Popen(
                 [sys.executable, '-m', *f'marine_tracker.{module}'.split(), *arguments],
-                cwd=CHECKOUT, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
-                env={**os.environ, 'PYTHONUNBUFFERED': '1'}, preexec_fn=end_with_parent)
+                cwd=CHECKOUT,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                env={**os.environ, 'PYTHONUNBUFFERED': '1'},
+                preexec_fn=end_with_parent,
+            )
 
     @property
     def said(self):
@@ -153,7 +168,8 @@ class Process:
     def says(self, text):
         """Wait until it has written the text."""
         return wait_until(lambda: text in self.said or self.process.poll() is not None) and (
-            text in self.said)
+            text in self.said
+        )
 
     def send(self, number):
         self.process.send_signal(number)
@@ -176,6 +192,7 @@ def launch(domain, tmp_path):
     def start(module, *arguments):
         processes.append(Process(tmp_path, module, arguments))
         return processes[-1]
+
     yield start
     for one in processes:
         if one.process.poll() is None:

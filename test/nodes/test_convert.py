@@ -18,10 +18,17 @@ SECOND = 1_000_000_000
 def scan(count=40, seed=1):
     rng = np.random.default_rng(seed)
     time = np.sort(rng.uniform(0, 2.7, count)) + 100.0
-    plots = PolarPlots(time, rng.uniform(100, 20e3, count), rng.uniform(0, 2 * np.pi, count),
-                       rng.uniform(5, 30, count))
-    own_ship = OwnShip(np.array([100.0, 102.7]), np.array([[3e3, -1e3], [3e3, -979.0]]),
-                       np.array([[0.0, 7.8], [0.0, 7.8]]))
+    plots = PolarPlots(
+        time,
+        rng.uniform(100, 20e3, count),
+        rng.uniform(0, 2 * np.pi, count),
+        rng.uniform(5, 30, count),
+    )
+    own_ship = OwnShip(
+        np.array([100.0, 102.7]),
+        np.array([[3e3, -1e3], [3e3, -979.0]]),
+        np.array([[0.0, 7.8], [0.0, 7.8]]),
+    )
     return Scan(100.0, 102.7, plots, own_ship)
 
 
@@ -31,20 +38,32 @@ def over_the_wire(message):
 
 def cloud(names=convert.PLOT_FIELDS, kind='<f4', count=3, gap=0):
     """A cloud whose field `name` holds 1, 2, 3 times its place in PLOT_FIELDS."""
-    rows = np.zeros(count, {'names': list(names), 'formats': [kind] * len(names),
-                            'offsets': [gap + k * (np.dtype(kind).itemsize + gap)
-                                        for k in range(len(names))],
-                            'itemsize': len(names) * (np.dtype(kind).itemsize + gap) + gap})
+    rows = np.zeros(
+        count,
+        {
+            'names': list(names),
+            'formats': [kind] * len(names),
+            'offsets': [gap + k * (np.dtype(kind).itemsize + gap) for k in range(len(names))],
+            'itemsize': len(names) * (np.dtype(kind).itemsize + gap) + gap,
+        },
+    )
     for name in names:
         place = convert.PLOT_FIELDS.index(name) if name in convert.PLOT_FIELDS else 99
         rows[name] = place * np.arange(1, count + 1)
     datatype = {'f4': PointField.FLOAT32, 'f8': PointField.FLOAT64}[kind[1:]]
-    fields = [PointField(name=name, offset=rows.dtype.fields[name][1], datatype=datatype, count=1)
-              for name in names]
+    fields = [
+        PointField(name=name, offset=rows.dtype.fields[name][1], datatype=datatype, count=1)
+        for name in names
+    ]
     return PointCloud2(
-        height=1, width=count, fields=fields, is_bigendian=kind[0] == '>',
-        point_step=rows.dtype.itemsize, row_step=rows.nbytes,
-        data=array.array('B', rows.tobytes()))
+        height=1,
+        width=count,
+        fields=fields,
+        is_bigendian=kind[0] == '>',
+        point_step=rows.dtype.itemsize,
+        row_step=rows.nbytes,
+        data=array.array('B', rows.tobytes()),
+    )
 
 
 def test_a_scan_goes_out_and_comes_back():
@@ -107,9 +126,15 @@ def test_an_empty_scan_goes_out_and_comes_back():
     assert all(len(column) == 0 for column in convert.cloud_to_plots(message)[:4])
 
 
-@pytest.mark.parametrize('names', [
-    convert.PLOT_FIELDS, convert.NEEDED, tuple(reversed(convert.PLOT_FIELDS)),
-    ('doppler', *convert.NEEDED, 'quality')])
+@pytest.mark.parametrize(
+    'names',
+    [
+        convert.PLOT_FIELDS,
+        convert.NEEDED,
+        tuple(reversed(convert.PLOT_FIELDS)),
+        ('doppler', *convert.NEEDED, 'quality'),
+    ],
+)
 @pytest.mark.parametrize('kind', ['<f4', '<f8', '>f4', '>f8'])
 @pytest.mark.parametrize('gap', [0, 3])
 def test_any_layout_that_has_what_is_needed_is_read(names, kind, gap):
@@ -149,31 +174,34 @@ def with_field(**values):
     return message
 
 
-@pytest.mark.parametrize('message, reason', [
-    (without('range'), convert.MISSING_FIELD),
-    (without('bearing'), convert.MISSING_FIELD),
-    (without('amplitude'), convert.MISSING_FIELD),
-    (without('time_offset'), convert.MISSING_FIELD),
-    (changed(fields=[]), convert.MISSING_FIELD),
-    (with_field(datatype=PointField.INT32), convert.MISTYPED_FIELD),
-    (with_field(datatype=0), convert.MISTYPED_FIELD),
-    (with_field(datatype=200), convert.MISTYPED_FIELD),
-    (with_field(count=2), convert.MISTYPED_FIELD),
-    (with_field(name='bearing'), convert.BAD_LAYOUT),
-    (with_field(offset=26), convert.BAD_LAYOUT),
-    (with_field(offset=2 ** 32 - 1), convert.BAD_LAYOUT),
-    (changed(point_step=0), convert.BAD_LAYOUT),
-    (changed(point_step=20), convert.BAD_LAYOUT),
-    (changed(row_step=0), convert.BAD_LAYOUT),
-    (changed(row_step=83), convert.BAD_LAYOUT),
-    (changed(row_step=85), convert.TRUNCATED),
-    (changed(width=2 ** 32 - 1), convert.BAD_LAYOUT),
-    (changed(height=2 ** 32 - 1), convert.TRUNCATED),
-    (changed(width=0), convert.BAD_LAYOUT),
-    (changed(data=array.array('B', bytes(83))), convert.TRUNCATED),
-    (changed(data=array.array('B')), convert.TRUNCATED),
-    (changed(data=array.array('B', bytes(85))), convert.BAD_LAYOUT),
-])
+@pytest.mark.parametrize(
+    'message, reason',
+    [
+        (without('range'), convert.MISSING_FIELD),
+        (without('bearing'), convert.MISSING_FIELD),
+        (without('amplitude'), convert.MISSING_FIELD),
+        (without('time_offset'), convert.MISSING_FIELD),
+        (changed(fields=[]), convert.MISSING_FIELD),
+        (with_field(datatype=PointField.INT32), convert.MISTYPED_FIELD),
+        (with_field(datatype=0), convert.MISTYPED_FIELD),
+        (with_field(datatype=200), convert.MISTYPED_FIELD),
+        (with_field(count=2), convert.MISTYPED_FIELD),
+        (with_field(name='bearing'), convert.BAD_LAYOUT),
+        (with_field(offset=26), convert.BAD_LAYOUT),
+        (with_field(offset=2**32 - 1), convert.BAD_LAYOUT),
+        (changed(point_step=0), convert.BAD_LAYOUT),
+        (changed(point_step=20), convert.BAD_LAYOUT),
+        (changed(row_step=0), convert.BAD_LAYOUT),
+        (changed(row_step=83), convert.BAD_LAYOUT),
+        (changed(row_step=85), convert.TRUNCATED),
+        (changed(width=2**32 - 1), convert.BAD_LAYOUT),
+        (changed(height=2**32 - 1), convert.TRUNCATED),
+        (changed(width=0), convert.BAD_LAYOUT),
+        (changed(data=array.array('B', bytes(83))), convert.TRUNCATED),
+        (changed(data=array.array('B')), convert.TRUNCATED),
+        (changed(data=array.array('B', bytes(85))), convert.BAD_LAYOUT),
+    ],
+)
 def test_a_broken_cloud_is_refused_by_name(message, reason):
     with pytest.raises(convert.ConversionError) as error:
         convert.cloud_to_plots(message)
@@ -194,7 +222,7 @@ def test_random_clouds_are_read_or_refused_and_nothing_else():
                 field = message.fields[int(rng.integers(0, 7))]
                 field.datatype, field.offset = int(rng.integers(0, 12)), int(rng.integers(0, 60))
             else:
-                setattr(message, name, int(rng.choice([0, 1, 2, 28, 84, 2 ** 31, 2 ** 32 - 1])))
+                setattr(message, name, int(rng.choice([0, 1, 2, 28, 84, 2**31, 2**32 - 1])))
         try:
             got = convert.cloud_to_plots(message)
             outcomes.add('read')
@@ -228,7 +256,7 @@ def test_own_ship_goes_out_and_comes_back(velocity):
 def test_a_heading_that_is_not_the_course_turns_the_twist():
     message = Odometry()
     message.pose.pose.orientation.z = message.pose.pose.orientation.w = np.sqrt(0.5).item()
-    message.twist.twist.linear.x, message.twist.twist.linear.y = 8.0, 1.0    # heading north, set W
+    message.twist.twist.linear.x, message.twist.twist.linear.y = 8.0, 1.0  # heading north, set W
     assert convert.odometry_to_own_ship(message)[1] == pytest.approx([-1.0, 8.0])
 
 
@@ -247,9 +275,16 @@ def test_odometry_carries_the_estimate_and_its_covariance():
     position, velocity = rng.normal(size=(3, 2)) * 1e3, rng.normal(size=(3, 2)) * 10
     pool = convert.OdometryPool()
     pool.fill(np.zeros(3, int), ['x'] * 3, position * 0 + 1, velocity * 0 + 1, covariance * 9)
-    messages = [over_the_wire(message) for message in pool.fill(
-        np.array([1, 2, 3]) * SECOND + 5, ['track_01', 'track_02', 'track_03'], position,
-        velocity, covariance)]
+    messages = [
+        over_the_wire(message)
+        for message in pool.fill(
+            np.array([1, 2, 3]) * SECOND + 5,
+            ['track_01', 'track_02', 'track_03'],
+            position,
+            velocity,
+            covariance,
+        )
+    ]
     for k, message in enumerate(messages):
         assert convert.nanoseconds(message.header.stamp) == (k + 1) * SECOND + 5
         pose, twist = message.pose, message.twist
@@ -268,5 +303,6 @@ def test_odometry_carries_the_estimate_and_its_covariance():
 
 def test_the_course_of_a_target_at_rest_is_as_uncertain_as_can_be():
     message = convert.OdometryPool().fill(
-        np.array([0]), ['track_01'], np.zeros((1, 2)), np.zeros((1, 2)), np.eye(4)[None])[0]
-    assert message.pose.covariance[35] == pytest.approx(np.pi ** 2 / 3)
+        np.array([0]), ['track_01'], np.zeros((1, 2)), np.zeros((1, 2)), np.eye(4)[None]
+    )[0]
+    assert message.pose.covariance[35] == pytest.approx(np.pi**2 / 3)

@@ -16,9 +16,15 @@ def start(domain):
     rclpy.init(context=context)
 
     def make(*arguments):
-        nodes.append(Node('tracker', context=context,
-                          cli_args=['--ros-args', *arguments] if arguments else None))
+        nodes.append(
+            Node(
+                'tracker',
+                context=context,
+                cli_args=['--ros-args', *arguments] if arguments else None,
+            )
+        )
         return nodes[-1]
+
     yield make
     for node in nodes:
         node.destroy_node()
@@ -36,33 +42,40 @@ def test_defaults_are_those_of_the_dataclass(start):
 def test_a_parameter_file_is_read(start, tmp_path):
     file = tmp_path / 'own.yaml'
     file.write_text('/**:\n  ros__parameters:\n    range_sigma_m: 40.0\n    confirm_hits: 3\n')
-    parameters, = declare(start('--params-file', str(file)), TrackerParameters)
+    (parameters,) = declare(start('--params-file', str(file)), TrackerParameters)
     assert parameters == TrackerParameters(range_sigma_m=40.0, confirm_hits=3)
 
 
 @pytest.mark.parametrize('node, kinds', NODES.items())
 def test_the_shipped_parameter_file_is_the_defaults(start, node, kinds):
     from marine_tracker import config
+
     path = config.path(f'{node}.yaml')
     assert declare(start('--params-file', str(path)), *kinds) == tuple(kind() for kind in kinds)
 
 
-@pytest.mark.parametrize('text, said', [
-    ('estimatr:=imm', 'unknown parameter estimatr; did you mean estimator?'),
-    ('nested.thing:=1', 'unknown parameter nested.thing'),
-    ('range_sigma_m:=15', r'range_sigma_m is 15, an integer; it must be a double \(write 15.0\)'),
-    ('confirm_hits:=4.0', 'confirm_hits is 4.0, a double; it must be an integer'),
-    ('confirm_hits:=true', 'confirm_hits is True, a bool; it must be an integer'),
-    ('estimator:=1', 'estimator is 1, an integer; it must be a string'),
-    ('max_plots:=[1, 2]', r'max_plots is .*a list; it must be an integer'),
-    ('confirm_hits:=[]', 'confirm_hits has no value'),
-    ('range_sigma_m:=0.0', 'range_sigma_m is 0 m; it must be between 0.1 and 1000'),
-    ('range_sigma_m:=.nan', 'range_sigma_m is nan; it must be finite'),
-    ('range_sigma_m:=.inf', 'range_sigma_m is inf; it must be finite'),
-    ('confirm_hits:=21', 'confirm_hits is 21; it must be between 2 and 20'),
-    ('estimator:=kalmann', "estimator is 'kalmann'; it must be one of"),
-    ('confirm_hits:=20', 'confirm_hits is 20; it must not exceed confirm_scans'),
-])
+@pytest.mark.parametrize(
+    'text, said',
+    [
+        ('estimatr:=imm', 'unknown parameter estimatr; did you mean estimator?'),
+        ('nested.thing:=1', 'unknown parameter nested.thing'),
+        (
+            'range_sigma_m:=15',
+            r'range_sigma_m is 15, an integer; it must be a double \(write 15.0\)',
+        ),
+        ('confirm_hits:=4.0', 'confirm_hits is 4.0, a double; it must be an integer'),
+        ('confirm_hits:=true', 'confirm_hits is True, a bool; it must be an integer'),
+        ('estimator:=1', 'estimator is 1, an integer; it must be a string'),
+        ('max_plots:=[1, 2]', r'max_plots is .*a list; it must be an integer'),
+        ('confirm_hits:=[]', 'confirm_hits has no value'),
+        ('range_sigma_m:=0.0', 'range_sigma_m is 0 m; it must be between 0.1 and 1000'),
+        ('range_sigma_m:=.nan', 'range_sigma_m is nan; it must be finite'),
+        ('range_sigma_m:=.inf', 'range_sigma_m is inf; it must be finite'),
+        ('confirm_hits:=21', 'confirm_hits is 21; it must be between 2 and 20'),
+        ('estimator:=kalmann', "estimator is 'kalmann'; it must be one of"),
+        ('confirm_hits:=20', 'confirm_hits is 20; it must not exceed confirm_scans'),
+    ],
+)
 def test_a_wrong_parameter_stops_the_start_and_is_named(start, text, said):
     with pytest.raises(ValueError, match=said):
         declare(start(*given(text)), TrackerParameters)
@@ -79,8 +92,10 @@ def test_descriptors_tell_text_unit_and_limits(start):
     declare(node, TrackerParameters)
     sigma = node.describe_parameter('range_sigma_m')
     assert sigma.description == 'Standard deviation of a measured range. [m]'
-    assert (sigma.floating_point_range[0].from_value,
-            sigma.floating_point_range[0].to_value) == (0.1, 1000.0)
+    assert (sigma.floating_point_range[0].from_value, sigma.floating_point_range[0].to_value) == (
+        0.1,
+        1000.0,
+    )
     assert not sigma.read_only
     assert node.describe_parameter('scan_period_s').read_only
     assert node.describe_parameter('confirm_hits').integer_range[0].to_value == 20
@@ -96,10 +111,17 @@ def test_a_live_change_is_applied_after_it_was_accepted(start):
     assert applied == [TrackerParameters(estimator='cs_kalman')]
 
 
-@pytest.mark.parametrize('name, value, said', [
-    ('range_sigma_m', -1.0, 'range'), ('estimator', 'kalmann', 'one of'),
-    ('confirm_hits', 20, 'must not exceed'), ('scan_period_s', 3.0, 'read-only'),
-    ('range_sigma_m', float('nan'), ''), ('range_sigma_m', 5, 'type')])
+@pytest.mark.parametrize(
+    'name, value, said',
+    [
+        ('range_sigma_m', -1.0, 'range'),
+        ('estimator', 'kalmann', 'one of'),
+        ('confirm_hits', 20, 'must not exceed'),
+        ('scan_period_s', 3.0, 'read-only'),
+        ('range_sigma_m', float('nan'), ''),
+        ('range_sigma_m', 5, 'type'),
+    ],
+)
 def test_a_live_change_that_is_wrong_is_refused_and_nothing_is_applied(start, name, value, said):
     node, applied = start(), []
     declare(node, TrackerParameters)
@@ -114,19 +136,22 @@ def test_several_changes_at_once_are_judged_together(start):
     node, applied = start(), []
     declare(node, TrackerParameters)
     follow(node, TrackerParameters, lambda made: made, applied.append)
-    result = node.set_parameters_atomically([
-        Parameter('confirm_hits', value=15), Parameter('confirm_scans', value=16)])
+    result = node.set_parameters_atomically(
+        [Parameter('confirm_hits', value=15), Parameter('confirm_scans', value=16)]
+    )
     assert result.successful
     assert applied == [TrackerParameters(confirm_hits=15, confirm_scans=16)]
 
 
 def test_a_change_another_callback_refuses_is_not_applied(start):
     from rcl_interfaces.msg import SetParametersResult
+
     node, applied = start(), []
     declare(node, TrackerParameters)
     follow(node, TrackerParameters, lambda made: made, applied.append)
     node.add_on_set_parameters_callback(
-        lambda _: SetParametersResult(successful=False, reason='not now'))
+        lambda _: SetParametersResult(successful=False, reason='not now')
+    )
     assert not node.set_parameters([Parameter('estimator', value='cs_kalman')])[0].successful
     assert applied == []
 

@@ -12,8 +12,10 @@ from marine_tracker.nodes import domain as domains
 @pytest.fixture
 def demo(launch):
     with domains.free_domain() as number:
+
         def start(*arguments):
             return launch('__main__', 'demo', '--domain', str(number), *arguments)
+
         yield start
 
 
@@ -36,8 +38,9 @@ def nodes(process):
 
 
 def gone(processes):
-    return not [one for one in processes if one.is_running()
-                and one.status() != psutil.STATUS_ZOMBIE]
+    return not [
+        one for one in processes if one.is_running() and one.status() != psutil.STATUS_ZOMBIE
+    ]
 
 
 def test_targets_show_and_ctrl_c_ends_it_all(demo, node_helpers):
@@ -64,13 +67,18 @@ def test_dangers_are_marked_and_listed_below(demo):
 
 def test_a_recording_is_shown_with_the_parameters_of_its_radar(demo, node_helpers, recordings):
     wait, _ = node_helpers
-    process = demo('--recording', str(recordings / 'autosea_joyride'), '--rate', '25',
-                   '--estimator', 'imm')
-    assert process.says('TRACKING'), process.said      # the boat; its number may have changed
+    process = demo(
+        '--recording', str(recordings / 'autosea_joyride'), '--rate', '25', '--estimator', 'imm'
+    )
+    assert process.says('TRACKING'), process.said  # the boat; its number may have changed
     words = ' '.join(nodes(process)['tracker'].cmdline())
-    for assignment in ('range_sigma_m:=12.0', 'bearing_sigma_deg:=0.8',
-                       'vessel_class:="small_craft"', 'estimator:="imm"',
-                       'use_sim_time:=true'):
+    for assignment in (
+        'range_sigma_m:=12.0',
+        'bearing_sigma_deg:=0.8',
+        'vessel_class:="small_craft"',
+        'estimator:="imm"',
+        'use_sim_time:=true',
+    ):
         assert assignment in words
     process.stop(signal.SIGTERM)
 
@@ -92,8 +100,10 @@ def test_it_ends_by_itself_after_its_duration(demo):
 
 def test_it_ends_with_the_scenario(demo, tmp_path):
     file = tmp_path / 'short.yaml'
-    file.write_text('duration_s: 20\nown_ship: {course_deg: 0, speed_kn: 0}\ntargets:\n'
-                    '  - {start: {range_nm: 2, bearing_deg: 10}, course_deg: 0, speed_kn: 9}\n')
+    file.write_text(
+        'duration_s: 20\nown_ship: {course_deg: 0, speed_kn: 0}\ntargets:\n'
+        '  - {start: {range_nm: 2, bearing_deg: 10}, course_deg: 0, speed_kn: 9}\n'
+    )
     process = demo('--scenario', str(file), '--rate', '20')
     assert process.ends() == 0, process.said
 
@@ -116,9 +126,15 @@ def test_nodes_do_not_outlive_a_demo_that_is_killed(demo, node_helpers):
     wait(lambda: gone(started.values()))
 
 
-@pytest.mark.parametrize('arguments, said', [
-    (('--scenario', 'atlantis'), 'atlantis'), (('--rate', '0'), 'parameter rate is 0'),
-    (('--recording', '/nowhere'), '/nowhere'), (('--seed', '-3'), 'parameter seed is -3')])
+@pytest.mark.parametrize(
+    'arguments, said',
+    [
+        (('--scenario', 'atlantis'), 'atlantis'),
+        (('--rate', '0'), 'parameter rate is 0'),
+        (('--recording', '/nowhere'), '/nowhere'),
+        (('--seed', '-3'), 'parameter seed is -3'),
+    ],
+)
 def test_wrong_arguments_are_told_before_anything_starts(demo, arguments, said):
     process = demo(*arguments)
     assert process.ends() == 2

@@ -26,6 +26,7 @@ def publisher(own_domain):
     from rclpy.context import Context
     from rclpy.signals import SignalHandlerOptions
     from sensor_msgs.msg import PointCloud2
+
     context = Context()
     rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
     node = rclpy.create_node('driver', context=context)
@@ -61,8 +62,13 @@ def test_a_namespace_has_its_own_topics(publisher):
 
 def test_the_plots_of_every_radar_that_a_tracker_listens_to_are_looked_for(own_domain, publisher):
     from marine_tracker.nodes.tracker_node import TrackerNode
-    tracker = TrackerNode(context=publisher.context, parameter_overrides=[
-        rclpy.Parameter('radars', value='[{topic: radar/plots}, {topic: port/echoes}]')])
+
+    tracker = TrackerNode(
+        context=publisher.context,
+        parameter_overrides=[
+            rclpy.Parameter('radars', value='[{topic: radar/plots}, {topic: port/echoes}]')
+        ],
+    )
     try:
         checks = {check.name: check for check in doctor.examine(3.0)}
     finally:

@@ -22,9 +22,9 @@ from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.tracker_node import FAILED
 from marine_tracker.simulation import radar, scenario
 
-EPOCH_NS = 1_700_000_000 * 10 ** 9
+EPOCH_NS = 1_700_000_000 * 10**9
 TARGETS = [f'TT{n:02d}' for n in range(1, 7)]
-WARM = 30                   # scans until all targets are confirmed and warm
+WARM = 30  # scans until all targets are confirmed and warm
 
 
 @pytest.fixture(scope='module')
@@ -41,25 +41,40 @@ class Watch:
         self.scans = iter(scans)
         # Dangers have a level of their own, which would hide that of a fallback.
         given = {**scenario.load('clean').tracker_parameters(), 'cpa_limit_nm': 0.01, **parameters}
-        self.process = launch('nodes.run tracker', '--ros-args', *(
-            word for name, value in given.items()
-            for word in ('-p', f'{name}:={float(value) if type(value) is int else value}')))
+        self.process = launch(
+            'nodes.run tracker',
+            '--ros-args',
+            *(
+                word
+                for name, value in given.items()
+                for word in ('-p', f'{name}:={float(value) if type(value) is int else value}')
+            ),
+        )
         self.node = graph.bystander()
         self.plots = self.node.create_publisher(PointCloud2, topics.PLOTS, topics.reliable())
         self.own_ship = self.node.create_publisher(Odometry, topics.ODOMETRY, topics.reliable())
         self.client = self.node.create_client(SetParameters, '/tracker/set_parameters')
-        self.ears = {topic: listener(self.node, kind, topic, quality) for kind, topic, quality in (
-            (Odometry, topics.TRACKS, topics.reliable(topics.BURST)),
-            (Odometry, topics.EXTRAPOLATIONS, topics.reliable(topics.BURST)),
-            (PointCloud2, topics.TRACKS_CLOUD, topics.reliable()),
-            (DiagnosticArray, topics.TARGETS, topics.latched(50)),
-            (MarkerArray, topics.MARKERS, topics.reliable()),
-            (DiagnosticArray, topics.ALARMS, topics.latched(10)),
-            (DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()))}
+        self.ears = {
+            topic: listener(self.node, kind, topic, quality)
+            for kind, topic, quality in (
+                (Odometry, topics.TRACKS, topics.reliable(topics.BURST)),
+                (Odometry, topics.EXTRAPOLATIONS, topics.reliable(topics.BURST)),
+                (PointCloud2, topics.TRACKS_CLOUD, topics.reliable()),
+                (DiagnosticArray, topics.TARGETS, topics.latched(50)),
+                (MarkerArray, topics.MARKERS, topics.reliable()),
+                (DiagnosticArray, topics.ALARMS, topics.latched(10)),
+                (DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()),
+            )
+        }
         self.targets = self.ears[topics.TARGETS]
-        self.wait(lambda: self.plots.get_subscription_count()
-                  and self.own_ship.get_subscription_count() and self.client.service_is_ready()
-                  and all(ear.connected for ear in self.ears.values()))
+        self.wait(
+            lambda: (
+                self.plots.get_subscription_count()
+                and self.own_ship.get_subscription_count()
+                and self.client.service_is_ready()
+                and all(ear.connected for ear in self.ears.values())
+            )
+        )
         self.wait(lambda: len(self.ears[topics.DIAGNOSTICS]))
 
     def play(self, count):
@@ -69,35 +84,58 @@ class Watch:
             before = len(self.targets)
             end = EPOCH_NS + round(scan.end * 1e9)
             self.own_ship.publish(
-                convert.own_ship_to_odometry(end, *own_ship_at(scan.own_ship, scan.end)))
+                convert.own_ship_to_odometry(end, *own_ship_at(scan.own_ship, scan.end))
+            )
             self.plots.publish(convert.plots_to_cloud(scan, EPOCH_NS + round(scan.start * 1e9)))
             self.wait(lambda before=before: len(self.targets) > before)
-        return [{entry.name: {'level': entry.level, 'message': entry.message,
-                              **{pair.key: pair.value for pair in entry.values}}
-                 for entry in message.status} for message in self.targets.messages[heard:]]
+        return [
+            {
+                entry.name: {
+                    'level': entry.level,
+                    'message': entry.message,
+                    **{pair.key: pair.value for pair in entry.values},
+                }
+                for entry in message.status
+            }
+            for message in self.targets.messages[heard:]
+        ]
 
     def set(self, name, value):
         """What the node answers to a change of a parameter."""
-        future = self.client.call_async(SetParameters.Request(
-            parameters=[Parameter(name, value=str(value)).to_parameter_msg()]))
+        future = self.client.call_async(
+            SetParameters.Request(parameters=[Parameter(name, value=str(value)).to_parameter_msg()])
+        )
         self.wait(future.done)
         return future.result().results[0]
 
     def tracking(self, key, value):
         """The entry `tracker: tracking` of /diagnostics, once it says so."""
+
         def said():
-            entry = next(entry for entry in self.ears[topics.DIAGNOSTICS][-1].status
-                         if entry.name == 'tracker: tracking')
+            entry = next(
+                entry
+                for entry in self.ears[topics.DIAGNOSTICS][-1].status
+                if entry.name == 'tracker: tracking'
+            )
             values = {pair.key: pair.value for pair in entry.values}
             return (entry, values) if values.get(key) == value else None
+
         return self.wait(said)
 
     def fallback_alarm(self, state):
         """The entry `fallback` of `alarms`, once it is in this state."""
+
         def said():
             entries = self.ears[topics.ALARMS][-1].status if len(self.ears[topics.ALARMS]) else ()
-            return next((entry for entry in entries if entry.name == 'fallback' and state in (
-                pair.value for pair in entry.values)), None)
+            return next(
+                (
+                    entry
+                    for entry in entries
+                    if entry.name == 'fallback' and state in (pair.value for pair in entry.values)
+                ),
+                None,
+            )
+
         return self.wait(said)
 
     def check_numbers(self):
@@ -118,8 +156,11 @@ class Watch:
             for pair in (pair for entry in message.status for pair in entry.values):
                 assert pair.value not in ('nan', 'inf', '-inf'), pair.key
         for message in self.ears[topics.MARKERS].messages:
-            points = [(p.x, p.y) for marker in message.markers
-                      for p in (*marker.points, marker.pose.position)]
+            points = [
+                (p.x, p.y)
+                for marker in message.markers
+                for p in (*marker.points, marker.pose.position)
+            ]
             assert np.isfinite(points).all()
 
     def end(self):
@@ -131,6 +172,7 @@ class Watch:
 def watch(graph, launch, node_helpers, scans):
     def make(**parameters):
         return Watch(graph, launch, node_helpers, scans, **parameters)
+
     return make
 
 
@@ -139,8 +181,12 @@ def states(targets):
 
 
 def random_network(network, scale, rng):
-    return network._replace(**{array: scale * rng.normal(size=getattr(network, array).shape)
-                               for array in ('inner', 'outer', 'bias')})
+    return network._replace(
+        **{
+            array: scale * rng.normal(size=getattr(network, array).shape)
+            for array in ('inner', 'outer', 'bias')
+        }
+    )
 
 
 def bad_weights(how):
@@ -148,8 +194,10 @@ def bad_weights(how):
     good, rng = gwnn.weights(), np.random.default_rng(1)
     if how in ('random', 'huge'):
         scale = {'random': 1.0, 'huge': 1e37}[how]
-        return good._replace(fusion=random_network(good.fusion, scale, rng),
-                             spread=random_network(good.spread, scale, rng))
+        return good._replace(
+            fusion=random_network(good.fusion, scale, rng),
+            spread=random_network(good.spread, scale, rng),
+        )
     outputs, by = {'off': (gwnn.AT_ONCE, 3.0), 'wrong way': (gwnn.OF_VELOCITY, 1e3)}[how]
     bias = good.fusion.bias.copy()
     bias[outputs] += by
@@ -157,8 +205,7 @@ def bad_weights(how):
 
 
 @pytest.mark.parametrize('how', ['random', 'huge', 'off', 'wrong way'])
-def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(
-        watch, tmp_path, how):
+def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(watch, tmp_path, how):
     file = tmp_path / 'bad.npz'
     gwnn_weights.save(file, bad_weights(how))
     here = watch(estimator='gwnn')
@@ -188,7 +235,7 @@ def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(
     assert entry.level == DiagnosticStatus.WARN
     assert values['fallback reason'] in gwnn.REASONS[1:]
     assert f'targets have fallen back: {values["fallback reason"]}' in entry.message
-    alarm = here.fallback_alarm('active acknowledged')          # a caution
+    alarm = here.fallback_alarm('active acknowledged')  # a caution
     assert alarm.level == DiagnosticStatus.WARN
     assert re.fullmatch(r'[3-6] of [3-6] targets have fallen back from their filter', alarm.message)
 
@@ -205,8 +252,10 @@ def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(
 
 def not_numbers(file):
     good = gwnn.weights()
-    gwnn_weights.save(file, good._replace(fusion=good.fusion._replace(
-        bias=np.full_like(good.fusion.bias, np.nan))))
+    gwnn_weights.save(
+        file,
+        good._replace(fusion=good.fusion._replace(bias=np.full_like(good.fusion.bias, np.nan))),
+    )
 
 
 def damaged(file):
@@ -218,8 +267,11 @@ def missing(file):
     pass
 
 
-UNFIT = [(not_numbers, 'fusion_bias holds values that are not finite'),
-         (damaged, 'damaged'), (missing, 'cannot be read: No such file or directory')]
+UNFIT = [
+    (not_numbers, 'fusion_bias holds values that are not finite'),
+    (damaged, 'damaged'),
+    (missing, 'cannot be read: No such file or directory'),
+]
 
 
 def test_an_unfit_file_is_refused_while_running_and_changes_nothing(watch, tmp_path):
@@ -246,8 +298,9 @@ def test_an_unfit_file_is_refused_while_running_and_changes_nothing(watch, tmp_p
 def test_an_unfit_file_stops_the_start_in_one_line(launch, tmp_path, make, said):
     file = tmp_path / f'{make.__name__}.npz'
     make(file)
-    process = launch('nodes.run tracker', '--ros-args', '-p', 'estimator:=gwnn',
-                     '-p', f'gwnn_weights:={file}')
+    process = launch(
+        'nodes.run tracker', '--ros-args', '-p', 'estimator:=gwnn', '-p', f'gwnn_weights:={file}'
+    )
     assert process.ends() == 1
     assert process.said.startswith(f'tracker: GWNN weights {file}') and said in process.said
     assert len(process.said.splitlines()) == 1
@@ -263,7 +316,8 @@ def test_no_track_is_lost_by_changing_among_all_estimators(watch):
         for values in after[-1].values():
             assert (values['message'], values['estimator']) == ('TRACKING', name)
             assert bool(values['estimator_state']) == bool(values['rho']) == (name == 'gwnn')
-    assert not any(entry.message == 'LOST' for message in here.targets.messages
-                   for entry in message.status)
+    assert not any(
+        entry.message == 'LOST' for message in here.targets.messages for entry in message.status
+    )
     here.check_numbers()
     here.end()

@@ -27,12 +27,18 @@ def scans(targets, clutter, count):
     own_ship = OwnShip(np.zeros(1), np.zeros((1, 2)), np.zeros((1, 2)))
     for k in range(count):
         distance, bearing = to_range_bearing(position + k * PERIOD * velocity)
-        distance = np.concatenate([distance + rng.normal(0, 10, targets),
-                                   20e3 * np.sqrt(rng.uniform(0, 1, clutter))])
-        bearing = np.mod(np.concatenate([bearing + rng.normal(0, 0.005, targets),
-                                         rng.uniform(0, 2 * np.pi, clutter)]), 2 * np.pi)
-        plots = PolarPlots(bearing / (2 * np.pi) * PERIOD, distance, bearing,
-                           np.full(targets + clutter, 15.0))
+        distance = np.concatenate(
+            [distance + rng.normal(0, 10, targets), 20e3 * np.sqrt(rng.uniform(0, 1, clutter))]
+        )
+        bearing = np.mod(
+            np.concatenate(
+                [bearing + rng.normal(0, 0.005, targets), rng.uniform(0, 2 * np.pi, clutter)]
+            ),
+            2 * np.pi,
+        )
+        plots = PolarPlots(
+            bearing / (2 * np.pi) * PERIOD, distance, bearing, np.full(targets + clutter, 15.0)
+        )
         yield Scan(0.0, PERIOD, plots, own_ship)
 
 
@@ -42,15 +48,19 @@ class Load:
     def __init__(self, graph, launch, node_helpers, **parameters):
         self.wait, listener = node_helpers
         told = [f'{name}:={value}' for name, value in parameters.items()]
-        self.process = launch('nodes.run tracker', '--ros-args', *(
-            word for one in told for word in ('-p', one)))
+        self.process = launch(
+            'nodes.run tracker', '--ros-args', *(word for one in told for word in ('-p', one))
+        )
         node = graph.bystander()
         self.plots = node.create_publisher(PointCloud2, topics.PLOTS, topics.reliable())
         self.own_ship = node.create_publisher(Odometry, topics.ODOMETRY, topics.reliable())
         self.arrived = []
         node.create_subscription(
-            PointCloud2, topics.TRACKS_CLOUD,
-            lambda message: self.arrived.append((time.perf_counter(), message)), 10)
+            PointCloud2,
+            topics.TRACKS_CLOUD,
+            lambda message: self.arrived.append((time.perf_counter(), message)),
+            10,
+        )
         self.wait(lambda: self.plots.get_subscription_count())
 
     def run(self, scans, spacing):
@@ -59,8 +69,11 @@ class Load:
         for k, scan in enumerate(scans):
             while time.monotonic() < began + k * spacing:
                 now = (time.monotonic() - began) * PERIOD / spacing
-                self.own_ship.publish(convert.own_ship_to_odometry(
-                    start_ns + round(now * 1e9), [0.0, 0.0], [0.0, 0.0]))
+                self.own_ship.publish(
+                    convert.own_ship_to_odometry(
+                        start_ns + round(now * 1e9), [0.0, 0.0], [0.0, 0.0]
+                    )
+                )
                 time.sleep(0.1)
             heard, sent = len(self.arrived), time.perf_counter()
             self.plots.publish(convert.plots_to_cloud(scan, start_ns + round(k * PERIOD * 1e9)))
@@ -113,8 +126,21 @@ def test_five_hulls_cost_at_most_fifteen_percent_of_one_core(graph, launch, node
     sea = scenario.build(values, 'hulls')
     hulls = [scan for (scan, _), _ in zip(radar.simulate(sea, 1), range(34))]
     told = sea.tracker_parameters()
-    load = Load(graph, launch, node_helpers, extent=extent, **{name: told[name] for name in (
-        'range_sigma_m', 'bearing_sigma_deg', 'range_resolution_m', 'beam_width_deg')})
+    load = Load(
+        graph,
+        launch,
+        node_helpers,
+        extent=extent,
+        **{
+            name: told[name]
+            for name in (
+                'range_sigma_m',
+                'bearing_sigma_deg',
+                'range_resolution_m',
+                'beam_width_deg',
+            )
+        },
+    )
     load.run(hulls[:14], PERIOD)
     share = load.share(hulls[14:])
     print(f'extent {extent}: {100 * share:.2f} % of one core')

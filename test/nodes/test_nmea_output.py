@@ -23,15 +23,26 @@ from marine_tracker.nodes.nmea_output_node import NmeaOutputNode
 
 OUTPUT = 'nodes.run nmea_output'
 SECOND = 1_000_000_000
-NOON = 1_700_049_600 * SECOND           # 2023-11-15 12:00 UTC
+NOON = 1_700_049_600 * SECOND  # 2023-11-15 12:00 UTC
 LOOPBACK = '127.0.0.1'
 
 
 def entry(title, message='TRACKING', **values):
-    shown = {'range_nm': '2.00', 'bearing_deg': '045.0', 'course_deg': '225.0', 'speed_kn': '10.0',
-             'cpa_nm': '0.10', 'tcpa_min': '12.0', 'acquired': 'A', **values}
-    return DiagnosticStatus(name=title, message=message, values=[
-        KeyValue(key=key, value=value) for key, value in shown.items()])
+    shown = {
+        'range_nm': '2.00',
+        'bearing_deg': '045.0',
+        'course_deg': '225.0',
+        'speed_kn': '10.0',
+        'cpa_nm': '0.10',
+        'tcpa_min': '12.0',
+        'acquired': 'A',
+        **values,
+    }
+    return DiagnosticStatus(
+        name=title,
+        message=message,
+        values=[KeyValue(key=key, value=value) for key, value in shown.items()],
+    )
 
 
 class Ear:
@@ -51,10 +62,12 @@ class Ear:
 @pytest.fixture
 def ears():
     with contextlib.ExitStack() as stack:
+
         def make(**arguments):
             ear = Ear(**arguments)
             stack.callback(ear.socket.close)
             return ear
+
         yield make
 
 
@@ -75,18 +88,30 @@ class Rig:
         self.nmea = listener(self.other, String, topics.NMEA, topics.reliable(topics.BURST))
         self.diagnostics = listener(self.other, DiagnosticArray, topics.DIAGNOSTICS)
         self.targets, self.odometry, self.fix = (
-            self.other.create_publisher(kind, topic, topics.reliable(50)) for kind, topic in (
-                (Odometry, topics.ODOMETRY), (Odometry, topics.ODOMETRY), (NavSatFix, topics.FIX)))
+            self.other.create_publisher(kind, topic, topics.reliable(50))
+            for kind, topic in (
+                (Odometry, topics.ODOMETRY),
+                (Odometry, topics.ODOMETRY),
+                (NavSatFix, topics.FIX),
+            )
+        )
         self.targets = self.other.create_publisher(
-            DiagnosticArray, topics.TARGETS, topics.latched())
-        self.wait(lambda: self.targets.get_subscription_count()
-                  and self.odometry.get_subscription_count()
-                  and self.fix.get_subscription_count()
-                  and self.nmea.connected and self.node.count_subscribers(topics.NMEA))
+            DiagnosticArray, topics.TARGETS, topics.latched()
+        )
+        self.wait(
+            lambda: (
+                self.targets.get_subscription_count()
+                and self.odometry.get_subscription_count()
+                and self.fix.get_subscription_count()
+                and self.nmea.connected
+                and self.node.count_subscribers(topics.NMEA)
+            )
+        )
         self.scans = 0
 
-    def send_own_ship(self, seconds=0.0, position=(0.0, 0.0), speed=10 * KNOT, course_deg=90.0,
-                      fix=(54.5, 10.25)):
+    def send_own_ship(
+        self, seconds=0.0, position=(0.0, 0.0), speed=10 * KNOT, course_deg=90.0, fix=(54.5, 10.25)
+    ):
         stamp = NOON + round(seconds * SECOND)
         velocity = speed * unit_vector(np.radians(course_deg))
         self.odometry.publish(convert.own_ship_to_odometry(stamp, position, velocity))
@@ -125,25 +150,30 @@ def kinds(lines):
 
 
 def test_a_scan_gives_own_ship_and_one_ttm_a_target_alike_on_topic_udp_and_tcp(
-        rig, ears, free_port):
+    rig, ears, free_port
+):
     ear = ears()
-    here = rig(udp=f'{LOOPBACK}:{ear.port}', tcp=f'{LOOPBACK}:{free_port}',
-               own_ship_period_s=60.0)
+    here = rig(udp=f'{LOOPBACK}:{ear.port}', tcp=f'{LOOPBACK}:{free_port}', own_ship_period_s=60.0)
     with socket.create_connection((LOOPBACK, free_port), 10) as client:
         here.wait(lambda: len(here.node._tcp) == 1)
         here.send_own_ship()
-        said = here.scan(entry('TT01'), entry('TT02', range_nm='0.50', tcpa_min='-3.0',
-                                              acquired='M', name='BUOY'), seconds=2.0)
-        first = [one.data for one in here.nmea.messages]        # with those of the odometry
+        said = here.scan(
+            entry('TT01'),
+            entry('TT02', range_nm='0.50', tcpa_min='-3.0', acquired='M', name='BUOY'),
+            seconds=2.0,
+        )
+        first = [one.data for one in here.nmea.messages]  # with those of the odometry
         heard = ear.hear(len(first))
         with client.makefile(newline='') as stream:
             served = [stream.readline() for _ in first]
     assert kinds(said) == ['RMC', 'HDT', 'OSD', 'TTM', 'TTM']
     assert heard == served == [f'{line}\r\n' for line in first]
     assert said[3].startswith(
-        '$RATTM,01,2.000,045.0,T,10.00,225.0,T,0.100,12.0,N,TT01,T,,120002.00,A*')
+        '$RATTM,01,2.000,045.0,T,10.00,225.0,T,0.100,12.0,N,TT01,T,,120002.00,A*'
+    )
     assert said[4].startswith(
-        '$RATTM,02,0.500,045.0,T,10.00,225.0,T,0.100,-3.0,N,BUOY,T,,120002.00,M*')
+        '$RATTM,02,0.500,045.0,T,10.00,225.0,T,0.100,-3.0,N,BUOY,T,,120002.00,M*'
+    )
     assert said[2].startswith('$RAOSD,090.0,A,090.0,P,10.00,P,,,N*')
     rmc = pynmea2.parse(said[0], check=True)
     # Two seconds on at 10 knots from where the fix was.
@@ -157,10 +187,17 @@ def test_lost_and_cancelled_targets_get_one_last_word_and_then_no_more(rig):
 
     def status(lines):
         return {line.split(',')[1]: line.split(',')[12] for line in lines if 'TTM' in line}
+
     assert status(here.scan(*map(entry, ('TT01', 'TT02', 'TT03')))) == {
-        '01': 'T', '02': 'T', '03': 'T'}
+        '01': 'T',
+        '02': 'T',
+        '03': 'T',
+    }
     assert status(here.scan(entry('TT01'), entry('TT02', 'LOST'))) == {
-        '01': 'T', '02': 'L', '03': 'L'}
+        '01': 'T',
+        '02': 'L',
+        '03': 'L',
+    }
     assert status(here.scan(entry('TT01'))) == {'01': 'T'}
     assert status(here.scan()) == {'01': 'L'}
     assert status(here.scan()) == {}
@@ -168,15 +205,30 @@ def test_lost_and_cancelled_targets_get_one_last_word_and_then_no_more(rig):
 
 def test_what_targets_does_not_tell_is_left_empty_and_what_is_no_target_passed_over(rig):
     here = rig(sentences='TTM')
-    plain = DiagnosticStatus(name='TT05', message='COASTING', values=[
-        KeyValue(key=key, value=value) for key, value in (
-            ('range_nm', '1.50'), ('bearing_deg', '359.9'), ('course_deg', ''),
-            ('speed_kn', 'fast'))])
-    said = here.scan(plain, entry('Q123', 'ACQUIRING', acquired='M'), entry('radar'),
-                     entry('TTxx'), entry('TT07', range_nm='nan'))
+    plain = DiagnosticStatus(
+        name='TT05',
+        message='COASTING',
+        values=[
+            KeyValue(key=key, value=value)
+            for key, value in (
+                ('range_nm', '1.50'),
+                ('bearing_deg', '359.9'),
+                ('course_deg', ''),
+                ('speed_kn', 'fast'),
+            )
+        ],
+    )
+    said = here.scan(
+        plain,
+        entry('Q123', 'ACQUIRING', acquired='M'),
+        entry('radar'),
+        entry('TTxx'),
+        entry('TT07', range_nm='nan'),
+    )
     assert [line.rpartition('*')[0] for line in said] == [
         '$RATTM,05,1.500,359.9,T,,,T,,,N,TT05,T,,120001.00,A',
-        '$RATTM,99,2.000,045.0,T,,,T,0.100,,N,Q123,Q,,120001.00,M']
+        '$RATTM,99,2.000,045.0,T,,,T,0.100,,N,Q123,Q,,120001.00,M',
+    ]
 
 
 def test_the_same_message_twice_is_one_scan(rig):
@@ -189,8 +241,14 @@ def test_the_same_message_twice_is_one_scan(rig):
 
 
 def test_all_sentences_and_talkers_as_chosen(rig):
-    here = rig(sentences='TLL RSD TTM OSD HDT RMC', talker='II', own_ship_talker='GP',
-               origin='54.0 10.0', range_scale_nm=12.0, own_ship_period_s=60.0)
+    here = rig(
+        sentences='TLL RSD TTM OSD HDT RMC',
+        talker='II',
+        own_ship_talker='GP',
+        origin='54.0 10.0',
+        range_scale_nm=12.0,
+        own_ship_period_s=60.0,
+    )
     here.send_own_ship(seconds=1.0, position=(0.0, 1852.0), fix=None)
     said = here.scan(entry('TT01', range_nm='1.00', bearing_deg='000.0'), seconds=1.0)
     assert [line[1:6] for line in said] == ['GPRMC', 'GPHDT', 'IIOSD', 'IIRSD', 'IITTM', 'IITLL']
@@ -217,10 +275,14 @@ def test_own_ship_is_told_between_scans_as_often_as_asked(rig):
 def test_without_own_ship_rmc_is_void_and_diagnostics_say_why(rig):
     here = rig()
     said = here.scan(entry('TT01'))
-    assert kinds(said) == ['RMC', 'OSD', 'TTM']                 # no heading: no HDT
+    assert kinds(said) == ['RMC', 'OSD', 'TTM']  # no heading: no HDT
     assert ',V,,,,,,,' in said[0] and said[1].startswith('$RAOSD,,V,')
-    here.wait(lambda: here.output() and here.output().message
-              == 'nothing on own_ship/odometry: RMC void, no HDT')
+    here.wait(
+        lambda: (
+            here.output()
+            and here.output().message == 'nothing on own_ship/odometry: RMC void, no HDT'
+        )
+    )
     assert here.output().level == DiagnosticStatus.WARN
     assert here.output().name == 'nmea_output: output'
     # With odometry, but no place on earth.
@@ -242,8 +304,11 @@ def test_broken_input_is_counted_and_the_last_good_one_kept(rig):
     here.fix.publish(no_fix)
     here.fix.publish(convert.fix_message(NOON, np.nan, 10.0))
     counts = here.node._bad.counts
-    here.wait(lambda: (counts['own-ship messages not finite'],
-                       counts['fixes without a position']) == (1, 2))
+    here.wait(
+        lambda: (
+            (counts['own-ship messages not finite'], counts['fixes without a position']) == (1, 2)
+        )
+    )
     assert pynmea2.parse(here.scan(entry('TT01'))[0]).latitude == pytest.approx(54.5, abs=1e-6)
 
 
@@ -256,11 +321,12 @@ def test_signalk_deltas_go_out_as_datagrams(rig, ears):
     assert first['context'] != second['context']
     values = {one['path']: one['value'] for one in first['updates'][0]['values']}
     assert values['navigation.closestApproach'] == {
-        'distance': pytest.approx(185.2), 'timeTo': 720.0}
+        'distance': pytest.approx(185.2),
+        'timeTo': 720.0,
+    }
     assert values['navigation.position']['latitude'] == pytest.approx(54.5 + 1.4142 / 60, abs=1e-4)
     here.scan(entry('TT02'), seconds=2.0)
-    gone = [delta for delta in map(json.loads, ear.hear(2))
-            if delta['context'] == first['context']]
+    gone = [delta for delta in map(json.loads, ear.hear(2)) if delta['context'] == first['context']]
     assert all(one['value'] is None for one in gone[0]['updates'][0]['values'] if one['path'])
 
 
@@ -268,7 +334,7 @@ def test_a_broadcast_reaches_who_listens_to_it(ears):
     ear = ears(host='127.255.255.255')
     link = Datagrams('udp', f'127.255.255.255:{ear.port} {LOOPBACK}:{ear.port}')
     assert link.send([b'one', b'two']) == 0
-    assert ear.hear(2) == ['one', 'two'] and link.sent == 4     # the second goes nowhere, unheard
+    assert ear.hear(2) == ['one', 'two'] and link.sent == 4  # the second goes nowhere, unheard
     link.close()
 
 
@@ -318,15 +384,15 @@ def test_tcp_clients_come_and_go(free_port):
     assert first.recv(100) == second.recv(100) == b'a\r\n'
     first.close()
     until = time.monotonic() + 10
-    while len(server) == 2 and time.monotonic() < until:        # the first one only tells it
+    while len(server) == 2 and time.monotonic() < until:  # the first one only tells it
         server.send([b'b\r\n'])
     assert len(server) == 1
     assert second.recv(3) == b'b\r\n'
     server.close()
-    while second.recv(1000):                                    # the rest, then the end
+    while second.recv(1000):  # the rest, then the end
         pass
     second.close()
-    Clients('tcp', f'{LOOPBACK}:{free_port}').close()           # the port is free again at once
+    Clients('tcp', f'{LOOPBACK}:{free_port}').close()  # the port is free again at once
 
 
 def test_no_server_where_none_is_asked_for():
@@ -336,8 +402,18 @@ def test_no_server_where_none_is_asked_for():
     server.close()
 
 
-@pytest.mark.parametrize('text', ['localhost', ':10110', 'host:', '127.0.0.1:0', '127.0.0.1:70000',
-                                  '127.0.0.1:x', '127.0.0.1:10110 other'])
+@pytest.mark.parametrize(
+    'text',
+    [
+        'localhost',
+        ':10110',
+        'host:',
+        '127.0.0.1:0',
+        '127.0.0.1:70000',
+        '127.0.0.1:x',
+        '127.0.0.1:10110 other',
+    ],
+)
 def test_what_is_no_host_and_port_is_refused(text):
     with pytest.raises(ValueError, match="parameter udp has '.*'; it must be host:port"):
         endpoints('udp', text)
@@ -354,12 +430,15 @@ def p(**parameters):
     return ['--ros-args', *(word for pair in assignments for word in pair)]
 
 
-@pytest.mark.parametrize(('parameters', 'said'), [
-    ({'sentences': 'TTM GGA'}, "parameter sentences has 'GGA'; it must be of RMC, HDT, OSD"),
-    ({'udp': 'nowhere'}, "parameter udp has 'nowhere'; it must be host:port"),
-    ({'talker': 'radar'}, "talker is 'radar'; it must be two capital letters"),
-    ({'origin': '"91 10"'}, "parameter origin is '91 10'; it must be latitude and longitude"),
-])
+@pytest.mark.parametrize(
+    ('parameters', 'said'),
+    [
+        ({'sentences': 'TTM GGA'}, "parameter sentences has 'GGA'; it must be of RMC, HDT, OSD"),
+        ({'udp': 'nowhere'}, "parameter udp has 'nowhere'; it must be host:port"),
+        ({'talker': 'radar'}, "talker is 'radar'; it must be two capital letters"),
+        ({'origin': '"91 10"'}, "parameter origin is '91 10'; it must be latitude and longitude"),
+    ],
+)
 def test_a_wrong_parameter_stops_the_start_in_one_line(launch, parameters, said):
     process = launch(OUTPUT, *p(**parameters))
     assert process.ends() == 1
@@ -376,14 +455,17 @@ def test_a_port_in_use_stops_the_start_in_one_line(launch, free_port):
 
 def test_simulator_tracker_and_output_as_processes_tell_every_target_once_a_scan(launch, ears):
     ear = ears(patience=60.0)
-    output = launch(OUTPUT, *p(udp=f'{LOOPBACK}:{ear.port}', use_sim_time='true',
-                               own_ship_period_s=60.0))
-    tracker = launch('nodes.run tracker', *p(use_sim_time='true', range_sigma_m=15.0,
-                                         bearing_sigma_deg=0.4, max_range_m=22224.0))
+    output = launch(
+        OUTPUT, *p(udp=f'{LOOPBACK}:{ear.port}', use_sim_time='true', own_ship_period_s=60.0)
+    )
+    tracker = launch(
+        'nodes.run tracker',
+        *p(use_sim_time='true', range_sigma_m=15.0, bearing_sigma_deg=0.4, max_range_m=22224.0),
+    )
     simulator = launch('nodes.run radar_simulator', *p(scenario='encounters', rate=20.0))
-    told = {}                           # scans in which each target was told
+    told = {}  # scans in which each target was told
     while len(told) < 3 or sorted(map(len, told.values()))[-3] < 20:
-        line, = ear.hear(1)
+        (line,) = ear.hear(1)
         parsed = pynmea2.parse(line.strip(), check=True)
         if parsed.sentence_type == 'TTM':
             assert parsed.status in ('Q', 'T', 'L') and parsed.brg_ref == 'T'

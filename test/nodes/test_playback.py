@@ -28,10 +28,17 @@ def ears(graph, node_helpers):
     """Listeners on all that a playback publishes."""
     _, listener = node_helpers
     node = graph.bystander()
-    return {topic: listener(node, kind, topic, topics.reliable(2000)) for kind, topic in (
-        (PointCloud2, topics.PLOTS), (PointCloud, topics.PLOTS_READABLE),
-        (Odometry, topics.ODOMETRY), (Odometry, topics.TRUTH), (NavSatFix, topics.FIX),
-        (Clock, '/clock'))}
+    return {
+        topic: listener(node, kind, topic, topics.reliable(2000))
+        for kind, topic in (
+            (PointCloud2, topics.PLOTS),
+            (PointCloud, topics.PLOTS_READABLE),
+            (Odometry, topics.ODOMETRY),
+            (Odometry, topics.TRUTH),
+            (NavSatFix, topics.FIX),
+            (Clock, '/clock'),
+        )
+    }
 
 
 @pytest.fixture(scope='module')
@@ -58,7 +65,8 @@ def test_a_scenario_is_published_as_it_is_simulated(graph, node_helpers, ears, s
     wait(lambda: len(plots) == len(ears[topics.PLOTS_READABLE]) == len(pairs))
     # Simulated time begins at 1 s; the scenario's at 0.
     assert stamps(plots.messages) == pytest.approx(
-        [1e9 * (1 + scan.start) for scan, _ in pairs], abs=2)
+        [1e9 * (1 + scan.start) for scan, _ in pairs], abs=2
+    )
     for message, (scan, _) in zip(plots.messages, pairs):
         got = convert.cloud_to_plots(message)
         assert got.range == pytest.approx(scan.plots.range, rel=1e-6)
@@ -70,14 +78,12 @@ def test_a_scenario_is_published_as_it_is_simulated(graph, node_helpers, ears, s
         for target, at, position in zip(exact.target, exact.time, exact.position):
             message = next(told)
             assert message.child_frame_id == f'target_{target}'
-            assert convert.nanoseconds(message.header.stamp) == pytest.approx(
-                1e9 * (1 + at), abs=2)
+            assert convert.nanoseconds(message.header.stamp) == pytest.approx(1e9 * (1 + at), abs=2)
             assert convert.odometry_to_own_ship(message)[0] == pytest.approx(position)
     assert not graph.errors
 
 
-def test_own_ship_its_fix_and_the_clock_cover_each_scan_in_order(
-        graph, node_helpers, ears, short):
+def test_own_ship_its_fix_and_the_clock_cover_each_scan_in_order(graph, node_helpers, ears, short):
     wait, _ = node_helpers
     node = graph.make(RadarSimulatorNode, scenario=short, rate=30.0)
     wait(lambda: node.done)
@@ -86,13 +92,14 @@ def test_own_ship_its_fix_and_the_clock_cover_each_scan_in_order(
     at = stamps(own.messages)
     assert (np.diff(at) > 0).all()
     assert np.diff(at).max() * 1e-9 <= 1.3 * own_ship_period(30.0)
-    ends = 1e9 + np.arange(1, 12) * PERIOD_NS       # each known before its plots are out
+    ends = 1e9 + np.arange(1, 12) * PERIOD_NS  # each known before its plots are out
     assert np.abs(ends[:, None] - at).min(1).max() < 100
     for message, fix in zip(own.messages, fixes.messages):
         position, velocity = convert.odometry_to_own_ship(message)
         assert velocity == pytest.approx([12 * 1852 / 3600, 0.0], abs=1e-6)
         assert (fix.latitude, fix.longitude) == pytest.approx(
-            geodetic_from_local(position, 54.0, 8.0))
+            geodetic_from_local(position, 54.0, 8.0)
+        )
     ticks = np.array([convert.nanoseconds(message.clock) for message in clock.messages])
     assert (np.diff(ticks) >= 0).all() and ticks[0] >= 1e9 and len(ticks) > 20
 
@@ -101,9 +108,11 @@ def test_the_period_is_kept_within_one_percent_by_the_wall(launch, graph, node_h
     wait, listener = node_helpers
     arrivals, node = [], graph.bystander()
     node.create_subscription(
-        PointCloud2, topics.PLOTS,
+        PointCloud2,
+        topics.PLOTS,
         lambda message: arrivals.append((time.monotonic(), message.header.stamp)),
-        topics.best_available())
+        topics.best_available(),
+    )
     own_ship = listener(node, Odometry, topics.ODOMETRY)
     process = launch('nodes.run radar_simulator', '--ros-args', '-p', 'scenario:=clean')
     wait(lambda: len(arrivals) >= 3)
@@ -115,7 +124,7 @@ def test_the_period_is_kept_within_one_percent_by_the_wall(launch, graph, node_h
     # At rate 1 the stamps are the node's clock: a scan arrives when it has ended.
     late = time.time() - (time.monotonic() - wall[2]) - (sent[2] + PERIOD_NS) * 1e-9
     assert abs(late) < 0.5
-    assert len(own_ship) >= 2 * 27          # 10 Hz
+    assert len(own_ship) >= 2 * 27  # 10 Hz
 
 
 def test_a_rate_of_forty_is_forty_times_as_fast(graph, node_helpers, ears):
@@ -135,12 +144,12 @@ def test_a_machine_too_slow_for_the_rate_loses_nothing(graph, node_helpers, ears
     assert np.diff(stamps(ears[topics.PLOTS].messages)) == pytest.approx(PERIOD_NS, abs=2)
 
 
-def test_a_recording_is_published_as_it_was_recorded(
-        graph, node_helpers, ears, short, tmp_path):
+def test_a_recording_is_published_as_it_was_recorded(graph, node_helpers, ears, short, tmp_path):
     wait, _ = node_helpers
     chosen = scenario.load(short)
-    csv_folder.write(tmp_path / 'rec', 'short', radar.simulate(chosen, 2),
-                     chosen.tracker_parameters())
+    csv_folder.write(
+        tmp_path / 'rec', 'short', radar.simulate(chosen, 2), chosen.tracker_parameters()
+    )
     recording = csv_folder.read(tmp_path / 'rec')
     node = graph.make(RecordingPlayerNode, folder=str(tmp_path / 'rec'), rate=30.0)
     wait(lambda: node.done)
@@ -148,7 +157,8 @@ def test_a_recording_is_published_as_it_was_recorded(
     wait(lambda: len(plots) == len(own) == len(recording.scans))
     for k, scan in enumerate(recording.scans):
         assert convert.nanoseconds(plots[k].header.stamp) == pytest.approx(
-            1e9 * (1 + scan.start), abs=2)
+            1e9 * (1 + scan.start), abs=2
+        )
         got = convert.cloud_to_plots(plots[k])
         assert got.range == pytest.approx(scan.plots.range, rel=1e-6)
         position, velocity = convert.odometry_to_own_ship(own[k])
@@ -184,13 +194,17 @@ def test_a_recording_of_one_scan_can_loop(short):
     assert np.diff(starts) == pytest.approx(scan.end - scan.start)
 
 
-@pytest.mark.parametrize('kind, parameters, said', [
-    (RadarSimulatorNode, {'scenario': 'atlantis'}, 'atlantis'),
-    (RadarSimulatorNode, {'rate': 0.0}, 'parameter rate is 0'),
-    (RadarSimulatorNode, {'seed': -1}, 'parameter seed is -1'),
-    (RecordingPlayerNode, {}, 'parameter folder is empty'),
-    (RecordingPlayerNode, {'folder': '/nowhere'}, '/nowhere'),
-    (RecordingPlayerNode, {'speed': 2.0}, 'unknown parameter speed')])
+@pytest.mark.parametrize(
+    'kind, parameters, said',
+    [
+        (RadarSimulatorNode, {'scenario': 'atlantis'}, 'atlantis'),
+        (RadarSimulatorNode, {'rate': 0.0}, 'parameter rate is 0'),
+        (RadarSimulatorNode, {'seed': -1}, 'parameter seed is -1'),
+        (RecordingPlayerNode, {}, 'parameter folder is empty'),
+        (RecordingPlayerNode, {'folder': '/nowhere'}, '/nowhere'),
+        (RecordingPlayerNode, {'speed': 2.0}, 'unknown parameter speed'),
+    ],
+)
 def test_a_wrong_parameter_stops_the_start(graph, kind, parameters, said):
     with pytest.raises(ValueError, match=said):
         graph.make(kind, **parameters)

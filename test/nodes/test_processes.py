@@ -21,9 +21,10 @@ from marine_tracker.recording import csv_folder
 from marine_tracker.simulation import scenario
 from marine_tracker.tracking.tracker import Tracker
 
-SIMULATOR, TRACKER, PLAYER = (f'nodes.run {name}' for name in (
-    'radar_simulator', 'tracker', 'recording_player'))
-STATUS = ('', 'TRACKING', 'COASTING', 'LOST')      # tentative ones have no number
+SIMULATOR, TRACKER, PLAYER = (
+    f'nodes.run {name}' for name in ('radar_simulator', 'tracker', 'recording_player')
+)
+STATUS = ('', 'TRACKING', 'COASTING', 'LOST')  # tentative ones have no number
 READY = {SIMULATOR: 'scenario', TRACKER: 'waiting for', PLAYER: 'recording'}
 
 
@@ -34,8 +35,11 @@ def p(**parameters):
 
 
 def for_clean():
-    return {name: float(value) for name, value in scenario.load('clean').tracker_parameters(
-        ).items() if not isinstance(value, str)}
+    return {
+        name: float(value)
+        for name, value in scenario.load('clean').tracker_parameters().items()
+        if not isinstance(value, str)
+    }
 
 
 @pytest.fixture
@@ -45,20 +49,27 @@ def targets(graph, node_helpers):
     ears = listener(graph.bystander(), DiagnosticArray, topics.TARGETS, topics.latched(50))
 
     def now():
-        return {entry.name: {'status': entry.message,
-                             **{pair.key: pair.value for pair in entry.values}}
-                for entry in (ears[-1].status if len(ears) else ())}
+        return {
+            entry.name: {'status': entry.message, **{pair.key: pair.value for pair in entry.values}}
+            for entry in (ears[-1].status if len(ears) else ())
+        }
+
     ears.now = now
     return ears
 
 
 def test_parameters_from_a_file_confirm_all_targets_and_the_estimator_may_change(
-        launch, targets, graph, node_helpers, tmp_path):
+    launch, targets, graph, node_helpers, tmp_path
+):
     wait, _ = node_helpers
     file = tmp_path / 'mine.yaml'
-    file.write_text('/**:\n  ros__parameters:\n    use_sim_time: true\n' + ''.join(
-        f'    {name}: {value}\n' for name, value in {
-            'estimator': 'cs_kalman', **for_clean()}.items()))
+    file.write_text(
+        '/**:\n  ros__parameters:\n    use_sim_time: true\n'
+        + ''.join(
+            f'    {name}: {value}\n'
+            for name, value in {'estimator': 'cs_kalman', **for_clean()}.items()
+        )
+    )
     tracker = launch(TRACKER, '--ros-args', '--params-file', str(file))
     simulator = launch(SIMULATOR, *p(scenario='clean', rate=30.0))
     wait(lambda: len(targets.now()) == 6)
@@ -67,8 +78,9 @@ def test_parameters_from_a_file_confirm_all_targets_and_the_estimator_may_change
 
     client = graph.nodes[0].create_client(SetParameters, '/tracker/set_parameters')
     wait(client.service_is_ready)
-    future = client.call_async(SetParameters.Request(
-        parameters=[Parameter('estimator', value='imm').to_parameter_msg()]))
+    future = client.call_async(
+        SetParameters.Request(parameters=[Parameter('estimator', value='imm').to_parameter_msg()])
+    )
     wait(future.done)
     assert future.result().results[0].successful
     wait(lambda: {values['estimator'] for values in targets.now().values()} == {'imm'})
@@ -80,7 +92,8 @@ def test_parameters_from_a_file_confirm_all_targets_and_the_estimator_may_change
 
 
 def test_a_recording_over_dds_gives_the_tracks_of_a_replay(
-        launch, targets, node_helpers, recordings):
+    launch, targets, node_helpers, recordings
+):
     wait, _ = node_helpers
     recording = csv_folder.read(recordings / 'autoferry_03')
     parameters = recording.tracker_parameters
@@ -89,24 +102,33 @@ def test_a_recording_over_dds_gives_the_tracks_of_a_replay(
     for scan in recording.scans:
         memory, report = core.step(memory, scan)
         tracks = report.tracks
-        expected.append(sorted(
-            (f'TT{number:02d}', STATUS[status])
-            for number, status in zip(tracks.number.tolist(), tracks.status.tolist()) if number))
+        expected.append(
+            sorted(
+                (f'TT{number:02d}', STATUS[status])
+                for number, status in zip(tracks.number.tolist(), tracks.status.tolist())
+                if number
+            )
+        )
     tracker = launch(TRACKER, *p(use_sim_time='true', **parameters))
     player = launch(PLAYER, *p(folder=recordings / 'autoferry_03', rate=25.0))
     wait(lambda: len(targets) >= len(recording.scans))
-    assert [[(entry.name, entry.message) for entry in message.status]
-            for message in targets.messages] == expected
+    assert [
+        [(entry.name, entry.message) for entry in message.status] for message in targets.messages
+    ] == expected
     assert player.ends() == 0
     tracker.stop()
 
 
-@pytest.mark.parametrize('module, content, said', [
-    (TRACKER, 'estimatr: imm', 'tracker: unknown parameter estimatr; did you mean estimator?'),
-    (PLAYER, 'folder: 7', 'recording_player: parameter folder is 7, an integer'),
-])
+@pytest.mark.parametrize(
+    'module, content, said',
+    [
+        (TRACKER, 'estimatr: imm', 'tracker: unknown parameter estimatr; did you mean estimator?'),
+        (PLAYER, 'folder: 7', 'recording_player: parameter folder is 7, an integer'),
+    ],
+)
 def test_a_wrong_parameter_in_a_file_stops_the_start_in_one_line(
-        launch, tmp_path, module, content, said):
+    launch, tmp_path, module, content, said
+):
     file = tmp_path / 'wrong.yaml'
     file.write_text(f'/**:\n  ros__parameters:\n    {content}\n')
     process = launch(module, '--ros-args', '--params-file', str(file))
@@ -126,14 +148,23 @@ def test_two_radars_side_by_side_do_not_hear_each_other(launch, graph, node_help
         processes += [
             launch(TRACKER, *p(max_plots=100 * n), *where),
             # Their clocks would clash; the trackers go by the stamps alone.
-            launch(SIMULATOR, *p(scenario=name, rate=20.0), *where, '-r', '/clock:=clock')]
+            launch(SIMULATOR, *p(scenario=name, rate=20.0), *where, '-r', '/clock:=clock'),
+        ]
     wait(lambda: len(tracks[1]) and len(tracks[2]))
     assert {message.child_frame_id for message in tracks[2].messages} == {'track_01'}
-    wait(lambda: {message.child_frame_id for message in tracks[1].messages} >= {
-        f'track_{k:02d}' for k in range(1, 6)})
+    wait(
+        lambda: (
+            {message.child_frame_id for message in tracks[1].messages}
+            >= {f'track_{k:02d}' for k in range(1, 6)}
+        )
+    )
     assert max(message.width for message in plots[2].messages) < 6
-    wait(lambda: {'radar_1/tracker: input', 'radar_2/tracker: input'} <= {
-        entry.name for message in diagnostics.messages for entry in message.status})
+    wait(
+        lambda: (
+            {'radar_1/tracker: input', 'radar_2/tracker: input'}
+            <= {entry.name for message in diagnostics.messages for entry in message.status}
+        )
+    )
     ids = {entry.hardware_id for message in diagnostics.messages for entry in message.status}
     assert ids == {'radar_1/radar', 'radar_2/radar'}
     for process in processes:
@@ -144,9 +175,11 @@ def signalled(launch, number, rounds):
     """In each round start two trackers and a simulator, and signal them at a random moment."""
     rng = random.Random(number)
     for _ in range(rounds):
-        started = [(launch(TRACKER, *p(use_sim_time='true')), TRACKER),
-                   (launch(SIMULATOR, *p(scenario='clean', rate=20.0)), SIMULATOR),
-                   (launch(TRACKER, *p(use_sim_time='true')), TRACKER)]
+        started = [
+            (launch(TRACKER, *p(use_sim_time='true')), TRACKER),
+            (launch(SIMULATOR, *p(scenario='clean', rate=20.0)), SIMULATOR),
+            (launch(TRACKER, *p(use_sim_time='true')), TRACKER),
+        ]
         for process, module in started:
             assert process.says(READY[module]), process.said
         time.sleep(rng.uniform(0.0, 0.5))
@@ -179,16 +212,19 @@ def test_a_signal_while_it_starts_ends_a_node_well(launch, seconds):
 
 def test_a_node_that_hangs_in_its_shutdown_ends_all_the_same():
     """The main thread waits for ever, deaf to the event that the handler sets."""
-    script = ('import signal, threading\n'
-              'from marine_tracker.nodes import run\n'
-              'run.GRACE_S = 0.5\n'
-              'stop = threading.Event()\n'
-              'signal.signal(signal.SIGTERM, lambda *_: None)\n'
-              "run.end_in_time('tracker', stop)\n"
-              "print('up', flush=True)\n"
-              'threading.Event().wait()\n')
-    process = subprocess.Popen([sys.executable, '-c', script], stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
+    script = (
+        'import signal, threading\n'
+        'from marine_tracker.nodes import run\n'
+        'run.GRACE_S = 0.5\n'
+        'stop = threading.Event()\n'
+        'signal.signal(signal.SIGTERM, lambda *_: None)\n'
+        "run.end_in_time('tracker', stop)\n"
+        "print('up', flush=True)\n"
+        'threading.Event().wait()\n'
+    )
+    process = subprocess.Popen(
+        [sys.executable, '-c', script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     assert process.stdout.readline() == 'up\n'
     process.send_signal(signal.SIGTERM)
     _, said = process.communicate(timeout=30)

@@ -24,8 +24,10 @@ NAMES = [f'TT{number:02d}' for number in range(1, 7)]
 
 
 def p(**parameters):
-    return ['--ros-args', *(word for name, value in parameters.items()
-                            for word in ('-p', f'{name}:={value}'))]
+    return [
+        '--ros-args',
+        *(word for name, value in parameters.items() for word in ('-p', f'{name}:={value}')),
+    ]
 
 
 def statuses(ears):
@@ -38,17 +40,23 @@ class Bridge:
 
     def __init__(self, graph, node_helpers, **parameters):
         self.wait, listener = node_helpers
-        self.told = -np.inf                 # s, of own ship
+        self.told = -np.inf  # s, of own ship
         self.tracker = graph.make(TrackerNode, **{**TOGETHER, **parameters})
         other = graph.bystander()
-        self.plots = [other.create_publisher(PointCloud2, heard.radar.topic, topics.reliable(50))
-                      for heard in self.tracker.inputs]
+        self.plots = [
+            other.create_publisher(PointCloud2, heard.radar.topic, topics.reliable(50))
+            for heard in self.tracker.inputs
+        ]
         self.own = other.create_publisher(Odometry, topics.ODOMETRY, topics.reliable(500))
         self.targets = listener(other, DiagnosticArray, topics.TARGETS, topics.latched(50))
         self.alarms = listener(other, DiagnosticArray, topics.ALARMS, topics.latched(10))
         self.diagnostics = listener(other, DiagnosticArray, topics.DIAGNOSTICS)
-        self.wait(lambda: all(one.get_subscription_count() for one in (*self.plots, self.own))
-                  and self.targets.connected)
+        self.wait(
+            lambda: (
+                all(one.get_subscription_count() for one in (*self.plots, self.own))
+                and self.targets.connected
+            )
+        )
 
     def play(self, scans, shift=0.0):
         for scan in scans:
@@ -56,11 +64,13 @@ class Bridge:
             before = heard.taken + sum(heard.bad.counts.values())
             for time, position, velocity in zip(*scan.own_ship):
                 if time > self.told:
-                    self.own.publish(convert.own_ship_to_odometry(
-                        round((1000 + time) * 1e9), position, velocity))
+                    self.own.publish(
+                        convert.own_ship_to_odometry(round((1000 + time) * 1e9), position, velocity)
+                    )
                     self.told = time
-            self.plots[scan.radar].publish(convert.plots_to_cloud(
-                scan, round((1000 + scan.start + shift) * 1e9)))
+            self.plots[scan.radar].publish(
+                convert.plots_to_cloud(scan, round((1000 + scan.start + shift) * 1e9))
+            )
             self.wait(lambda b=before, h=heard: h.taken + sum(h.bad.counts.values()) > b)
 
     def names(self):
@@ -75,8 +85,10 @@ def bridge(graph, node_helpers):
 
 
 def scans_of(seconds):
-    return [[scan for scan, _ in radar.simulate(one, seed) if scan.end < seconds]
-            for seed, one in enumerate((X, S))]
+    return [
+        [scan for scan, _ in radar.simulate(one, seed) if scan.end < seconds]
+        for seed, one in enumerate((X, S))
+    ]
 
 
 def test_one_radar_fails_and_returns_and_no_target_is_lost(bridge):
@@ -88,6 +100,7 @@ def test_one_radar_fails_and_returns_and_no_target_is_lost(bridge):
     def missing():
         """the alarm names the radar that is silent"""
         return 'plots missing of radar_s' in statuses(here.alarms)
+
     here.wait(missing)
     said = statuses(here.alarms)['plots missing of radar_s']
     assert said.message.startswith('no plots of radar radar_s for')
@@ -110,8 +123,10 @@ def test_over_dds_the_tracks_are_those_of_the_core(bridge, graph, node_helpers):
         memory, report = core.step(memory, scan)
         shown = np.flatnonzero((report.tracks.number > 0) & (report.tracks.status != LOST))
         now = core.extrapolate(report.tracks, report.time)
-        expected += [(f'track_{report.tracks.number[row]:02d}', now.position[row])
-                     for row in shown[np.argsort(report.tracks.number[shown])]]
+        expected += [
+            (f'track_{report.tracks.number[row]:02d}', now.position[row])
+            for row in shown[np.argsort(report.tracks.number[shown])]
+        ]
     here.play(scans)
     here.wait(lambda: len(ears) >= len(expected))
     assert [message.child_frame_id for message in ears.messages] == [n for n, _ in expected]
@@ -128,22 +143,26 @@ def test_diagnostics_tell_of_each_radar_by_its_name(bridge):
     def told():
         """one status a radar"""
         return {'tracker: input radar_x', 'tracker: input radar_s'} <= set(
-            statuses(here.diagnostics))
+            statuses(here.diagnostics)
+        )
+
     here.wait(told)
-    here.wait(lambda: statuses(here.diagnostics)['tracker: input radar_x'].message
-              == 'plots come in')
+    here.wait(
+        lambda: statuses(here.diagnostics)['tracker: input radar_x'].message == 'plots come in'
+    )
     assert statuses(here.diagnostics)['tracker: input radar_s'].message == (
-        'no plots yet on radar_s/radar/plots')
+        'no plots yet on radar_s/radar/plots'
+    )
 
 
 def test_a_parameter_that_no_radar_has_of_its_own_changes_for_both(bridge):
     here = bridge()
-    answer, = here.tracker.set_parameters([Parameter('max_plots', value=5)])
+    (answer,) = here.tracker.set_parameters([Parameter('max_plots', value=5)])
     assert answer.successful
     here.play(merged(*scans_of(10)))
     for heard in here.tracker.inputs:
         assert heard.bad.counts['plots over max_plots'] > 0
-        assert heard.radar.parameters.range_sigma_m != 15.0         # its own stays
+        assert heard.radar.parameters.range_sigma_m != 15.0  # its own stays
 
 
 def test_a_radar_whose_clock_differs_is_told_of_and_does_not_move_the_tracks(bridge):
@@ -162,50 +181,78 @@ def test_a_radar_that_comes_up_later_joins_the_scene_where_it_is(graph, node_hel
     ears = listener(node, PointCloud2, '/radar_s/radar/plots')
     listener(node, Odometry, '/radar_s/own_ship/odometry')
     now = node.get_clock().now().nanoseconds * 1e-9
-    graph.make(RadarSimulatorNode, ('-r', '__ns:=/radar_s'), scenario='two_radars_s', seed=3,
-               begin_at_s=now - 300.0)
+    graph.make(
+        RadarSimulatorNode,
+        ('-r', '__ns:=/radar_s'),
+        scenario='two_radars_s',
+        seed=3,
+        begin_at_s=now - 300.0,
+    )
     wait(lambda: len(ears) > 0)
     offset = convert.nanoseconds(ears[0].header.stamp) * 1e-9 - (now - 300.0)
     whole = offset / S.radar.scan_period
     assert 295 < offset < 330 and whole == pytest.approx(round(whole), abs=1e-3)
     expected = next(scan for scan, _ in radar.simulate(S, 3) if scan.start > offset - 1e-3)
-    np.testing.assert_allclose(convert.cloud_to_plots(ears[0]).range, expected.plots.range,
-                               rtol=1e-6)
+    np.testing.assert_allclose(
+        convert.cloud_to_plots(ears[0]).range, expected.plots.range, rtol=1e-6
+    )
 
 
 def test_two_simulators_and_a_tracker_as_processes(launch, graph, node_helpers, tmp_path):
     wait, listener = node_helpers
     ears = listener(graph.bystander(), DiagnosticArray, topics.TARGETS, topics.latched(50))
     file = tmp_path / 'tracker.yaml'
-    file.write_text('/**:\n  ros__parameters:\n    use_sim_time: true\n' + ''.join(
-        f'    {name}: {float(value) if isinstance(value, float | int) else repr(value)}\n'
-        for name, value in TOGETHER.items() if name != 'radars')
-        + '    radars: |\n' + ''.join(f'      {line}\n' for line in TOGETHER[
-            'radars'].splitlines()))
+    file.write_text(
+        '/**:\n  ros__parameters:\n    use_sim_time: true\n'
+        + ''.join(
+            f'    {name}: {float(value) if isinstance(value, float | int) else repr(value)}\n'
+            for name, value in TOGETHER.items()
+            if name != 'radars'
+        )
+        + '    radars: |\n'
+        + ''.join(f'      {line}\n' for line in TOGETHER['radars'].splitlines())
+    )
     tracker = launch('nodes.run tracker', '--ros-args', '--params-file', str(file))
     wait(lambda: ears.connected)
-    second = launch('nodes.run radar_simulator', *p(scenario='two_radars_s', seed=2, begin_at_s=1.0,
-                                                use_sim_time='true'), '-r', '__ns:=/radar_s')
-    first = launch('nodes.run radar_simulator', *p(scenario='two_radars_x', rate=25.0),
-                   '-r', '__ns:=/radar_x',
-                   '-r', '/radar_x/own_ship/odometry:=/own_ship/odometry')
+    second = launch(
+        'nodes.run radar_simulator',
+        *p(scenario='two_radars_s', seed=2, begin_at_s=1.0, use_sim_time='true'),
+        '-r',
+        '__ns:=/radar_s',
+    )
+    first = launch(
+        'nodes.run radar_simulator',
+        *p(scenario='two_radars_x', rate=25.0),
+        '-r',
+        '__ns:=/radar_x',
+        '-r',
+        '/radar_x/own_ship/odometry:=/own_ship/odometry',
+    )
 
     def all_held():
-        return len(ears) and set(NAMES) <= {entry.name for entry in ears[-1].status
-                                            if entry.message != 'LOST'}
+        return len(ears) and set(NAMES) <= {
+            entry.name for entry in ears[-1].status if entry.message != 'LOST'
+        }
+
     wait(all_held)
-    second.stop()                                       # the S band radar fails ...
+    second.stop()  # the S band radar fails ...
     heard = len(ears)
     wait(lambda: len(ears) > heard + 25)
     assert all_held()
-    again = launch('nodes.run radar_simulator', *p(scenario='two_radars_s', seed=2, begin_at_s=1.0,
-                                               use_sim_time='true'), '-r', '__ns:=/radar_s')
+    again = launch(
+        'nodes.run radar_simulator',
+        *p(scenario='two_radars_s', seed=2, begin_at_s=1.0, use_sim_time='true'),
+        '-r',
+        '__ns:=/radar_s',
+    )
     diagnostics = listener(graph.bystander('other'), DiagnosticArray, topics.DIAGNOSTICS)
 
     def returned():
         """and is heard again"""
         return statuses(diagnostics).get('tracker: input radar_s', tracker) and (
-            statuses(diagnostics)['tracker: input radar_s'].message == 'plots come in')
+            statuses(diagnostics)['tracker: input radar_s'].message == 'plots come in'
+        )
+
     again.says('scenario')
     heard = len(ears)
     wait(lambda: len(ears) > heard + 20)

@@ -17,10 +17,12 @@ TRUTH = 'scan,time_s,target,north_m,east_m,vel_north_mps,vel_east_mps\n'
 def folder(tmp_path):
     """Three scans, the second one empty, numbered 4, 5, 7; own ship goes north at 2 m/s."""
     (tmp_path / 'plots.csv').write_text(
-        PLOTS + '4,10.0,100.0,90.0\n7,15.0,300.0,-90.0\n4,10.0,200.0,359.0\n')
+        PLOTS + '4,10.0,100.0,90.0\n7,15.0,300.0,-90.0\n4,10.0,200.0,359.0\n'
+    )
     (tmp_path / 'own_ship.csv').write_text(OWN_SHIP + '4,10.0,0,50\n5,12.5,5,50\n7,15.0,10,50\n')
     (tmp_path / 'truth.csv').write_text(
-        TRUTH + '4,10.0,1,1000,2000,3,4\n4,10.0,2,0,0,nan,nan\n7,15.0,1,1015,2020,,\n')
+        TRUTH + '4,10.0,1,1000,2000,3,4\n4,10.0,2,0,0,nan,nan\n7,15.0,1,1015,2020,,\n'
+    )
     return tmp_path
 
 
@@ -30,7 +32,10 @@ def test_every_scan_of_own_ship_is_a_scan_also_the_empty_one(folder):
     assert recording.numbers.tolist() == [4, 5, 7]
     assert [len(scan.plots.time) for scan in recording.scans] == [2, 0, 1]
     assert [(scan.start, scan.end) for scan in recording.scans] == [
-        (10.0, 10.0), (12.5, 12.5), (15.0, 15.0)]
+        (10.0, 10.0),
+        (12.5, 12.5),
+        (15.0, 15.0),
+    ]
 
 
 def test_plots_keep_their_order_and_have_bearings_in_radians_from_0_to_2_pi(folder):
@@ -60,7 +65,8 @@ def test_a_scan_knows_own_ship_before_at_and_after_it(folder):
 def test_own_ship_velocities_of_the_file_are_taken_where_they_stand(folder):
     (folder / 'own_ship.csv').write_text(
         OWN_SHIP.strip() + ',vel_north_mps,vel_east_mps\n4,10,0,50,9,8\n5,12.5,5,50,nan,nan\n'
-        '7,15,10,50,7,6\n')
+        '7,15,10,50,7,6\n'
+    )
     velocity = csv_folder.read(folder).own_ship.velocity
     np.testing.assert_allclose(velocity, [[8, 9], [0, 2], [6, 7]])
 
@@ -68,7 +74,10 @@ def test_own_ship_velocities_of_the_file_are_taken_where_they_stand(folder):
 def test_with_plots_at_their_own_times_a_scan_lasts_to_the_next_row(folder):
     (folder / 'plots.csv').write_text(PLOTS + '4,10.2,100,90\n4,11.9,100,180\n7,17.1,100,120\n')
     assert [scan[:2] for scan in csv_folder.read(folder).scans] == [
-        (10.0, 12.5), (12.5, 15.0), (15.0, 17.5)]
+        (10.0, 12.5),
+        (12.5, 15.0),
+        (15.0, 17.5),
+    ]
 
 
 def test_plots_outside_their_rows_times_make_the_scan_last_from_first_to_last(folder):
@@ -83,9 +92,13 @@ def test_plots_stamped_alike_but_late_give_a_scan_without_length(folder):
 
 def test_known_ends_are_taken(folder):
     (folder / 'own_ship.csv').write_text(
-        OWN_SHIP.strip() + ',end_s\n4,10,0,50,12\n5,12.5,5,50,14.5\n7,15,10,50,17\n')
+        OWN_SHIP.strip() + ',end_s\n4,10,0,50,12\n5,12.5,5,50,14.5\n7,15,10,50,17\n'
+    )
     assert [scan[:2] for scan in csv_folder.read(folder).scans] == [
-        (10.0, 12.0), (12.5, 14.5), (15.0, 17.0)]
+        (10.0, 12.0),
+        (12.5, 14.5),
+        (15.0, 17.0),
+    ]
 
 
 def test_a_folder_may_lack_truth_radar_and_notes(folder):
@@ -103,40 +116,75 @@ def test_radar_yaml_and_notes_are_read(folder):
     assert recording.notes == {'cutoff_m': 60.0}
 
 
-@pytest.mark.parametrize(('file', 'text', 'message'), [
-    ('plots.csv', None, r'plots.csv does not exist'),
-    ('own_ship.csv', None, r'own_ship.csv does not exist'),
-    ('own_ship.csv', '', r'own_ship.csv is empty; its first line must name the columns'),
-    ('own_ship.csv', OWN_SHIP, r'has no rows; it must have one for every scan'),
-    ('plots.csv', 'scan,time_s,range_m\n4,10,100\n',
-     r'plots.csv has no column bearing_deg; it has scan, time_s, range_m'),
-    ('plots.csv', 'scan,scan,time_s,range_m,bearing_deg\n', r'names a column twice'),
-    ('plots.csv', PLOTS + '4,10,100,90\n4,10,abc,90\n',
-     r"plots.csv, line 3: range_m is 'abc'; it must be a number"),
-    ('plots.csv', PLOTS + '\n4,10,,90\n', r"plots.csv, line 3: range_m is ''; it must be a number"),
-    ('plots.csv', PLOTS + '4,10,nan,90\n', r'line 2: range_m is nan; it must be finite'),
-    ('plots.csv', PLOTS + '4,10,inf,90\n', r'line 2: range_m is inf; it must be finite'),
-    ('plots.csv', PLOTS + '4,10,-1,90\n', r'line 2: range_m is -1; it must be at least 0'),
-    ('plots.csv', PLOTS + '4,10,1,361\n',
-     r'line 2: bearing_deg is 361; it must be between -360 and 360'),
-    ('plots.csv', PLOTS + '4,10,1\n', r'plots.csv, line 2 has 3 cells; it must have 4'),
-    ('plots.csv', PLOTS + '6,13,1,1\n', r'plots.csv, line 2: scan 6 is not in own_ship.csv'),
-    ('plots.csv', PLOTS + '4.5,10,1,1\n', r'line 2: scan is 4.5; it must be a whole number'),
-    ('plots.csv', PLOTS + '4,10,1,1\n5,9,1,1\n',
-     r'plots.csv: scan 5 begins at 9 s, before the scan ahead of it, 10 s'),
-    ('own_ship.csv', OWN_SHIP + '4,10,0,0\n5,9,0,0\n',
-     r'own_ship.csv, line 3: time_s is 9 after 10; it must increase'),
-    ('own_ship.csv', OWN_SHIP + '4,10,0,0\n4,11,0,0\n',
-     r'own_ship.csv, line 3: scan is 4 after 4; it must increase'),
-    ('own_ship.csv', OWN_SHIP.strip() + ',end_s\n4,10,0,0,9\n5,11,0,0,\n7,12,0,0,\n',
-     r'own_ship.csv, line 2: end_s is 9; it must not lie before time_s, 10'),
-    ('truth.csv', TRUTH + '4,10,1,0,0,1,1\n4,10,1,5,5,1,1\n',
-     r'truth.csv, line 3: target 1 is at 10 s after 10 s; its time must increase'),
-    ('truth.csv', TRUTH + '4,10,one,0,0,1,1\n', r"line 2: target is 'one'; it must be a number"),
-    ('radar.yaml', '- 1\n', r'radar.yaml holds a list; it must hold a mapping'),
-    ('notes.json', '{', r'notes.json is not JSON'),
-    ('notes.json', '[]', r'notes.json holds a list; it must hold an object'),
-])
+@pytest.mark.parametrize(
+    ('file', 'text', 'message'),
+    [
+        ('plots.csv', None, r'plots.csv does not exist'),
+        ('own_ship.csv', None, r'own_ship.csv does not exist'),
+        ('own_ship.csv', '', r'own_ship.csv is empty; its first line must name the columns'),
+        ('own_ship.csv', OWN_SHIP, r'has no rows; it must have one for every scan'),
+        (
+            'plots.csv',
+            'scan,time_s,range_m\n4,10,100\n',
+            r'plots.csv has no column bearing_deg; it has scan, time_s, range_m',
+        ),
+        ('plots.csv', 'scan,scan,time_s,range_m,bearing_deg\n', r'names a column twice'),
+        (
+            'plots.csv',
+            PLOTS + '4,10,100,90\n4,10,abc,90\n',
+            r"plots.csv, line 3: range_m is 'abc'; it must be a number",
+        ),
+        (
+            'plots.csv',
+            PLOTS + '\n4,10,,90\n',
+            r"plots.csv, line 3: range_m is ''; it must be a number",
+        ),
+        ('plots.csv', PLOTS + '4,10,nan,90\n', r'line 2: range_m is nan; it must be finite'),
+        ('plots.csv', PLOTS + '4,10,inf,90\n', r'line 2: range_m is inf; it must be finite'),
+        ('plots.csv', PLOTS + '4,10,-1,90\n', r'line 2: range_m is -1; it must be at least 0'),
+        (
+            'plots.csv',
+            PLOTS + '4,10,1,361\n',
+            r'line 2: bearing_deg is 361; it must be between -360 and 360',
+        ),
+        ('plots.csv', PLOTS + '4,10,1\n', r'plots.csv, line 2 has 3 cells; it must have 4'),
+        ('plots.csv', PLOTS + '6,13,1,1\n', r'plots.csv, line 2: scan 6 is not in own_ship.csv'),
+        ('plots.csv', PLOTS + '4.5,10,1,1\n', r'line 2: scan is 4.5; it must be a whole number'),
+        (
+            'plots.csv',
+            PLOTS + '4,10,1,1\n5,9,1,1\n',
+            r'plots.csv: scan 5 begins at 9 s, before the scan ahead of it, 10 s',
+        ),
+        (
+            'own_ship.csv',
+            OWN_SHIP + '4,10,0,0\n5,9,0,0\n',
+            r'own_ship.csv, line 3: time_s is 9 after 10; it must increase',
+        ),
+        (
+            'own_ship.csv',
+            OWN_SHIP + '4,10,0,0\n4,11,0,0\n',
+            r'own_ship.csv, line 3: scan is 4 after 4; it must increase',
+        ),
+        (
+            'own_ship.csv',
+            OWN_SHIP.strip() + ',end_s\n4,10,0,0,9\n5,11,0,0,\n7,12,0,0,\n',
+            r'own_ship.csv, line 2: end_s is 9; it must not lie before time_s, 10',
+        ),
+        (
+            'truth.csv',
+            TRUTH + '4,10,1,0,0,1,1\n4,10,1,5,5,1,1\n',
+            r'truth.csv, line 3: target 1 is at 10 s after 10 s; its time must increase',
+        ),
+        (
+            'truth.csv',
+            TRUTH + '4,10,one,0,0,1,1\n',
+            r"line 2: target is 'one'; it must be a number",
+        ),
+        ('radar.yaml', '- 1\n', r'radar.yaml holds a list; it must hold a mapping'),
+        ('notes.json', '{', r'notes.json is not JSON'),
+        ('notes.json', '[]', r'notes.json holds a list; it must hold an object'),
+    ],
+)
 def test_what_is_wrong_is_named_with_its_file_and_line(folder, file, text, message):
     if text is None:
         (folder / file).unlink()
@@ -162,16 +210,25 @@ def test_what_is_written_is_read_again(tmp_path):
     pairs = []
     for k in range(5):
         start, end, count = 2.7 * k, 2.7 * (k + 1), (3, 0, 1, 4, 2)[k]
-        plots = PolarPlots(np.sort(rng.uniform(start, end, count)), rng.uniform(50, 2e4, count),
-                           rng.uniform(0, 2 * np.pi, count), rng.uniform(0, 30, count))
+        plots = PolarPlots(
+            np.sort(rng.uniform(start, end, count)),
+            rng.uniform(50, 2e4, count),
+            rng.uniform(0, 2 * np.pi, count),
+            rng.uniform(0, 30, count),
+        )
         at = np.linspace(start, end, 4)
         own_ship = OwnShip(at, np.stack([3 * at, -5 * at], -1), np.tile([3.0, -5.0], (4, 1)))
-        truth = Truth(rng.uniform(start, end, 2), np.array([7, 9]), rng.normal(size=(2, 2)) * 1e4,
-                      np.array([[1.5, -2.5], [np.nan, np.nan]]))
+        truth = Truth(
+            rng.uniform(start, end, 2),
+            np.array([7, 9]),
+            rng.normal(size=(2, 2)) * 1e4,
+            np.array([[1.5, -2.5], [np.nan, np.nan]]),
+        )
         pairs.append((Scan(start, end, plots, own_ship), truth))
     parameters = {'range_sigma_m': 12.5, 'vessel_class': 'ship', 'max_range_m': 30000.0}
-    csv_folder.write(tmp_path / 'new' / 'folder', 'my scenario', iter(pairs), parameters,
-                     {'cutoff_m': 250.0})
+    csv_folder.write(
+        tmp_path / 'new' / 'folder', 'my scenario', iter(pairs), parameters, {'cutoff_m': 250.0}
+    )
     recording = csv_folder.read(tmp_path / 'new' / 'folder')
     assert recording.tracker_parameters == parameters
     assert TrackerParameters(**recording.tracker_parameters)
@@ -180,8 +237,9 @@ def test_what_is_written_is_read_again(tmp_path):
     for (scan, truth), read, read_truth in zip(pairs, recording.scans, recording.truths):
         assert (read.start, read.end) == pytest.approx((scan.start, scan.end), abs=1e-6)
         for field in ('time', 'range', 'bearing'):
-            np.testing.assert_allclose(getattr(read.plots, field), getattr(scan.plots, field),
-                                       atol=1e-6, rtol=0)
+            np.testing.assert_allclose(
+                getattr(read.plots, field), getattr(scan.plots, field), atol=1e-6, rtol=0
+            )
         np.testing.assert_allclose(read.plots.amplitude, scan.plots.amplitude, atol=1e-3)
         for mine, other in zip(read_truth, truth):
             np.testing.assert_allclose(mine, other, atol=1e-6, rtol=0)
@@ -208,7 +266,8 @@ def test_all_real_recordings_read(recordings):
 def test_radial_speeds_are_read_where_the_file_has_them_and_empty_cells_are_nan(folder):
     assert all(scan.plots.radial_speed is None for scan in csv_folder.read(folder).scans)
     (folder / 'plots.csv').write_text(
-        PLOTS.strip() + ',radial_speed_mps\n4,10.0,100.0,90.0,-3.5\n4,10.0,200.0,359.0,\n')
+        PLOTS.strip() + ',radial_speed_mps\n4,10.0,100.0,90.0,-3.5\n4,10.0,200.0,359.0,\n'
+    )
     first, empty, last = csv_folder.read(folder).scans
     np.testing.assert_array_equal(first.plots.radial_speed, [-3.5, np.nan])
     assert len(empty.plots.radial_speed) == len(last.plots.radial_speed) == 0

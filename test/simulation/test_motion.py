@@ -4,10 +4,15 @@ import pytest
 from marine_tracker.simulation import motion
 from marine_tracker.simulation.motion import SpeedChange, Straight, Turn, Wave
 
-EVERY_LEG = (Straight(100.0), Turn(np.radians(-200), radius=300.0),
-             SpeedChange(12.0, duration=80.0), Straight(30.0),
-             Turn(np.radians(75), rate=np.radians(0.7)),
-             SpeedChange(4.0, acceleration=0.05), Straight(None))
+EVERY_LEG = (
+    Straight(100.0),
+    Turn(np.radians(-200), radius=300.0),
+    SpeedChange(12.0, duration=80.0),
+    Straight(30.0),
+    Turn(np.radians(75), rate=np.radians(0.7)),
+    SpeedChange(4.0, acceleration=0.05),
+    Straight(None),
+)
 
 
 def place(way, times, duration=2000.0):
@@ -50,16 +55,18 @@ def test_speed_change_by_duration_and_by_acceleration_are_the_same_leg():
 
 
 def test_speed_wave_has_the_stated_speed_at_all_times_turns_included():
-    way = motion.sail((0.0, 0.0), 1.0, 9.26, [Straight(300.0), Turn(0.87, radius=200.0)],
-                      Wave(1.03, 1000.0))
+    way = motion.sail(
+        (0.0, 0.0), 1.0, 9.26, [Straight(300.0), Turn(0.87, radius=200.0)], Wave(1.03, 1000.0)
+    )
     times = np.linspace(0, 1500, 301)
     _, velocity = place(way, times)
     assert np.hypot(*velocity.T) == pytest.approx(9.26 + 1.03 * np.sin(2 * np.pi * times / 1000))
 
 
 def test_turn_with_a_speed_wave_ends_after_its_arc():
-    way = motion.sail((0.0, 0.0), 0.0, 2.0, [Turn(np.pi, radius=300.0), Straight(None)],
-                      Wave(1.5, 60.0))
+    way = motion.sail(
+        (0.0, 0.0), 0.0, 2.0, [Turn(np.pi, radius=300.0), Straight(None)], Wave(1.5, 60.0)
+    )
     position, velocity = place(way, [way[1].start])
     assert position[0] == pytest.approx([600.0, 0.0], abs=1e-6)
     assert np.arctan2(*velocity[0]) == pytest.approx(np.pi)
@@ -80,8 +87,11 @@ def test_velocity_is_the_derivative_of_position_and_position_has_no_jumps(wave):
 
 
 def test_ships_in_one_table_do_not_mix():
-    ways = [motion.sail((0.0, 0.0), 0.0, 5.0, EVERY_LEG), motion.sail((9.0, 9.0), 2.0, 3.0),
-            motion.sail((0.0, 0.0), -1.0, 6.0, EVERY_LEG[3:])]
+    ways = [
+        motion.sail((0.0, 0.0), 0.0, 5.0, EVERY_LEG),
+        motion.sail((9.0, 9.0), 2.0, 3.0),
+        motion.sail((0.0, 0.0), -1.0, 6.0, EVERY_LEG[3:]),
+    ]
     paths = motion.table(ways, 600.0)
     times = np.array([0.0, 37.0, 599.0, 600.0, 603.0])
     for ship, way in enumerate(ways):
@@ -97,14 +107,25 @@ def test_two_dimensional_questions_are_answered_in_their_shape():
     assert position[1, 2] == pytest.approx([1.0, 4.0])
 
 
-@pytest.mark.parametrize('legs, wave, text', [
-    ([Straight(None), Turn(1.0, radius=100.0)], None, r'legs\[0\]\.straight has no duration_s'),
-    ([SpeedChange(0.0, duration=9.0), Turn(1.0, radius=100.0)], None, r'legs\[1\]\.turn .*cannot'),
-    ([SpeedChange(1.0, duration=9.0)], Wave(2.0, 60.0), r'legs\[0\]\.speed ends at 1 m/s'),
-    ([Turn(1.0, radius=2.0)], None, r'legs\[0\]\.turn has a radius of 2 m; .* 143 deg/s'),
-    ([SpeedChange(30.0, duration=1.0)], None, r'legs\[0\]\.speed changes by 25 m/s each second'),
-    ([], Wave(6.0, 60.0), 'speed_wave has an amplitude of 6 m/s'),
-])
+@pytest.mark.parametrize(
+    'legs, wave, text',
+    [
+        ([Straight(None), Turn(1.0, radius=100.0)], None, r'legs\[0\]\.straight has no duration_s'),
+        (
+            [SpeedChange(0.0, duration=9.0), Turn(1.0, radius=100.0)],
+            None,
+            r'legs\[1\]\.turn .*cannot',
+        ),
+        ([SpeedChange(1.0, duration=9.0)], Wave(2.0, 60.0), r'legs\[0\]\.speed ends at 1 m/s'),
+        ([Turn(1.0, radius=2.0)], None, r'legs\[0\]\.turn has a radius of 2 m; .* 143 deg/s'),
+        (
+            [SpeedChange(30.0, duration=1.0)],
+            None,
+            r'legs\[0\]\.speed changes by 25 m/s each second',
+        ),
+        ([], Wave(6.0, 60.0), 'speed_wave has an amplitude of 6 m/s'),
+    ],
+)
 def test_impossible_legs_are_refused(legs, wave, text):
     with pytest.raises(ValueError, match=text):
         motion.sail((0.0, 0.0), 0.0, 5.0, legs, wave)

@@ -47,115 +47,206 @@ def test_paper_track_turns_through_50_degrees_at_scan_500():
 
 def test_metric_and_nautical_keys_mean_the_same(make_scenario):
     nautical = make_scenario(targets=[SHIP])
-    metric = make_scenario(targets=[{
-        'start': {'range_m': 5 * 1852, 'bearing_deg': 40}, 'course_deg': 200,
-        'speed_mps': 12 * 1852 / 3600}])
+    metric = make_scenario(
+        targets=[
+            {
+                'start': {'range_m': 5 * 1852, 'bearing_deg': 40},
+                'course_deg': 200,
+                'speed_mps': 12 * 1852 / 3600,
+            }
+        ]
+    )
     for a, b in zip(nautical.truth_at(300.0), metric.truth_at(300.0), strict=True):
         assert a == pytest.approx(b)
 
 
 def test_range_and_bearing_count_from_own_ships_start(make_scenario):
-    loaded = make_scenario(own_ship={'start': {'north_m': 1000, 'east_nm': 1}, 'course_deg': 90,
-                                     'speed_kn': 10}, targets=[SHIP])
+    loaded = make_scenario(
+        own_ship={'start': {'north_m': 1000, 'east_nm': 1}, 'course_deg': 90, 'speed_kn': 10},
+        targets=[SHIP],
+    )
     offset = loaded.truth_at(0).position[0] - loaded.own_ship_at(0).position[0]
-    assert offset == pytest.approx(5 * NAUTICAL_MILE * np.array(
-        [math.sin(math.radians(40)), math.cos(math.radians(40))]))
+    assert offset == pytest.approx(
+        5 * NAUTICAL_MILE * np.array([math.sin(math.radians(40)), math.cos(math.radians(40))])
+    )
     assert loaded.own_ship_at([0, 60]).position[1] == pytest.approx(
-        [NAUTICAL_MILE + 600 * KNOT, 1000])
+        [NAUTICAL_MILE + 600 * KNOT, 1000]
+    )
 
 
 def test_geodetic_starts_are_placed_by_the_origin(make_scenario):
     loaded = make_scenario(
         own_ship={'start': {'lat_deg': 60, 'lon_deg': 10}},
-        targets=[ship(start={'lat_deg': 60.1, 'lon_deg': 10.1})])
+        targets=[ship(start={'lat_deg': 60.1, 'lon_deg': 10.1})],
+    )
     assert loaded.fleet.origin == (60, 10)
     assert loaded.truth_at(0).position[0] == pytest.approx([5560, 11120], rel=1e-3)
 
 
 def test_tracker_parameters_are_those_of_the_radar(make_scenario):
     loaded = make_scenario(
-        radar={'rotation_rpm': 24, 'range_sigma_m': 9, 'bearing_sigma_deg': 0.7, 'max_range_nm': 6,
-               'blind_range_m': 70},
-        tracker={'max_target_speed_kn': 30, 'vessel_class': 'small_craft'})
-    assert loaded.tracker_parameters() == pytest.approx({
-        'range_sigma_m': 9, 'bearing_sigma_deg': 0.7, 'min_range_m': 70, 'max_range_m': 6 * 1852,
-        'glint_sigma_m': 0, 'scan_period_s': 2.5, 'max_target_speed_mps': 30 * KNOT,
-        'range_resolution_m': 30, 'beam_width_deg': 1, 'vessel_class': 'small_craft'})
+        radar={
+            'rotation_rpm': 24,
+            'range_sigma_m': 9,
+            'bearing_sigma_deg': 0.7,
+            'max_range_nm': 6,
+            'blind_range_m': 70,
+        },
+        tracker={'max_target_speed_kn': 30, 'vessel_class': 'small_craft'},
+    )
+    assert loaded.tracker_parameters() == pytest.approx(
+        {
+            'range_sigma_m': 9,
+            'bearing_sigma_deg': 0.7,
+            'min_range_m': 70,
+            'max_range_m': 6 * 1852,
+            'glint_sigma_m': 0,
+            'scan_period_s': 2.5,
+            'max_target_speed_mps': 30 * KNOT,
+            'range_resolution_m': 30,
+            'beam_width_deg': 1,
+            'vessel_class': 'small_craft',
+        }
+    )
 
 
 def test_detectable_is_between_blind_and_maximum_range(make_scenario):
     loaded = make_scenario(
-        radar={'blind_range_m': 100, 'max_range_nm': 4}, own_ship={'start': {'north_m': 0,
-                                                                             'east_m': 5000}},
-        targets=[ship(speed_kn=0, start={'range_m': r, 'bearing_deg': 200})
-                 for r in (99, 101, 7407, 7409)])
+        radar={'blind_range_m': 100, 'max_range_nm': 4},
+        own_ship={'start': {'north_m': 0, 'east_m': 5000}},
+        targets=[
+            ship(speed_kn=0, start={'range_m': r, 'bearing_deg': 200})
+            for r in (99, 101, 7407, 7409)
+        ],
+    )
     assert scenario.detectable(loaded, loaded.truth_at(0)).tolist() == [False, True, True, False]
 
 
-@pytest.mark.parametrize('values, text', [
-    ({'duraton_s': 9}, 'duraton_s is not known; did you mean duration_s?'),
-    ({'duration': 9}, 'duration is not known: the key must end in its unit; write duration_s'),
-    ({'duration_s': 0}, 'duration_s is 0; it must be between 1 and'),
-    ({'duration_s': '10 min'}, "duration_s is '10 min'; it must be a number"),
-    ({'duration_s': math.nan}, 'duration_s is nan; it must be finite'),
-    ({'duration_s': True}, 'duration_s is True; it must be a number'),
-    ({'duration_s': 2}, 'duration_s is 2; it must not be less than a revolution, 2.73 s'),
-    ({'targets': []}, 'the scenario has no targets'),
-    ({'targets': {'a': 1}}, "targets is {'a': 1}; it must be a list"),
-    ({'targets': ['ship']}, "targets[0] is 'ship'; it must be a mapping"),
-    ({'targets': [{'course_deg': 1, 'speed_kn': 1}]}, 'targets[0] has no start'),
-    ({'targets': [SHIP, {k: v for k, v in SHIP.items() if k != 'speed_kn'}]},
-     'targets[1] has no speed_mps or speed_kn'),
-    ({'targets': [{k: v for k, v in SHIP.items() if k != 'course_deg'}]},
-     'targets[0] has no course_deg'),
-    ({'targets': [ship(speed=12)]}, 'targets[0].speed is not known: the key must end in its unit; '
-                                    'write speed_kn or speed_mps'),
-    ({'targets': [ship(speed_kmh=12)]}, 'targets[0].speed_kmh is not known: no such unit here; '
-                                        'write speed_kn or speed_mps'),
-    ({'targets': [ship(speed_mps=12)]}, 'targets[0] has both speed_mps and speed_kn; give one'),
-    ({'targets': [ship(speed_kn=500)]}, 'targets[0].speed_kn is 500; it must be between 0 and 100'),
-    ({'targets': [ship(speed_kn=-5)]}, 'targets[0].speed_kn is -5; it must be between 0 and 100'),
-    ({'targets': [ship(course_deg='north')]}, "targets[0].course_deg is 'north'; it must be a num"),
-    ({'targets': [ship(start={'range_nm': 5})]}, 'targets[0].start has no bearing_deg'),
-    ({'targets': [ship(start={'bearing_deg': 5})]}, 'targets[0].start has none of range_m or'),
-    ({'targets': [ship(start={'range_nm': 5, 'bearing_deg': 1, 'east_m': 3})]},
-     'targets[0].start.east_m is not known'),
-    ({'targets': [ship(start={'range_nm': 5, 'bearing_deg': 1, 'north_m': 3})]},
-     'targets[0].start has range and north; it must have one of'),
-    ({'targets': [ship(start={'lat_deg': 5, 'lon_deg': 1})]}, 'scenario has no origin'),
-    ({'targets': [ship(pd=0.5, pd_factor=0.5)]}, 'targets[0] has both pd and pd_factor'),
-    ({'targets': [ship(pd=1.2)]}, 'targets[0].pd is 1.2; it must be between 0 and 1'),
-    ({'targets': [ship(name=7)]}, 'targets[0].name is 7; it must be a text'),
-    ({'targets': [ship(legs=[{'strait': {}}])]},
-     'targets[0].legs[0].strait is not known; did you mean straight?'),
-    (leg(straight={}, turn={}), 'targets[0].legs[0] has straight and turn; it must have one of'),
-    (leg(turn={'radius_m': 100}), 'targets[0].legs[0].turn has no angle_deg'),
-    (leg(turn={'angle_deg': 90}), 'targets[0].legs[0].turn has none of radius_m or radius_nm'),
-    (leg(turn={'angle_deg': 90, 'radius_m': 9, 'rate_deg_per_s': 1}),
-     'targets[0].legs[0].turn has radius and rate_deg_per_s; it must have one of'),
-    (leg(turn={'angle_deg': 90, 'rate_deg_per_s': 400}), 'turn.rate_deg_per_s is 400; it must be'),
-    (leg(turn={'angle_deg': 90, 'rate_deg': 4}), 'turn.rate_deg is not known'),
-    (leg(speed={'to_kn': 10}), 'targets[0].legs[0].speed has none of duration_s; accel'),
-    (leg(speed={'to_kn': 10, 'acceleration_mps2': 60}), 'acceleration_mps2 is 60; it must be betw'),
-    ({'targets': [ship(legs=[{'straight': {}}, {'straight': {}}])]},
-     'targets[0].legs[0].straight has no duration_s; only the last leg'),
-    ({'targets': [ship(speed_kn=0, legs=[{'turn': {'angle_deg': 9, 'radius_m': 90}}])]},
-     'targets[0].legs[0].turn begins at a mean speed of 0 m/s'),
-    ({'targets': [ship(speed_wave={'amplitude_kn': 20, 'period_s': 60})]},
-     'targets[0].speed_wave has an amplitude of'),
-    ({'radar': {'max_range_m': 500, 'blind_range_m': 600}}, 'radar.blind_range is 600 m; it must'),
-    ({'radar': {'pd_near': 0.5, 'pd_far': 0.6}}, 'radar.pd_far is 0.6; it must not exceed pd_near'),
-    ({'radar': {'sensor_errors': 'iso'}}, "radar.sensor_errors is 'iso'; it must be one of none, "),
-    ({'radar': {'sensor_errors': 'imo', 'range_sigma_m': 9}}, 'radar has range_sigma beside'),
-    ({'radar': {'rpm': 22}}, 'radar.rpm is not known'),
-    ({'clutter': {'uniform': -1}}, 'clutter.uniform is -1; it must be between 0'),
-    ({'tracker': {'vessel_class': 'boat'}}, "tracker.vessel_class is 'boat'; it must be one of"),
-    ({'own_ship': {'start': {'range_m': 1, 'bearing_deg': 2}}},
-     'own_ship.start gives range and bearing, which count from own ship'),
-    ({'own_ship': {'vessel': 3}}, 'own_ship.vessel names an AIS vessel, but the scenario has no'),
-    ({'own_ship': [1]}, 'own_ship is [1]; it must be a mapping'),
-    ({'ais': {'file': 'nowhere.csv'}}, 'nowhere.csv cannot be read'),
-])
+@pytest.mark.parametrize(
+    'values, text',
+    [
+        ({'duraton_s': 9}, 'duraton_s is not known; did you mean duration_s?'),
+        ({'duration': 9}, 'duration is not known: the key must end in its unit; write duration_s'),
+        ({'duration_s': 0}, 'duration_s is 0; it must be between 1 and'),
+        ({'duration_s': '10 min'}, "duration_s is '10 min'; it must be a number"),
+        ({'duration_s': math.nan}, 'duration_s is nan; it must be finite'),
+        ({'duration_s': True}, 'duration_s is True; it must be a number'),
+        ({'duration_s': 2}, 'duration_s is 2; it must not be less than a revolution, 2.73 s'),
+        ({'targets': []}, 'the scenario has no targets'),
+        ({'targets': {'a': 1}}, "targets is {'a': 1}; it must be a list"),
+        ({'targets': ['ship']}, "targets[0] is 'ship'; it must be a mapping"),
+        ({'targets': [{'course_deg': 1, 'speed_kn': 1}]}, 'targets[0] has no start'),
+        (
+            {'targets': [SHIP, {k: v for k, v in SHIP.items() if k != 'speed_kn'}]},
+            'targets[1] has no speed_mps or speed_kn',
+        ),
+        (
+            {'targets': [{k: v for k, v in SHIP.items() if k != 'course_deg'}]},
+            'targets[0] has no course_deg',
+        ),
+        (
+            {'targets': [ship(speed=12)]},
+            'targets[0].speed is not known: the key must end in its unit; '
+            'write speed_kn or speed_mps',
+        ),
+        (
+            {'targets': [ship(speed_kmh=12)]},
+            'targets[0].speed_kmh is not known: no such unit here; write speed_kn or speed_mps',
+        ),
+        ({'targets': [ship(speed_mps=12)]}, 'targets[0] has both speed_mps and speed_kn; give one'),
+        (
+            {'targets': [ship(speed_kn=500)]},
+            'targets[0].speed_kn is 500; it must be between 0 and 100',
+        ),
+        (
+            {'targets': [ship(speed_kn=-5)]},
+            'targets[0].speed_kn is -5; it must be between 0 and 100',
+        ),
+        (
+            {'targets': [ship(course_deg='north')]},
+            "targets[0].course_deg is 'north'; it must be a num",
+        ),
+        ({'targets': [ship(start={'range_nm': 5})]}, 'targets[0].start has no bearing_deg'),
+        ({'targets': [ship(start={'bearing_deg': 5})]}, 'targets[0].start has none of range_m or'),
+        (
+            {'targets': [ship(start={'range_nm': 5, 'bearing_deg': 1, 'east_m': 3})]},
+            'targets[0].start.east_m is not known',
+        ),
+        (
+            {'targets': [ship(start={'range_nm': 5, 'bearing_deg': 1, 'north_m': 3})]},
+            'targets[0].start has range and north; it must have one of',
+        ),
+        ({'targets': [ship(start={'lat_deg': 5, 'lon_deg': 1})]}, 'scenario has no origin'),
+        ({'targets': [ship(pd=0.5, pd_factor=0.5)]}, 'targets[0] has both pd and pd_factor'),
+        ({'targets': [ship(pd=1.2)]}, 'targets[0].pd is 1.2; it must be between 0 and 1'),
+        ({'targets': [ship(name=7)]}, 'targets[0].name is 7; it must be a text'),
+        (
+            {'targets': [ship(legs=[{'strait': {}}])]},
+            'targets[0].legs[0].strait is not known; did you mean straight?',
+        ),
+        (
+            leg(straight={}, turn={}),
+            'targets[0].legs[0] has straight and turn; it must have one of',
+        ),
+        (leg(turn={'radius_m': 100}), 'targets[0].legs[0].turn has no angle_deg'),
+        (leg(turn={'angle_deg': 90}), 'targets[0].legs[0].turn has none of radius_m or radius_nm'),
+        (
+            leg(turn={'angle_deg': 90, 'radius_m': 9, 'rate_deg_per_s': 1}),
+            'targets[0].legs[0].turn has radius and rate_deg_per_s; it must have one of',
+        ),
+        (
+            leg(turn={'angle_deg': 90, 'rate_deg_per_s': 400}),
+            'turn.rate_deg_per_s is 400; it must be',
+        ),
+        (leg(turn={'angle_deg': 90, 'rate_deg': 4}), 'turn.rate_deg is not known'),
+        (leg(speed={'to_kn': 10}), 'targets[0].legs[0].speed has none of duration_s; accel'),
+        (
+            leg(speed={'to_kn': 10, 'acceleration_mps2': 60}),
+            'acceleration_mps2 is 60; it must be betw',
+        ),
+        (
+            {'targets': [ship(legs=[{'straight': {}}, {'straight': {}}])]},
+            'targets[0].legs[0].straight has no duration_s; only the last leg',
+        ),
+        (
+            {'targets': [ship(speed_kn=0, legs=[{'turn': {'angle_deg': 9, 'radius_m': 90}}])]},
+            'targets[0].legs[0].turn begins at a mean speed of 0 m/s',
+        ),
+        (
+            {'targets': [ship(speed_wave={'amplitude_kn': 20, 'period_s': 60})]},
+            'targets[0].speed_wave has an amplitude of',
+        ),
+        (
+            {'radar': {'max_range_m': 500, 'blind_range_m': 600}},
+            'radar.blind_range is 600 m; it must',
+        ),
+        (
+            {'radar': {'pd_near': 0.5, 'pd_far': 0.6}},
+            'radar.pd_far is 0.6; it must not exceed pd_near',
+        ),
+        (
+            {'radar': {'sensor_errors': 'iso'}},
+            "radar.sensor_errors is 'iso'; it must be one of none, ",
+        ),
+        ({'radar': {'sensor_errors': 'imo', 'range_sigma_m': 9}}, 'radar has range_sigma beside'),
+        ({'radar': {'rpm': 22}}, 'radar.rpm is not known'),
+        ({'clutter': {'uniform': -1}}, 'clutter.uniform is -1; it must be between 0'),
+        (
+            {'tracker': {'vessel_class': 'boat'}},
+            "tracker.vessel_class is 'boat'; it must be one of",
+        ),
+        (
+            {'own_ship': {'start': {'range_m': 1, 'bearing_deg': 2}}},
+            'own_ship.start gives range and bearing, which count from own ship',
+        ),
+        (
+            {'own_ship': {'vessel': 3}},
+            'own_ship.vessel names an AIS vessel, but the scenario has no',
+        ),
+        ({'own_ship': [1]}, 'own_ship is [1]; it must be a mapping'),
+        ({'ais': {'file': 'nowhere.csv'}}, 'nowhere.csv cannot be read'),
+    ],
+)
 def test_wrong_scenarios_are_refused_by_name_value_and_limit(tmp_path, values, text):
     file = tmp_path / 'wrong.yaml'
     file.write_text(yaml.safe_dump({'duration_s': 600, 'targets': [SHIP], **values}))
@@ -165,11 +256,14 @@ def test_wrong_scenarios_are_refused_by_name_value_and_limit(tmp_path, values, t
     assert str(refused.value).startswith(str(file))
 
 
-@pytest.mark.parametrize('text, message', [
-    ('', 'the scenario has no duration_s'),
-    ('- a\n', 'it must hold a mapping'),
-    ('a: [', 'is not YAML'),
-])
+@pytest.mark.parametrize(
+    'text, message',
+    [
+        ('', 'the scenario has no duration_s'),
+        ('- a\n', 'it must hold a mapping'),
+        ('a: [', 'is not YAML'),
+    ],
+)
 def test_files_that_hold_no_scenario_are_refused(tmp_path, text, message):
     file = tmp_path / 'wrong.yaml'
     file.write_text(text)
@@ -178,8 +272,9 @@ def test_files_that_hold_no_scenario_are_refused(tmp_path, text, message):
 
 
 def test_the_example_in_the_documentation_is_right(tmp_path):
-    example = textwrap.dedent(re.search(
-        r'(?s)\n\n(    description:.*?)\n\nShips', scenario.__doc__).group(1))
+    example = textwrap.dedent(
+        re.search(r'(?s)\n\n(    description:.*?)\n\nShips', scenario.__doc__).group(1)
+    )
     file = tmp_path / 'example.yaml'
     file.write_text(example)
     loaded = scenario.load(file)
@@ -188,14 +283,17 @@ def test_the_example_in_the_documentation_is_right(tmp_path):
 
 
 def test_the_example_of_hulls_and_land_is_right(tmp_path):
-    example = textwrap.dedent(re.search(
-        r'(?s)\n\n(    targets:\n      - {name: tanker.*)\n', scenario.__doc__).group(1))
+    example = textwrap.dedent(
+        re.search(r'(?s)\n\n(    targets:\n      - {name: tanker.*)\n', scenario.__doc__).group(1)
+    )
     file = tmp_path / 'example.yaml'
     file.write_text('duration_s: 60\n' + example)
     loaded = scenario.load(file)
     assert loaded.fleet.hulls.beam.tolist() == [32]
     assert [(shore.name, len(shore.corners)) for shore in loaded.shores] == [
-        ('mole', 2), ('islet', 4)]
+        ('mole', 2),
+        ('islet', 4),
+    ]
 
 
 def test_unknown_names_are_answered_with_the_nearest():

@@ -10,8 +10,14 @@ RUNS = 40
 
 def runs(loaded):
     """Range and bearing of the only target's plots, [RUNS][scans], pd 1."""
-    plots = [[(s.plots.range[0], s.plots.bearing[0]) for s, _ in simulate(loaded, seed)
-              if len(s.plots.time) == 1] for seed in range(RUNS)]
+    plots = [
+        [
+            (s.plots.range[0], s.plots.bearing[0])
+            for s, _ in simulate(loaded, seed)
+            if len(s.plots.time) == 1
+        ]
+        for seed in range(RUNS)
+    ]
     return np.array(plots).transpose(2, 0, 1)
 
 
@@ -19,10 +25,19 @@ def runs(loaded):
 def imo_scenario(make_scenario):
     def make(bearing_deg, length_m=1, speed_kn=0.0, course_deg=0):
         return make_scenario(
-            duration_s=60, radar={'sensor_errors': 'imo', 'pd_near': 1, 'pd_far': 1},
+            duration_s=60,
+            radar={'sensor_errors': 'imo', 'pd_near': 1, 'pd_far': 1},
             own_ship={'course_deg': 0, 'speed_kn': speed_kn},
-            targets=[{'start': {'range_m': 8000, 'bearing_deg': bearing_deg}, 'course_deg':
-                      course_deg, 'speed_kn': speed_kn, 'length_m': length_m}])
+            targets=[
+                {
+                    'start': {'range_m': 8000, 'bearing_deg': bearing_deg},
+                    'course_deg': course_deg,
+                    'speed_kn': speed_kn,
+                    'length_m': length_m,
+                }
+            ],
+        )
+
     return make
 
 
@@ -33,13 +48,13 @@ def test_random_errors_have_the_stated_budget(imo_scenario):
     assert range_sigma == pytest.approx(22.7, abs=0.05)
     # On the beam rolling does not count: the rest of 0.185 deg is 0.149.
     assert np.degrees(bearing_sigma) == pytest.approx(0.185, abs=0.001)
-    bearing_sigma = np.sqrt(bearing_sigma ** 2 - sensor_errors.ROLL_BEARING ** 2 / 4)
+    bearing_sigma = np.sqrt(bearing_sigma**2 - sensor_errors.ROLL_BEARING**2 / 4)
     assert np.degrees(bearing_sigma) == pytest.approx(0.149, abs=0.001)
     assert distance.std() == pytest.approx(range_sigma, rel=0.11)
     within = bearing - bearing.mean(axis=1, keepdims=True)
     assert within.std() == pytest.approx(bearing_sigma, rel=0.13)
     offset = np.degrees(bearing.mean(axis=1)) - 90
-    assert np.abs(offset) == pytest.approx(np.full(RUNS, 0.5), abs=0.15)    # gyro, of either sign
+    assert np.abs(offset) == pytest.approx(np.full(RUNS, 0.5), abs=0.15)  # gyro, of either sign
     assert 5 < (offset > 0).sum() < 35
 
 
@@ -72,8 +87,9 @@ def test_glint_of_a_ship_seen_from_abeam_moves_the_bearing(imo_scenario):
 
 
 def test_own_ship_is_reckoned_from_gyro_and_log_while_truth_is_true(make_scenario):
-    loaded = make_scenario(duration_s=600, radar={'sensor_errors': 'imo'},
-                           own_ship={'course_deg': 30, 'speed_kn': 10})
+    loaded = make_scenario(
+        duration_s=600, radar={'sensor_errors': 'imo'}, own_ship={'course_deg': 30, 'speed_kn': 10}
+    )
     pairs = list(simulate(loaded, 4))
     own = [scan.own_ship for scan, _ in pairs]
     velocity = np.concatenate([o.velocity for o in own])
@@ -90,12 +106,16 @@ def test_own_ship_is_reckoned_from_gyro_and_log_while_truth_is_true(make_scenari
 
 
 def test_errors_of_one_seed_are_the_same_and_leave_detection_alone(make_scenario):
-    ship = [{'start': {'range_nm': 9, 'bearing_deg': 40}, 'course_deg': 200, 'speed_kn': 12,
-             'pd': 0.6}]
+    ship = [
+        {'start': {'range_nm': 9, 'bearing_deg': 40}, 'course_deg': 200, 'speed_kn': 12, 'pd': 0.6}
+    ]
     imo = make_scenario(radar={'sensor_errors': 'imo'}, targets=ship)
     first, second = ([scan.plots for scan, _ in simulate(imo, 3)] for _ in range(2))
-    assert all(np.array_equal(a, b) for p, q in zip(first, second, strict=True)
-               for a, b in zip(p, q, strict=True))
+    assert all(
+        np.array_equal(a, b)
+        for p, q in zip(first, second, strict=True)
+        for a, b in zip(p, q, strict=True)
+    )
     plain = [scan.plots for scan, _ in simulate(make_scenario(targets=ship), 3)]
     assert [len(p.time) for p in plain] == [len(p.time) for p in first]
     assert np.abs(wrap_angle(first[0].bearing)).max() < np.pi

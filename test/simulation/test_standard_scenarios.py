@@ -7,8 +7,11 @@ from marine_tracker.simulation.standard_scenarios import IMAZU, a823, judged_at
 
 # Resolution A.823(19): own course/speed, target range/bearing, relative and true course/speed.
 GIVEN = {
-    1: (0, 10, 8, 0, 180, 20, 180, 10), 2: (0, 10, 1, 0, 90, 10, 45, 14.142),
-    3: (0, 5, 8, 45, 225, 20, 237.121, 16.84), 4: (0, 25, 8, 45, 225, 20, 307.516, 17.83)}
+    1: (0, 10, 8, 0, 180, 20, 180, 10),
+    2: (0, 10, 1, 0, 90, 10, 45, 14.142),
+    3: (0, 5, 8, 45, 225, 20, 237.121, 16.84),
+    4: (0, 25, 8, 45, 225, 20, 307.516, 17.83),
+}
 
 
 @pytest.mark.parametrize('number', GIVEN)
@@ -20,10 +23,18 @@ def test_the_imo_targets_are_where_they_should_be_when_judged(number, after, tur
     distance, bearing = to_range_bearing(truth.position[0] - own.position[0])
     found = [own.velocity[0], truth.velocity[0] - own.velocity[0], truth.velocity[0]]
     (own_speed, own_course), (speed, course), (true_speed, true_course) = map(
-        to_range_bearing, found)
-    assert [np.degrees(own_course) % 360, own_speed / KNOT, distance / NAUTICAL_MILE,
-            np.degrees(bearing + 1e-12) % 360, np.degrees(course), speed / KNOT,
-            np.degrees(true_course), true_speed / KNOT] == pytest.approx(GIVEN[number], abs=2e-3)
+        to_range_bearing, found
+    )
+    assert [
+        np.degrees(own_course) % 360,
+        own_speed / KNOT,
+        distance / NAUTICAL_MILE,
+        np.degrees(bearing + 1e-12) % 360,
+        np.degrees(course),
+        speed / KNOT,
+        np.degrees(true_course),
+        true_speed / KNOT,
+    ] == pytest.approx(GIVEN[number], abs=2e-3)
     assert loaded.fleet.length[0] == 200 and loaded.radar.sensor_errors == 'imo'
 
 
@@ -34,8 +45,10 @@ def test_own_ship_turns_in_one_minute_after_three_steady_ones(turn):
 
     def course(time):
         return np.degrees(np.arctan2(*loaded.own_ship_at(time).velocity[0]))
+
     assert [course(t) for t in (0, end - 60, end - 30, end, judged_at(20, turn))] == pytest.approx(
-        [-turn, -turn, -turn / 2, 0, 0], abs=1e-6)
+        [-turn, -turn, -turn / 2, 0, 0], abs=1e-6
+    )
     assert 180 < end - 60 < 183
     assert 0 <= end + 20 - judged_at(20, turn) < loaded.radar.scan_period
 

@@ -68,8 +68,9 @@ def test_chains_are_solved_exactly(seed, length):
     order = np.lexsort((plot, track))
     gain = rng.uniform(0.1, 1, 2 * length)
     check(track[order], plot[order], gain, length, length + 1)
-    check(plot[np.lexsort((track, plot))], track[np.lexsort((track, plot))], gain, length + 1,
-          length)
+    check(
+        plot[np.lexsort((track, plot))], track[np.lexsort((track, plot))], gain, length + 1, length
+    )
 
 
 def test_the_nearest_plot_yields_where_the_sum_is_better():

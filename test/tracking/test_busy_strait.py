@@ -14,8 +14,9 @@ from marine_tracker.tracking.tracker import Tracker
 def follow(seed, estimator):
     """Share of its detectable time each ship was held, mean false tracks, RSS after each scan."""
     strait = scenario.load('busy_strait')
-    parameters = from_mapping(TrackerParameters,
-                              {**strait.tracker_parameters(), 'estimator': estimator})
+    parameters = from_mapping(
+        TrackerParameters, {**strait.tracker_parameters(), 'estimator': estimator}
+    )
     tracker = Tracker(parameters)
     memory = tracker.start()
     detectable, held = np.zeros(41), np.zeros(41)
@@ -27,8 +28,13 @@ def follow(seed, estimator):
         shown = estimate.position[memory.tracks.number > 0]
         position = truth.position + (scan.end - truth.time)[:, None] * truth.velocity
         distance = np.hypot(*(position - scan.own_ship.position[-1]).T)
-        near = 4 * np.hypot(parameters.range_sigma_m,
-                            distance * np.radians(parameters.bearing_sigma_deg)) + 50
+        near = (
+            4
+            * np.hypot(
+                parameters.range_sigma_m, distance * np.radians(parameters.bearing_sigma_deg)
+            )
+            + 50
+        )
         apart = np.hypot(*(position[:, None] - shown).transpose(2, 0, 1))
         cost = np.where(apart < near[:, None], apart, 1e9)
         ship, track = linear_sum_assignment(cost)

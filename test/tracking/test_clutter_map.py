@@ -7,7 +7,7 @@ from marine_tracker.tracking import clutter_map
 def sea(rng, density, reach, sectors=(0.0, 2 * np.pi)):
     """Range and bearing of Poisson clutter of `density` 1/m^2 out to `reach` m."""
     width = sectors[1] - sectors[0]
-    count = rng.poisson(density * width / 2 * reach ** 2)
+    count = rng.poisson(density * width / 2 * reach**2)
     return reach * np.sqrt(rng.random(count)), rng.uniform(*sectors, count)
 
 

@@ -15,38 +15,71 @@ def plots_at(position, radial_speed, time=0.0):
     position = np.asarray(position, float)
     count = len(position)
     none = np.zeros(count)
-    return Plots(none + time, np.hypot(*position.T), np.arctan2(*position.T), none,
-                 np.zeros((count, 2)), position, np.tile(np.eye(2), (count, 1, 1)),
-                 np.asarray(radial_speed, float))
+    return Plots(
+        none + time,
+        np.hypot(*position.T),
+        np.arctan2(*position.T),
+        none,
+        np.zeros((count, 2)),
+        position,
+        np.tile(np.eye(2), (count, 1, 1)),
+        np.asarray(radial_speed, float),
+    )
 
 
 def tracks(position, velocity, sigma):
-    covariance = np.tile(np.diag([1.0, 1.0, sigma ** 2, sigma ** 2]), (len(position), 1, 1))
-    return Extrapolation(np.zeros(len(position)), np.asarray(position, float),
-                         np.asarray(velocity, float), covariance)
+    covariance = np.tile(np.diag([1.0, 1.0, sigma**2, sigma**2]), (len(position), 1, 1))
+    return Extrapolation(
+        np.zeros(len(position)),
+        np.asarray(position, float),
+        np.asarray(velocity, float),
+        covariance,
+    )
 
 
 NO_TRACKS = tracks(np.zeros((0, 2)), np.zeros((0, 2)), 1.0)
 NO_PLOTS = plots_at(np.zeros((0, 2)), [])
 
 
-@pytest.mark.parametrize('place, speed, passes', [
-    ((1000, 0), 5.0, True),         # east of the radar, the eastward speed is what leaves
-    ((1000, 0), 5.0 + 0.66, True), ((1000, 0), 5.0 + 0.70, False),      # 3 sqrt(0.2^2 + 0.1^2)
-    ((1000, 0), 5.0 - 0.70, False), ((1000, 0), -5.0, False),
-    ((0, 1000), -2.0, True), ((0, 1000), 5.0, False),       # north of it, the northward one
-    ((1000, 0), np.nan, True)])
+@pytest.mark.parametrize(
+    'place, speed, passes',
+    [
+        ((1000, 0), 5.0, True),  # east of the radar, the eastward speed is what leaves
+        ((1000, 0), 5.0 + 0.66, True),
+        ((1000, 0), 5.0 + 0.70, False),  # 3 sqrt(0.2^2 + 0.1^2)
+        ((1000, 0), 5.0 - 0.70, False),
+        ((1000, 0), -5.0, False),
+        ((0, 1000), -2.0, True),
+        ((0, 1000), 5.0, False),  # north of it, the northward one
+        ((1000, 0), np.nan, True),
+    ],
+)
 def test_a_plot_must_leave_as_fast_as_its_track_goes_that_way(place, speed, passes):
     ahead = tracks([place], [(5.0, -2.0)], 0.1)
-    fit = doppler.agree(np.array([0]), np.array([0]), ahead, NO_PLOTS, plots_at([place], [speed]),
-                        SIGMA, 10.0, REACH)
+    fit = doppler.agree(
+        np.array([0]),
+        np.array([0]),
+        ahead,
+        NO_PLOTS,
+        plots_at([place], [speed]),
+        SIGMA,
+        10.0,
+        REACH,
+    )
     assert fit.tolist() == [passes]
 
 
-@pytest.mark.parametrize('before, now, step, passes', [
-    (4.0, 4.8, 1e-6, True), (4.0, 4.9, 1e-6, False),        # 3 sqrt 2 0.2 = 0.849
-    (4.0, 5.8, 10.0, True), (4.0, 5.9, 10.0, False),        # and 10^2 / 1000 in each second
-    (np.nan, 9.0, 1e-6, True), (4.0, np.nan, 1e-6, True)])
+@pytest.mark.parametrize(
+    'before, now, step, passes',
+    [
+        (4.0, 4.8, 1e-6, True),
+        (4.0, 4.9, 1e-6, False),  # 3 sqrt 2 0.2 = 0.849
+        (4.0, 5.8, 10.0, True),
+        (4.0, 5.9, 10.0, False),  # and 10^2 / 1000 in each second
+        (np.nan, 9.0, 1e-6, True),
+        (4.0, np.nan, 1e-6, True),
+    ],
+)
 def test_two_plots_of_a_new_target_leave_alike(before, now, step, passes):
     lone = plots_at([(0, 1000.0)], [before])
     plots = plots_at([(0, 1000.0)], [now], step)
@@ -56,8 +89,16 @@ def test_two_plots_of_a_new_target_leave_alike(before, now, step, passes):
 
 def test_lone_plots_that_told_nothing_rule_nothing_out():
     lone = plots_at([(0, 1000.0)], [0.0])._replace(radial_speed=None)
-    fit = doppler.agree(np.array([0]), np.array([0]), NO_TRACKS, lone,
-                        plots_at([(0, 1000.0)], [9.0]), SIGMA, 10.0, REACH)
+    fit = doppler.agree(
+        np.array([0]),
+        np.array([0]),
+        NO_TRACKS,
+        lone,
+        plots_at([(0, 1000.0)], [9.0]),
+        SIGMA,
+        10.0,
+        REACH,
+    )
     assert fit.tolist() == [True]
 
 
@@ -91,6 +132,7 @@ def test_doppler_keeps_clutter_from_becoming_targets(hf_scans, estimator):
         now = tracker.extrapolate(alive, truth.time[0])
         apart = np.linalg.norm(now.position[:, None] - truth.position, axis=-1)
         return len(alive.id), (apart.min(0, initial=np.inf) < 6000).sum()
+
     with_, held = run(True)
     without, _ = run(False)
     assert held >= 4 and with_ <= 10

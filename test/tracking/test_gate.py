@@ -15,13 +15,26 @@ def test_the_gate_holds_as_many_plots_as_promised(probability):
     assert gate_size(probability) == pytest.approx(chi2.ppf(probability, 2), rel=1e-6)
 
 
-def scene(rng, tracks, plots, *, reach=6000.0, sigma=60.0, bearing_sigma=0.0087, speed=15.0,
-          own_speed=0.0, period=PERIOD, bearing0=None, close=0.7):
+def scene(
+    rng,
+    tracks,
+    plots,
+    *,
+    reach=6000.0,
+    sigma=60.0,
+    bearing_sigma=0.0087,
+    speed=15.0,
+    own_speed=0.0,
+    period=PERIOD,
+    bearing0=None,
+    close=0.7,
+):
     """Random tracks, and plots of which a share `close` lies near one of them."""
     bearing0 = rng.uniform(0, 2 * np.pi) if bearing0 is None else bearing0
     sweep = Sweep(0.0, period, bearing0)
-    own = OwnShip(np.array([0.0]), rng.normal(0, 100, (1, 2)),
-                  own_speed * unit_vector(rng.uniform(0, 7, 1)))
+    own = OwnShip(
+        np.array([0.0]), rng.normal(0, 100, (1, 2)), own_speed * unit_vector(rng.uniform(0, 7, 1))
+    )
     position = own.position + rng.uniform(-1, 1, (tracks, 2)) * reach
     velocity = speed * rng.normal(size=(tracks, 2))
     root = rng.normal(size=(tracks, 2, 2)) * sigma * rng.uniform(0.02, 1, (tracks, 1, 1))
@@ -33,7 +46,8 @@ def scene(rng, tracks, plots, *, reach=6000.0, sigma=60.0, bearing_sigma=0.0087,
     position = position + time[:, None] * velocity
     if tracks:
         near = position[rng.integers(0, tracks, plots)] + sigma * (
-            rng.uniform(0.1, 2.5, (plots, 1)) * rng.normal(size=(plots, 2)))
+            rng.uniform(0.1, 2.5, (plots, 1)) * rng.normal(size=(plots, 2))
+        )
     else:
         near = np.zeros((plots, 2))
     far = own.position + rng.uniform(-1, 1, (plots, 2)) * reach
@@ -74,7 +88,10 @@ SCENES = {
     'little known': {'sigma': 2000.0},
     'hopeless': {'sigma': 20000.0},
     'coarse bearings around the antenna': {
-        'reach': 300.0, 'sigma': 100.0, 'bearing_sigma': np.radians(5.0)},
+        'reach': 300.0,
+        'sigma': 100.0,
+        'bearing_sigma': np.radians(5.0),
+    },
     'sharp': {'sigma': 1.0},
     'slow antenna': {'period': 30.0, 'speed': 5.0},
 }
@@ -103,14 +120,24 @@ def test_the_gate_does_not_tear_at_north(north):
     bearing = north + np.linspace(-0.02, 0.02, 9)
     position = 3000.0 * unit_vector(bearing)
     own = OwnShip(np.zeros(1), np.zeros((1, 2)), np.zeros((1, 2)))
-    plots = locate(PolarPlots(np.zeros(9), np.full(9, 3000.0), wrap_bearing(bearing), np.zeros(9)),
-                   own, 15.0, 0.0087)
+    plots = locate(
+        PolarPlots(np.zeros(9), np.full(9, 3000.0), wrap_bearing(bearing), np.zeros(9)),
+        own,
+        15.0,
+        0.0087,
+    )
     covariance = np.tile(2500.0 * np.eye(2), (9, 1, 1))
-    arguments = (np.zeros(9), position, np.zeros((9, 2)), covariance, Sweep(0.0, 0.0, 0.0), plots,
-                 np.zeros((9, 2)))
+    arguments = (
+        np.zeros(9),
+        position,
+        np.zeros((9, 2)),
+        covariance,
+        Sweep(0.0, 0.0, 0.0),
+        plots,
+        np.zeros((9, 2)),
+    )
     track, plot, _, _ = gate(*arguments, 15.0, 0.0087, gate_size(0.99))
-    assert set(zip(track.tolist(), plot.tolist())) == set(
-        brute_force(*arguments, gate_size(0.99)))
+    assert set(zip(track.tolist(), plot.tolist())) == set(brute_force(*arguments, gate_size(0.99)))
     assert len(track) > 30
 
 
@@ -132,12 +159,24 @@ def test_the_gate_holds_the_targets_plot_as_often_as_promised():
         bearing = rng.uniform(0, 2 * np.pi, count)
         truth = rng.uniform(1000, 9000, count)[:, None] * unit_vector(bearing)
         distance, bearing = to_range_bearing(truth)
-        polar = PolarPlots(np.zeros(count), distance + rng.normal(0, 15, count),
-                           wrap_bearing(bearing + rng.normal(0, 0.0087, count)), np.zeros(count))
+        polar = PolarPlots(
+            np.zeros(count),
+            distance + rng.normal(0, 15, count),
+            wrap_bearing(bearing + rng.normal(0, 0.0087, count)),
+            np.zeros(count),
+        )
         track, plot, _, _ = gate(
-            np.zeros(count), truth + rng.normal(size=(count, 2)) @ root.T, np.zeros((count, 2)),
-            np.tile(root @ root.T, (count, 1, 1)), Sweep(0.0, 0.0, 0.0),
-            locate(polar, own, 15.0, 0.0087), np.zeros((count, 2)), 15.0, 0.0087, gate_size(0.99))
+            np.zeros(count),
+            truth + rng.normal(size=(count, 2)) @ root.T,
+            np.zeros((count, 2)),
+            np.tile(root @ root.T, (count, 1, 1)),
+            Sweep(0.0, 0.0, 0.0),
+            locate(polar, own, 15.0, 0.0087),
+            np.zeros((count, 2)),
+            15.0,
+            0.0087,
+            gate_size(0.99),
+        )
         hits += np.count_nonzero(track == plot)
     assert abs(hits / 20_000 - 0.99) < 0.003
 
@@ -153,10 +192,13 @@ def test_windows_find_exactly_the_plots_inside_them(seed):
     plot_range, plot_bearing = rng.uniform(0, 6000, plots), rng.uniform(0, 2 * np.pi, plots)
     plot_bearing[0] = 0.0
     track, plot = window_pairs(low, high, bearing, half, plot_range, plot_bearing)
-    expected = {(i, j) for i in range(tracks) for j in range(plots)
-                if low[i] <= plot_range[j] <= high[i] and (
-                    half[i] >= np.pi
-                    or np.cos(plot_bearing[j] - bearing[i]) >= np.cos(half[i]))}
+    expected = {
+        (i, j)
+        for i in range(tracks)
+        for j in range(plots)
+        if low[i] <= plot_range[j] <= high[i]
+        and (half[i] >= np.pi or np.cos(plot_bearing[j] - bearing[i]) >= np.cos(half[i]))
+    }
     found = list(zip(track.tolist(), plot.tolist()))
     assert len(found) == len(set(found))
     assert set(found) == expected

@@ -21,15 +21,21 @@ def scans(count, seed):
         distance = np.hypot(*place) + rng.normal(0, SIGMA)
         bearing = wrap_bearing(np.arctan2(*place) + rng.normal(0, BEARING_SIGMA))
         start = k * PERIOD
-        time = start + 0.5 * PERIOD                # a beam that begins in the south
-        yield Scan(start, start + PERIOD, PolarPlots(
-            np.array([time]), np.array([distance]), np.array([bearing]), np.zeros(1)),
-            OwnShip(np.array([start, start + PERIOD]), own, own))
+        time = start + 0.5 * PERIOD  # a beam that begins in the south
+        yield Scan(
+            start,
+            start + PERIOD,
+            PolarPlots(np.array([time]), np.array([distance]), np.array([bearing]), np.zeros(1)),
+            OwnShip(np.array([start, start + PERIOD]), own, own),
+        )
 
 
 def run(glint, estimator, seed):
-    tracker = Tracker(TrackerParameters(
-        estimator=estimator, range_sigma_m=SIGMA, bearing_sigma_deg=0.15, glint_sigma_m=glint))
+    tracker = Tracker(
+        TrackerParameters(
+            estimator=estimator, range_sigma_m=SIGMA, bearing_sigma_deg=0.15, glint_sigma_m=glint
+        )
+    )
     memory, reports = tracker.start(), []
     for scan in scans(60, seed):
         memory, report = tracker.step(memory, scan)
@@ -38,11 +44,15 @@ def run(glint, estimator, seed):
 
 
 @pytest.mark.parametrize('estimator', ['cs_kalman', 'imm'])
-@pytest.mark.parametrize(('glint', 'most'), [
-    # The gate holds 99.5 % of 5 x 58 plots and more, as the echo wanders along one axis only.
-    (GLINT, 8),
-    # As shipped, for ships: 25 m, whose gate holds 99 % of an echo that wanders by 30.
-    (TrackerParameters.glint_sigma_m, 12)])
+@pytest.mark.parametrize(
+    ('glint', 'most'),
+    [
+        # The gate holds 99.5 % of 5 x 58 plots and more, as the echo wanders along one axis only.
+        (GLINT, 8),
+        # As shipped, for ships: 25 m, whose gate holds 99 % of an echo that wanders by 30.
+        (TrackerParameters.glint_sigma_m, 12),
+    ],
+)
 def test_a_large_ship_keeps_her_track_where_the_tracker_knows_of_glint(estimator, glint, most):
     missed = 0
     for seed in range(5):

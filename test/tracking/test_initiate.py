@@ -15,8 +15,15 @@ def plots(position, time=0.0, sigma=SIGMA):
     position = np.reshape(np.asarray(position, float), (-1, 2))
     count = len(position)
     distance = np.hypot(*position.T)
-    return Plots(np.full(count, time), distance, np.arctan2(*position.T), np.zeros(count),
-                 np.zeros((count, 2)), position, np.tile(sigma ** 2 * np.eye(2), (count, 1, 1)))
+    return Plots(
+        np.full(count, time),
+        distance,
+        np.arctan2(*position.T),
+        np.zeros(count),
+        np.zeros((count, 2)),
+        position,
+        np.tile(sigma**2 * np.eye(2), (count, 1, 1)),
+    )
 
 
 def pairs(before, now, free=None, room=100, max_speed=SPEED, chosen=None):
@@ -28,8 +35,10 @@ def pairs(before, now, free=None, room=100, max_speed=SPEED, chosen=None):
     return list(zip(first.tolist(), second.tolist()))
 
 
-@pytest.mark.parametrize(('speed', 'fits'), [
-    (0.001, True), (10.0, True), (20.0, True), (30.0, True), (45.0, False), (80.0, False)])
+@pytest.mark.parametrize(
+    ('speed', 'fits'),
+    [(0.001, True), (10.0, True), (20.0, True), (30.0, True), (45.0, False), (80.0, False)],
+)
 def test_two_plots_begin_a_track_unless_the_target_were_too_fast(speed, fits):
     """20 m/s allowed, and noise of 14 m between the plots makes up for 12 m/s more at most 99 %."""
     course = 1.1
@@ -107,15 +116,16 @@ def test_targets_within_their_speed_are_within_reach():
     course = rng.uniform(0, 2 * np.pi, count)
     way = SPEED * PERIOD * np.stack([np.sin(course), np.cos(course)], 1)
     apart = way + rng.normal(0, SIGMA, (count, 2)) - start.position
-    spread = reach(start, PERIOD, SPEED) + SIGMA ** 2 * np.eye(2)
+    spread = reach(start, PERIOD, SPEED) + SIGMA**2 * np.eye(2)
     distance = np.einsum('ni,ni->n', apart, np.linalg.solve(spread, apart[..., None])[..., 0])
     assert np.mean(distance < 13.8) > 0.999
 
 
 def test_a_pair_in_dense_clutter_is_worth_less():
     before, now = plots([[0, 900]]), plots([[20, 900]], PERIOD)
-    sparse, dense = (first_score(before, now, np.array([density]), SPEED, 0.8)[0]
-                     for density in (1e-8, 1e-5))
+    sparse, dense = (
+        first_score(before, now, np.array([density]), SPEED, 0.8)[0] for density in (1e-8, 1e-5)
+    )
     assert sparse - dense == pytest.approx(np.log(1000))
     assert sparse > 0
 

@@ -12,25 +12,30 @@ def plots(range_=(1000.0,), bearing=(1.0,), amplitude=None, time=None):
     count = len(range_)
     return PolarPlots(
         np.zeros(count) if time is None else np.asarray(time, float),
-        np.asarray(range_, float), np.asarray(bearing, float),
-        np.zeros(count) if amplitude is None else np.asarray(amplitude, float))
+        np.asarray(range_, float),
+        np.asarray(bearing, float),
+        np.zeros(count) if amplitude is None else np.asarray(amplitude, float),
+    )
 
 
-@pytest.mark.parametrize('bad, reason', [
-    (plots([np.nan], [1.0]), intake.NOT_FINITE),
-    (plots([np.inf], [1.0]), intake.NOT_FINITE),
-    (plots([-np.inf], [1.0]), intake.NOT_FINITE),
-    (plots([10.0], [np.nan]), intake.NOT_FINITE),
-    (plots([10.0], [1.0], [np.nan]), intake.NOT_FINITE),
-    (plots([10.0], [1.0], time=[np.inf]), intake.NOT_FINITE),
-    (plots([-5.0], [1.0]), intake.BAD_RANGE),
-    (plots([0.0], [1.0]), intake.BAD_RANGE),
-    (plots([1e30], [1.0]), intake.TOO_FAR),
-    (plots([10.0], [6.4]), intake.BAD_BEARING),
-    (plots([10.0], [-3.2]), intake.BAD_BEARING),
-    (plots([10.0], [1.0], time=[-1.0]), intake.BAD_OFFSET),
-    (plots([10.0], [1.0], time=[60.0]), intake.BAD_OFFSET),
-])
+@pytest.mark.parametrize(
+    'bad, reason',
+    [
+        (plots([np.nan], [1.0]), intake.NOT_FINITE),
+        (plots([np.inf], [1.0]), intake.NOT_FINITE),
+        (plots([-np.inf], [1.0]), intake.NOT_FINITE),
+        (plots([10.0], [np.nan]), intake.NOT_FINITE),
+        (plots([10.0], [1.0], [np.nan]), intake.NOT_FINITE),
+        (plots([10.0], [1.0], time=[np.inf]), intake.NOT_FINITE),
+        (plots([-5.0], [1.0]), intake.BAD_RANGE),
+        (plots([0.0], [1.0]), intake.BAD_RANGE),
+        (plots([1e30], [1.0]), intake.TOO_FAR),
+        (plots([10.0], [6.4]), intake.BAD_BEARING),
+        (plots([10.0], [-3.2]), intake.BAD_BEARING),
+        (plots([10.0], [1.0], time=[-1.0]), intake.BAD_OFFSET),
+        (plots([10.0], [1.0], time=[60.0]), intake.BAD_OFFSET),
+    ],
+)
 def test_a_bad_plot_is_left_out_and_counted_by_its_reason_alone(bad, reason):
     good = plots()
     kept, counts = intake.screen_plots(append(bad, good), PERIOD, 100)
@@ -40,7 +45,8 @@ def test_a_bad_plot_is_left_out_and_counted_by_its_reason_alone(bad, reason):
 
 def test_bearings_of_one_turn_back_and_forth_are_wrapped():
     kept, counts = intake.screen_plots(
-        plots([1.0] * 4, [-np.pi, -0.5, 0.0, np.float32(2 * np.pi)]), PERIOD, 100)
+        plots([1.0] * 4, [-np.pi, -0.5, 0.0, np.float32(2 * np.pi)]), PERIOD, 100
+    )
     assert counts == {}
     assert kept.bearing == pytest.approx([np.pi, 2 * np.pi - 0.5, 0.0, 0.0], abs=1e-6)
 
@@ -52,7 +58,8 @@ def test_an_empty_scan_is_fine():
 
 def test_the_strongest_plots_are_kept_in_their_order():
     kept, counts = intake.screen_plots(
-        plots(np.arange(1.0, 100001), np.ones(100000), np.arange(100000) % 977), PERIOD, 500)
+        plots(np.arange(1.0, 100001), np.ones(100000), np.arange(100000) % 977), PERIOD, 500
+    )
     assert counts == {intake.TOO_MANY: 99500}
     assert len(kept.range) == 500
     assert kept.amplitude.min() >= 971
@@ -72,9 +79,15 @@ def test_scans_in_order_are_taken_also_after_a_pause():
     assert all(taken and not reason for taken, reason, _ in results)
 
 
-@pytest.mark.parametrize('wrong, reason', [
-    (5.4, intake.REPEATED), (2.7, intake.WENT_BACK), (-1e6, intake.WENT_BACK),
-    (1e6, intake.JUMPED_AHEAD)])
+@pytest.mark.parametrize(
+    'wrong, reason',
+    [
+        (5.4, intake.REPEATED),
+        (2.7, intake.WENT_BACK),
+        (-1e6, intake.WENT_BACK),
+        (1e6, intake.JUMPED_AHEAD),
+    ],
+)
 def test_one_wrong_stamp_costs_one_scan(wrong, reason):
     results = run_scans([0.0, 2.7, 5.4, wrong, 8.1, 10.8])
     assert [taken for taken, _, _ in results] == [True, True, True, False, True, True]
@@ -110,21 +123,25 @@ def run_own_ship(samples):
     log, reasons = intake.empty_log(), []
     for time, east, north, *velocity in samples:
         log, reason = intake.admit_own_ship(
-            log, time, np.array([east, north]), np.array(velocity or [0.0, 5.0]))
+            log, time, np.array([east, north]), np.array(velocity or [0.0, 5.0])
+        )
         reasons.append(reason)
     return log, reasons
 
 
-@pytest.mark.parametrize('bad, reason', [
-    ((3.0, np.nan, 0.0), intake.OWN_NOT_FINITE),
-    ((3.0, 1e12, 0.0), intake.OWN_NOT_FINITE),
-    ((np.inf, 0.0, 0.0), intake.OWN_NOT_FINITE),
-    ((3.0, 0.0, 15.0, np.inf, 0.0), intake.OWN_NOT_FINITE),
-    ((2.0, 0.0, 10.0), intake.OWN_REPEATED),
-    ((1.5, 0.0, 10.0), intake.OWN_WENT_BACK),
-    ((3.0, 5000.0, 15.0), intake.OWN_TELEPORTED),
-    ((3.0, 0.0, 15.0, 101 * KNOT, 0.0), intake.OWN_TELEPORTED),
-])
+@pytest.mark.parametrize(
+    'bad, reason',
+    [
+        ((3.0, np.nan, 0.0), intake.OWN_NOT_FINITE),
+        ((3.0, 1e12, 0.0), intake.OWN_NOT_FINITE),
+        ((np.inf, 0.0, 0.0), intake.OWN_NOT_FINITE),
+        ((3.0, 0.0, 15.0, np.inf, 0.0), intake.OWN_NOT_FINITE),
+        ((2.0, 0.0, 10.0), intake.OWN_REPEATED),
+        ((1.5, 0.0, 10.0), intake.OWN_WENT_BACK),
+        ((3.0, 5000.0, 15.0), intake.OWN_TELEPORTED),
+        ((3.0, 0.0, 15.0, 101 * KNOT, 0.0), intake.OWN_TELEPORTED),
+    ],
+)
 def test_a_bad_own_ship_sample_is_left_out(bad, reason):
     log, reasons = run_own_ship([(1.0, 0.0, 5.0), (2.0, 0.0, 10.0), bad, (4.0, 0.0, 20.0)])
     assert reasons == ['', '', reason, '']
@@ -175,7 +192,8 @@ def test_own_ship_never_heard_is_taken_at_rest_at_the_origin():
 
 def test_a_bad_radial_speed_is_forgotten_and_counted_but_its_plot_stays():
     given = plots([1000.0, 2000.0, 3000.0, 4000.0, -1.0], [1.0] * 5)._replace(
-        radial_speed=np.array([5.0, np.nan, -1e30, -np.inf, np.nan]))
+        radial_speed=np.array([5.0, np.nan, -1e30, -np.inf, np.nan])
+    )
     kept, counts = intake.screen_plots(given, PERIOD, 100)
     assert kept.range.tolist() == [1000.0, 2000.0, 3000.0, 4000.0]
     np.testing.assert_array_equal(kept.radial_speed, [5.0, np.nan, np.nan, np.nan])
@@ -212,7 +230,7 @@ def test_a_radar_whose_clock_is_another_is_never_taken():
 
 def test_a_clock_that_was_set_for_one_radar_is_set_for_the_other():
     order, _ = beside(995.0, 997.5)
-    moved = intake.TimeOrder(4000.0, shift=-2999.0)         # 1001 s of the tracker's time
+    moved = intake.TimeOrder(4000.0, shift=-2999.0)  # 1001 s of the tracker's time
     order, taken, reason = intake.admit_scan(order, 4001.5, 2.5, [moved])
     assert (taken, reason, order.shift) == (True, intake.REBASED, -2999.0)
     order, taken, reason = intake.admit_scan(order, 4004.0, 2.5, [moved])

@@ -19,8 +19,16 @@ def plots_of(targets, time, rng, radial_speed=None):
     bearing = np.linspace(0.3, 6.0, targets)[:count] + rng.normal(0, 0.008, count)
     distance = 3000.0 + 7.0 * time + rng.normal(0, 15, count)
     position, covariance = polar_to_position(distance, bearing, 15.0, 0.008)
-    return Plots(time, distance, bearing, np.zeros(count), np.zeros((count, 2)), position,
-                 covariance, radial_speed)
+    return Plots(
+        time,
+        distance,
+        bearing,
+        np.zeros(count),
+        np.zeros((count, 2)),
+        position,
+        covariance,
+        radial_speed,
+    )
 
 
 def tracks_of(estimator, plots, updates=3):
@@ -39,7 +47,7 @@ def same(one, other):
         for a, b in zip(one, other, strict=True):
             same(a, b)
     elif one is not None:
-        np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-6)      # float32 in gwnn
+        np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-6)  # float32 in gwnn
 
 
 def test_late_plots_end_where_the_plots_sorted_by_time_do(estimator):
@@ -58,7 +66,7 @@ def test_late_plots_end_where_the_plots_sorted_by_time_do(estimator):
     stack = Plots(*(None if c[0] is None else np.stack(c) for c in zip(*every)))
     for turn in comes:
         plots = Plots(*(None if c is None else c[turn, rows] for c in stack))
-        some = rng.random(targets) < 0.5                # a scan's plots come in any company
+        some = rng.random(targets) < 0.5  # a scan's plots come in any company
         for part in (np.flatnonzero(some), np.flatnonzero(~some)):
             tracks = late_plots.update(estimator, tracks, take(plots, part), part, 1)
     same(tracks.state, expected)
@@ -69,8 +77,9 @@ def test_the_past_is_seen_as_it_was(estimator):
     tracks = tracks_of(estimator, plots_of(3, np.zeros(3), rng))
     states = [tracks.state]
     for time in (2.0, 4.0, 6.0):
-        tracks = late_plots.update(estimator, tracks, plots_of(3, np.full(3, time), rng),
-                              np.arange(3), 0)
+        tracks = late_plots.update(
+            estimator, tracks, plots_of(3, np.full(3, time), rng), np.arange(3), 0
+        )
         states.append(tracks.state)
     seen = late_plots.as_of(tracks, np.array([7.0, 4.5, 1.0]))
     for row, wanted in enumerate((3, 2, 0)):
@@ -81,8 +90,9 @@ def test_a_plot_older_than_all_that_is_remembered_still_counts(estimator):
     rng = np.random.default_rng(6)
     tracks = tracks_of(estimator, plots_of(3, np.zeros(3), rng), updates=1)
     for time in (2.0, 4.0, 6.0, 1.0):
-        tracks = late_plots.update(estimator, tracks, plots_of(3, np.full(3, time), rng),
-                              np.arange(3), 0)
+        tracks = late_plots.update(
+            estimator, tracks, plots_of(3, np.full(3, time), rng), np.arange(3), 0
+        )
     found = estimator.extrapolate(tracks.state, np.full(3, 8.0))
     assert np.isfinite(found.position).all() and np.isfinite(found.covariance).all()
     assert (np.hypot(*found.position.T) < 3500).all()
@@ -93,6 +103,7 @@ def test_plots_with_and_without_a_radial_speed_mix():
     rng = np.random.default_rng(7)
     tracks = tracks_of(estimator, plots_of(3, np.zeros(3), rng))
     for time, speed in ((2.0, None), (4.0, np.full(3, 7.0)), (3.0, None), (3.5, np.full(3, 7.0))):
-        tracks = late_plots.update(estimator, tracks, plots_of(3, np.full(3, time), rng, speed),
-                              np.arange(3), 0)
+        tracks = late_plots.update(
+            estimator, tracks, plots_of(3, np.full(3, time), rng, speed), np.arange(3), 0
+        )
     assert (tracks.state.time == 4.0).all()

@@ -23,8 +23,18 @@ def one_plot(score=0.0, status=TENTATIVE):
     """A track with its first plot, at time 0."""
     one = np.ones(1, np.int64)
     zero = np.zeros(1)
-    return Tracks(one, 0 * one, np.full(1, status, np.int8), one, np.array([score]), one, zero,
-                  zero, zero, zero)
+    return Tracks(
+        one,
+        0 * one,
+        np.full(1, status, np.int8),
+        one,
+        np.array([score]),
+        one,
+        zero,
+        zero,
+        zero,
+        zero,
+    )
 
 
 def live(pattern, gain=20.0, drift=0.0, beyond=False, score=0.0, status=TENTATIVE, **parameters):
@@ -40,10 +50,12 @@ def live(pattern, gain=20.0, drift=0.0, beyond=False, score=0.0, status=TENTATIV
         now = k * PERIOD
         if hit:
             tracks = tracks._replace(last_time=np.array([now]))
-        tracks = lifecycle.record(tracks, rows, np.full(len(rows), gain), np.array([what != '.']),
-                                  p)
-        found, reason = lifecycle.judge(tracks, p, np.array([hit]), np.array([beyond]),
-                                        np.array([drift]), now)
+        tracks = lifecycle.record(
+            tracks, rows, np.full(len(rows), gain), np.array([what != '.']), p
+        )
+        found, reason = lifecycle.judge(
+            tracks, p, np.array([hit]), np.array([beyond]), np.array([drift]), now
+        )
         tracks = tracks._replace(status=found)
         out.append((int(found[0]), int(reason[0]), tracks))
         if found[0] == LOST:
@@ -71,7 +83,7 @@ def test_m_of_n_plots_confirm_and_what_cannot_get_there_is_dropped(needed, windo
                 break
             expected.append(TENTATIVE)
         found = statuses(''.join(pattern), confirm_hits=needed, confirm_scans=window)
-        assert found[:len(expected)] == expected, pattern
+        assert found[: len(expected)] == expected, pattern
         assert expected[-1] in (CONFIRMED, LOST)
 
 
@@ -82,25 +94,37 @@ def test_plots_that_clutter_explains_as_well_do_not_confirm():
 
 def test_the_score_may_come_later_than_the_plots():
     assert statuses('1111', gain=1.5, confirm_score=5.0) == [
-        TENTATIVE, TENTATIVE, TENTATIVE, CONFIRMED]
+        TENTATIVE,
+        TENTATIVE,
+        TENTATIVE,
+        CONFIRMED,
+    ]
 
 
 def test_a_doubtful_track_is_dropped_once_its_window_is_poor():
     found = live('1110000', gain=0.5, confirm_score=5.0)
     assert found[-1][:2] == (LOST, MISSED)
-    assert len(found) == 6                  # 1110 00: two in the last five
+    assert len(found) == 6  # 1110 00: two in the last five
 
 
 def test_a_confirmed_track_coasts_and_comes_back():
     assert statuses('110010') == [TENTATIVE, CONFIRMED, COASTING, COASTING, CONFIRMED, COASTING]
 
 
-@pytest.mark.parametrize(('detection', 'most', 'misses'), [
-    (0.8, 14.0, 9), (0.5, 14.0, 21), (0.9, 14.0, 7), (0.8, 5.0, 4)])
+@pytest.mark.parametrize(
+    ('detection', 'most', 'misses'),
+    [(0.8, 14.0, 9), (0.5, 14.0, 21), (0.9, 14.0, 7), (0.8, 5.0, 4)],
+)
 def test_a_track_outlives_as_many_misses_as_its_score_is_worth(detection, most, misses):
     """Each costs -ln(1 - Pd); the best score is `max_score`: lost when it is used up."""
-    found = live('1' * 30 + '0' * 30, gain=9.0, detection_probability=detection,
-                 max_score=most, confirm_score=1.0, hold_hits=1)
+    found = live(
+        '1' * 30 + '0' * 30,
+        gain=9.0,
+        detection_probability=detection,
+        max_score=most,
+        confirm_score=1.0,
+        hold_hits=1,
+    )
     lost_by_score = 30 + misses
     assert len(found) == min(lost_by_score, 30 + lifecycle.TEN)
     assert found[-1][:2] == (LOST, MISSED)
@@ -114,8 +138,11 @@ def test_a_confirmed_track_needs_its_plots_in_ten_scans(hold):
     for _ in range(30):
         pattern = '1' * 10 + ''.join(rng.choice(list('01'), 40, p=[0.65, 0.35]))
         found = live(pattern, gain=50.0, max_score=100.0, hold_hits=hold)
-        lengths = [k for k in range(1, len(pattern) + 1)
-                   if k >= 10 and ('1' + pattern)[k - 9:k + 1].count('1') < hold]
+        lengths = [
+            k
+            for k in range(1, len(pattern) + 1)
+            if k >= 10 and ('1' + pattern)[k - 9 : k + 1].count('1') < hold
+        ]
         expected = lengths[0] if lengths else len(pattern)
         assert len(found) == expected
         assert (found[-1][0] == LOST) == bool(lengths)
@@ -123,8 +150,7 @@ def test_a_confirmed_track_needs_its_plots_in_ten_scans(hold):
 
 def test_five_plots_in_ten_hold_where_five_are_asked():
     assert LOST not in statuses('1' * 9 + '0101010101' * 5, gain=50.0, hold_hits=5)
-    assert LOST not in statuses('1' * 9 + '0000011111' * 5, gain=50.0, hold_hits=5,
-                                max_score=100.0)
+    assert LOST not in statuses('1' * 9 + '0000011111' * 5, gain=50.0, hold_hits=5, max_score=100.0)
     assert LOST in statuses('1' * 9 + '0000001111' * 5, gain=50.0, hold_hits=5, max_score=100.0)
 
 
@@ -142,7 +168,7 @@ def test_a_coasting_track_that_may_be_anywhere_is_lost():
 def test_a_track_beyond_the_radars_range_has_left_by_range():
     about = {'beyond': True, 'score': 10.0, 'status': CONFIRMED}
     assert live('.', **about)[-1][:2] == (LOST, OUT_OF_RANGE)
-    assert statuses('1', **about) == [CONFIRMED]        # a plot is stronger than the estimate
+    assert statuses('1', **about) == [CONFIRMED]  # a plot is stronger than the estimate
     assert live('.', beyond=True)[-1][:2] == (LOST, OUT_OF_RANGE)
 
 
@@ -193,8 +219,11 @@ def test_the_evidence_of_a_plot_is_its_likelihood_ratio():
         z = rng.normal(0, 60, 2)
         density = 10 ** rng.uniform(-9, -4)
         found = lifecycle.evidence(
-            np.array([z @ np.linalg.solve(spread, z)]), np.array([np.linalg.slogdet(spread)[1]]),
-            np.array([density]), 0.7)
+            np.array([z @ np.linalg.solve(spread, z)]),
+            np.array([np.linalg.slogdet(spread)[1]]),
+            np.array([density]),
+            0.7,
+        )
         expected = np.log(0.7) + multivariate_normal([0, 0], spread).logpdf(z) - np.log(density)
         assert found == pytest.approx([expected])
 
@@ -204,15 +233,23 @@ def test_tracks_are_judged_each_for_itself():
     rng = np.random.default_rng(8)
     count, p = 300, TrackerParameters(hold_hits=3)
     status = rng.integers(0, 3, count).astype(np.int8)
-    many = Tracks(np.arange(count), np.zeros(count, np.int64), status,
-                  rng.integers(0, 1 << 20, count), rng.uniform(-5, 14, count),
-                  rng.integers(1, 40, count), np.zeros(count), rng.uniform(-120, 0, count),
-                  np.zeros(count), np.zeros(count))
+    many = Tracks(
+        np.arange(count),
+        np.zeros(count, np.int64),
+        status,
+        rng.integers(0, 1 << 20, count),
+        rng.uniform(-5, 14, count),
+        rng.integers(1, 40, count),
+        np.zeros(count),
+        rng.uniform(-120, 0, count),
+        np.zeros(count),
+        np.zeros(count),
+    )
     facts = (many.history & 1 == 1, rng.random(count) < 0.1, rng.uniform(0, 6, count))
     found = lifecycle.judge(many, p, *facts, 0.0)
     for row in range(count):
         one = take(many, np.array([row]))
-        alone = lifecycle.judge(one, p, *(fact[row:row + 1] for fact in facts), 0.0)
+        alone = lifecycle.judge(one, p, *(fact[row : row + 1] for fact in facts), 0.0)
         assert (alone[0][0], alone[1][0]) == (found[0][row], found[1][row])
     assert set(found[0]) == {TENTATIVE, CONFIRMED, COASTING, LOST}
     assert ((found[1] > 0) == (found[0] == LOST)).all()

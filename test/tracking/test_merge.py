@@ -39,11 +39,15 @@ def test_two_tracks_on_one_target_become_one(tracker, revolution, seed):
     assert sorted(memory.tracks.number) == [1, 2]
     double = take(memory.tracks, np.array([0]))
     double = double._replace(id=np.array([memory.next_id]), number=np.array([3]))
-    memory = memory._replace(tracks=append(memory.tracks, double), next_id=memory.next_id + 1,
-                             next_number=4)
+    memory = memory._replace(
+        tracks=append(memory.tracks, double), next_id=memory.next_id + 1, next_number=4
+    )
     memory, reports = follow(tracker, scans[10:], memory)
-    ends = [REASONS[reason] for report in reports
-            for reason in report.reason[(report.reason > 0) & (report.tracks.number > 0)]]
+    ends = [
+        REASONS[reason]
+        for report in reports
+        for reason in report.reason[(report.reason > 0) & (report.tracks.number > 0)]
+    ]
     assert len(memory.tracks.id) == 2
     assert ends in (['merged'], ['missed'])
     estimate = tracker.extrapolate(memory.tracks, scans[-1].end).position

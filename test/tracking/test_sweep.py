@@ -11,9 +11,17 @@ OWN = OwnShip(np.zeros(1), np.zeros((1, 2)), np.zeros((1, 2)))
 
 def scan_of(start, bearing, time, period=PERIOD):
     count = len(bearing)
-    return Scan(start, start + period,
-                PolarPlots(np.asarray(time, float), np.full(count, 1000.0),
-                           np.mod(bearing, 2 * np.pi), np.zeros(count)), OWN)
+    return Scan(
+        start,
+        start + period,
+        PolarPlots(
+            np.asarray(time, float),
+            np.full(count, 1000.0),
+            np.mod(bearing, 2 * np.pi),
+            np.zeros(count),
+        ),
+        OWN,
+    )
 
 
 @pytest.mark.parametrize('bearing0', [0.0, 1.0, 3.2, 6.28, np.pi])

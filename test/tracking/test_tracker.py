@@ -14,14 +14,16 @@ from marine_tracker.types import OwnShip, PolarPlots, Scan, take
 PERIOD = 60 / 22
 FLEET = np.array([[2000.0, 1500.0], [-1000.0, 3000.0], [500.0, -2500.0], [-4000.0, -300.0]])
 COURSES = np.array([[5.0, -3.0], [0.3, 0.1], [-4.0, 6.0], [12.0, 1.0]])
-POINTS = {'glint_sigma_m': 0.0}             # the targets of `revolution` have no extent
+POINTS = {'glint_sigma_m': 0.0}  # the targets of `revolution` have no extent
 
 
 @pytest.fixture(params=list(ESTIMATORS))
 def parameters(request):
     """The shipped defaults, changed by name."""
+
     def make(**changes):
         return TrackerParameters(**{'estimator': request.param, **POINTS, **changes})
+
     return make
 
 
@@ -70,9 +72,10 @@ def test_all_targets_of_a_clean_scene_are_confirmed_and_followed(parameters, rev
     for memory, report in course[6:]:
         assert numbers(memory) == [1, 2, 3, 4]
         took += np.count_nonzero(report.plot >= 0)
-        assert ((memory.tracks.status == CONFIRMED) == (report.plot >= 0)[
-            report.tracks.status != LOST])[memory.tracks.number > 0].all()
-    assert took >= 0.98 * 4 * len(course[6:])           # the gate holds 99.9 % of the plots
+        assert (
+            (memory.tracks.status == CONFIRMED) == (report.plot >= 0)[report.tracks.status != LOST]
+        )[memory.tracks.number > 0].all()
+    assert took >= 0.98 * 4 * len(course[6:])  # the gate holds 99.9 % of the plots
     apart, off = errors_at(tracker, course[-1][0], scans[-1].end, FLEET, COURSES)
     # 0.5 deg is 35 m at 4 km.
     assert (apart < 90).all() and (off < 4).all()
@@ -84,17 +87,21 @@ def test_all_targets_of_a_clean_scene_are_confirmed_and_followed(parameters, rev
 def test_a_new_target_gets_the_next_number(parameters, revolution):
     tracker = Tracker(parameters())
     rng = np.random.default_rng(2)
-    scans = [revolution(k, FLEET[:1 + (k > 15) + (k > 30)], COURSES[:1 + (k > 15) + (k > 30)],
-                        rng=rng) for k in range(45)]
+    scans = [
+        revolution(k, FLEET[: 1 + (k > 15) + (k > 30)], COURSES[: 1 + (k > 15) + (k > 30)], rng=rng)
+        for k in range(45)
+    ]
     seen = [numbers(memory) for memory, _ in run(tracker, scans)]
     assert seen[14] == [1] and seen[28] == [1, 2] and seen[-1] == [1, 2, 3]
 
 
 def test_ids_are_unique_and_numbers_follow_each_other_in_clutter(parameters, revolution):
     rng = np.random.default_rng(3)
-    tracker = Tracker(parameters(confirm_score=-5.0))           # many false tracks are confirmed
-    scans = [revolution(k, FLEET, COURSES, rng=rng, seen=rng.random(4) < 0.8, false=60, reach=2500)
-             for k in range(60)]
+    tracker = Tracker(parameters(confirm_score=-5.0))  # many false tracks are confirmed
+    scans = [
+        revolution(k, FLEET, COURSES, rng=rng, seen=rng.random(4) < 0.8, false=60, reach=2500)
+        for k in range(60)
+    ]
     born, ended, highest, given = 0, set(), 0, {}
     for memory, report in run(tracker, scans):
         tracks = report.tracks
@@ -143,8 +150,9 @@ def test_tracks_are_expected_where_the_beam_meets_them(parameters, revolution):
 
 
 def test_a_missed_track_is_reported_when_the_beam_passed_it(parameters, revolution):
-    scans = [revolution(k, FLEET, COURSES, seen=np.array([True, True, True, k != 12]))
-             for k in range(13)]
+    scans = [
+        revolution(k, FLEET, COURSES, seen=np.array([True, True, True, k != 12])) for k in range(13)
+    ]
     whole = revolution(12, FLEET, COURSES)
     chosen = parameters()
     _, report = run(Tracker(chosen), scans)[-1]
@@ -179,6 +187,7 @@ def test_own_ships_turn_does_not_move_the_tracks(parameters):
 
     def own(t):
         return radius * np.stack([np.sin(rate * t), 1 - np.cos(rate * t)], -1)
+
     for k in range(60):
         start = k * PERIOD
         time = np.full(4, start)
@@ -189,8 +198,9 @@ def test_own_ships_turn_does_not_move_the_tracks(parameters):
         samples = np.linspace(start, start + PERIOD, 8)
         velocity = radius * rate * np.stack([np.cos(rate * samples), np.sin(rate * samples)], -1)
         plots = PolarPlots(time, np.hypot(*offset.T), bearing, np.zeros(4))
-        memory, _ = tracker.step(memory, Scan(start, start + PERIOD, plots,
-                                              OwnShip(samples, own(samples), velocity)))
+        memory, _ = tracker.step(
+            memory, Scan(start, start + PERIOD, plots, OwnShip(samples, own(samples), velocity))
+        )
     assert numbers(memory) == [1, 2, 3, 4]
     apart, off = errors_at(tracker, memory, start + PERIOD, FLEET, COURSES)
     assert (apart < 6).all() and (off < 0.5).all()
@@ -205,8 +215,10 @@ def test_a_target_is_kept_across_the_seam_of_the_revolution(parameters, revoluti
     side = way * np.array([ahead[1], -ahead[0]])
     velocity = 10.0 * side
     position = 1200.0 * ahead - 25 * PERIOD * velocity
-    scans = [revolution(k, position, velocity, bearing0=bearing0,
-                        rng=np.random.default_rng(k)) for k in range(50)]
+    scans = [
+        revolution(k, position, velocity, bearing0=bearing0, rng=np.random.default_rng(k))
+        for k in range(50)
+    ]
     course = run(tracker, scans)
     assert {tuple(numbers(memory)) for memory, _ in course[6:]} == {(1,)}
     apart, _ = errors_at(tracker, course[-1][0], scans[-1].end, position[None], velocity[None])
@@ -234,15 +246,18 @@ def test_a_target_that_passes_close_by_is_kept(parameters, revolution, nearest):
 
 def test_a_track_lives_through_the_blind_zone(parameters, revolution):
     """Five scans nearer than the radar sees; a single miss would end the track elsewhere."""
-    tracker = Tracker(parameters(min_range_m=150.0, max_score=1.0, confirm_score=0.5,
-                                 max_drift=1000.0))
+    tracker = Tracker(
+        parameters(min_range_m=150.0, max_score=1.0, confirm_score=0.5, max_drift=1000.0)
+    )
     velocity = np.array([0.0, 12.0])
     position = np.array([130.0, -25 * PERIOD * 12.0])
 
     def distance(k):
         return np.hypot(*(position + (k + 0.5) * PERIOD * velocity))
-    scans = [revolution(k, position, velocity, seen=np.array([distance(k) > 150.0]))
-             for k in range(50)]
+
+    scans = [
+        revolution(k, position, velocity, seen=np.array([distance(k) > 150.0])) for k in range(50)
+    ]
     dark = sum(distance(k) <= 150.0 for k in range(50))
     assert dark >= 4
     course = run(tracker, scans)
@@ -256,8 +271,11 @@ def test_a_target_that_leaves_the_radars_range_is_lost_by_range(parameters, revo
     for k in range(30):
         distance = 2500 + (k + 1) * PERIOD * 15.0
         scans.append(revolution(k, position, velocity, seen=np.array([distance < 3000])))
-    ends = [(int(report.reason[row]), k) for k, (_, report) in enumerate(run(tracker, scans))
-            for row in np.flatnonzero(report.tracks.status == LOST)]
+    ends = [
+        (int(report.reason[row]), k)
+        for k, (_, report) in enumerate(run(tracker, scans))
+        for row in np.flatnonzero(report.tracks.status == LOST)
+    ]
     assert [reason for reason, _ in ends] == [OUT_OF_RANGE]
     gone = next(k for k in range(30) if 2500 + (k + 1) * PERIOD * 15.0 >= 3000)
     assert ends[0][1] <= gone + 3
@@ -277,8 +295,12 @@ def test_without_plots_tracks_coast_and_end(parameters, revolution):
 
 def test_a_sea_without_plots_from_the_start(parameters, revolution):
     nothing = revolution(0, np.zeros((0, 2)), np.zeros((0, 2)))
-    for k, (memory, report) in enumerate(run(Tracker(parameters()), [nothing._replace(
-            start=k * PERIOD, end=(k + 1) * PERIOD) for k in range(5)])):
+    for k, (memory, report) in enumerate(
+        run(
+            Tracker(parameters()),
+            [nothing._replace(start=k * PERIOD, end=(k + 1) * PERIOD) for k in range(5)],
+        )
+    ):
         assert len(memory.tracks.id) == len(report.time) == 0, k
 
 
@@ -289,9 +311,15 @@ def test_a_moored_target_whose_plots_repeat_exactly(parameters):
     memory = tracker.start()
     for k in range(6):
         at = np.array([k * PERIOD])
-        memory, _ = tracker.step(memory, Scan(
-            at[0], at[0], PolarPlots(at, np.array([3000.0]), np.array([0.1]), np.zeros(1)),
-            OwnShip(at, own, own)))
+        memory, _ = tracker.step(
+            memory,
+            Scan(
+                at[0],
+                at[0],
+                PolarPlots(at, np.array([3000.0]), np.array([0.1]), np.zeros(1)),
+                OwnShip(at, own, own),
+            ),
+        )
     assert numbers(memory) == [1]
 
 
@@ -305,9 +333,15 @@ def test_a_plot_dead_ahead_of_a_nearby_coasting_track(parameters, vessel_class):
         distance = np.r_[np.full(20, 3000.0 + k), [300.0 + k] * near]
         bearing = np.r_[np.arange(20) * 0.3 + 0.1, [0.0] * near]
         at = np.full(len(bearing), k * PERIOD)
-        memory, report = tracker.step(memory, Scan(
-            at[0], at[0], PolarPlots(at, distance, bearing, np.zeros(len(at))),
-            OwnShip(at[:1], own, own)))
+        memory, report = tracker.step(
+            memory,
+            Scan(
+                at[0],
+                at[0],
+                PolarPlots(at, distance, bearing, np.zeros(len(at))),
+                OwnShip(at[:1], own, own),
+            ),
+        )
         assert len(report.plot) == len(report.tracks.id)
     assert len(numbers(memory)) >= 21
 
@@ -321,14 +355,20 @@ PATTERNS = {
 
 
 @pytest.mark.parametrize('pattern', PATTERNS.values(), ids=PATTERNS)
-def test_a_target_seen_in_five_scans_of_ten_is_kept_on_a_clean_sea(parameters, revolution,
-                                                                   pattern):
+def test_a_target_seen_in_five_scans_of_ten_is_kept_on_a_clean_sea(parameters, revolution, pattern):
     rng = np.random.default_rng(5)
     tracker = Tracker(parameters())
     position, velocity = np.array([[2500.0, 800.0]]), np.array([[-6.0, 3.0]])
-    scans = [revolution(k, position, velocity, rng=rng,
-                        seen=np.array([k < 10 or pattern[k % len(pattern)] == '1']))
-             for k in range(110)]
+    scans = [
+        revolution(
+            k,
+            position,
+            velocity,
+            rng=rng,
+            seen=np.array([k < 10 or pattern[k % len(pattern)] == '1']),
+        )
+        for k in range(110)
+    ]
     assert {tuple(numbers(memory)) for memory, _ in run(tracker, scans)[6:]} == {(1,)}
 
 
@@ -357,8 +397,11 @@ def test_clutter_does_not_pile_up(parameters, revolution):
 def test_the_same_scans_give_the_same_tracks_to_the_last_bit(parameters, revolution):
     def course():
         rng = np.random.default_rng(8)
-        return run(Tracker(parameters()), [
-            revolution(k, FLEET, COURSES, rng=rng, false=50) for k in range(20)])
+        return run(
+            Tracker(parameters()),
+            [revolution(k, FLEET, COURSES, rng=rng, false=50) for k in range(20)],
+        )
+
     same(tuple(course()), tuple(course()))
 
 
@@ -367,8 +410,7 @@ def test_a_scan_and_the_memory_before_it_stay_as_they_were(parameters, revolutio
     tracker = Tracker(parameters())
     memory = tracker.start()
     for k in range(20):
-        scan = revolution(k, FLEET, COURSES, rng=rng, false=50,
-                          seen=rng.random(4) < 0.7)
+        scan = revolution(k, FLEET, COURSES, rng=rng, false=50, seen=rng.random(4) < 0.7)
         copies = [leaf.copy() for leaf in leaves((memory, scan))]
         for leaf in leaves((memory, scan)):
             leaf.setflags(write=False)
@@ -379,16 +421,21 @@ def test_a_scan_and_the_memory_before_it_stay_as_they_were(parameters, revolutio
 
 
 # In a ring, so that every estimator is left and taken up twice, and in both vessel classes.
-CHANGES = [(old, 'ship', new, vessel)
-           for one, other in itertools.pairwise([*ESTIMATORS, next(iter(ESTIMATORS))])
-           for old, new in ((one, other), (other, one)) for vessel in VESSEL_CLASSES]
+CHANGES = [
+    (old, 'ship', new, vessel)
+    for one, other in itertools.pairwise([*ESTIMATORS, next(iter(ESTIMATORS))])
+    for old, new in ((one, other), (other, one))
+    for vessel in VESSEL_CLASSES
+]
 
 
 @pytest.mark.parametrize('change', CHANGES, ids='-'.join)
 def test_no_track_is_lost_by_a_change_of_estimator(revolution, change):
     rng = np.random.default_rng(10)
-    old, new = (Tracker(TrackerParameters(estimator=estimator, vessel_class=vessel, **POINTS))
-                for estimator, vessel in (change[:2], change[2:]))
+    old, new = (
+        Tracker(TrackerParameters(estimator=estimator, vessel_class=vessel, **POINTS))
+        for estimator, vessel in (change[:2], change[2:])
+    )
     scans = [revolution(k, FLEET, COURSES, rng=rng, false=8, reach=5000) for k in range(30)]
     # One more ship appears in the last two scans: a tentative track lives through it as well.
     extra = np.array([[3000.0, -3000.0]]), np.array([[1.0, 1.0]])
@@ -421,20 +468,26 @@ def test_a_change_of_estimator_keeps_position_and_velocity(revolution, change, d
     new one may not believe to know much more or less than either would.
     """
     rng = np.random.default_rng(11)
-    old, new = (Tracker(TrackerParameters(estimator=estimator, vessel_class=vessel, **POINTS))
-                for estimator, vessel in (change[:2], change[2:]))
+    old, new = (
+        Tracker(TrackerParameters(estimator=estimator, vessel_class=vessel, **POINTS))
+        for estimator, vessel in (change[:2], change[2:])
+    )
     position = distance * np.array([[0.8, 0.6], [-0.6, 0.8]])
     velocity = np.array([[-10.0, 3.0], [10.0, 0.0]])
     scans = [revolution(k, position, velocity, rng=rng) for k in range(30)]
     before, own = (run(tracker, scans)[-1][0] for tracker in (old, new))
     after = new.adopt(before, old)
     held = np.argsort(before.tracks.number)[-2:]
-    was, now = (take(tracker.extrapolate(memory.tracks, memory.tracks.last_time), held)
-                for tracker, memory in ((old, before), (new, after)))
-    itself = take(new.extrapolate(own.tracks, own.tracks.last_time),
-                  np.argsort(own.tracks.number)[-2:])
-    sigma, other, usual = (np.sqrt(np.diagonal(x.covariance, axis1=1, axis2=2))
-                           for x in (was, now, itself))
+    was, now = (
+        take(tracker.extrapolate(memory.tracks, memory.tracks.last_time), held)
+        for tracker, memory in ((old, before), (new, after))
+    )
+    itself = take(
+        new.extrapolate(own.tracks, own.tracks.last_time), np.argsort(own.tracks.number)[-2:]
+    )
+    sigma, other, usual = (
+        np.sqrt(np.diagonal(x.covariance, axis1=1, axis2=2)) for x in (was, now, itself)
+    )
     most = np.maximum(sigma, usual)
     assert (np.abs(now.position - was.position) < np.maximum(sigma[:, :2], 2.0)).all()
     assert (np.abs(now.velocity - was.velocity) < np.maximum(0.5 * most[:, 2:], 1.0)).all()
@@ -445,7 +498,8 @@ def test_a_change_without_tracks_or_of_other_parameters_changes_no_state(revolut
     old = Tracker(TrackerParameters(estimator='imm'))
     empty = Tracker(TrackerParameters(estimator='cs_kalman')).adopt(old.start(), old)
     memory, _ = Tracker(TrackerParameters(estimator='cs_kalman')).step(
-        empty, revolution(0, FLEET, COURSES))
+        empty, revolution(0, FLEET, COURSES)
+    )
     assert len(memory.tracks.id) == 0
     before = run(old, [revolution(k, FLEET, COURSES) for k in range(8)])[-1][0]
     new = Tracker(TrackerParameters(estimator='imm', gate_probability=0.99, hold_hits=3))
@@ -457,8 +511,10 @@ def test_plots_of_one_time_and_plots_of_a_sweep_give_the_same_tracks(parameters,
     rng = np.random.default_rng(11)
     still = np.zeros_like(COURSES)
     scans = [revolution(k, FLEET, still, rng=rng) for k in range(20)]
-    alike = [scan._replace(start=scan.end, plots=scan.plots._replace(
-        time=np.full(4, scan.end))) for scan in scans]
+    alike = [
+        scan._replace(start=scan.end, plots=scan.plots._replace(time=np.full(4, scan.end)))
+        for scan in scans
+    ]
     tracker = Tracker(parameters())
     first, second = run(tracker, scans)[-1][0], run(tracker, alike)[-1][0]
     assert numbers(first) == numbers(second) == [1, 2, 3, 4]

@@ -16,25 +16,42 @@ from marine_tracker.types import Plots
 FLEET = np.array([[2000.0, 1500.0], [-1000.0, 3000.0], [500.0, -2500.0], [-4000.0, -300.0]])
 COURSES = np.array([[5.0, -3.0], [0.3, 0.1], [-4.0, 6.0], [9.0, 1.0]])
 PERIODS = 2.5, 3.2
-OWN = [{'range_sigma_m': 10.0, 'bearing_sigma_deg': 0.4, 'scan_period_s': PERIODS[0]},
-       {'range_sigma_m': 30.0, 'bearing_sigma_deg': 0.8, 'scan_period_s': PERIODS[1]}]
+OWN = [
+    {'range_sigma_m': 10.0, 'bearing_sigma_deg': 0.4, 'scan_period_s': PERIODS[0]},
+    {'range_sigma_m': 30.0, 'bearing_sigma_deg': 0.8, 'scan_period_s': PERIODS[1]},
+]
 
 
 @pytest.fixture
 def fleet(revolution):
     """The scans of both radars over so many seconds; seen(radar, time) masks the targets."""
+
     def make(seconds, seen=lambda radar, time: None, false=0, seed=1):
         rng = np.random.default_rng(seed)
-        return [[revolution(k, FLEET, COURSES, rng=rng, period=period, bearing0=1.3 * place,
-                            seen=seen(place, k * period), false=false,
-                            range_sigma=OWN[place]['range_sigma_m'],
-                            bearing_sigma=np.radians(OWN[place]['bearing_sigma_deg']))
-                 for k in range(int(seconds / period))] for place, period in enumerate(PERIODS)]
+        return [
+            [
+                revolution(
+                    k,
+                    FLEET,
+                    COURSES,
+                    rng=rng,
+                    period=period,
+                    bearing0=1.3 * place,
+                    seen=seen(place, k * period),
+                    false=false,
+                    range_sigma=OWN[place]['range_sigma_m'],
+                    bearing_sigma=np.radians(OWN[place]['bearing_sigma_deg']),
+                )
+                for k in range(int(seconds / period))
+            ]
+            for place, period in enumerate(PERIODS)
+        ]
+
     return make
 
 
 def parameters(*own, **more):
-    return TrackerParameters(**{**fused(own or OWN, ['a', 'b'][:len(own or OWN)]), **more})
+    return TrackerParameters(**{**fused(own or OWN, ['a', 'b'][: len(own or OWN)]), **more})
 
 
 def follow(scans, tracker=None):
@@ -59,17 +76,21 @@ def test_two_plots_of_one_time_are_their_weighted_mean(name):
 
     def plots(position, covariance, time):
         none = np.zeros(count)
-        return Plots(np.full(count, time), none, none, none, np.zeros((count, 2)), position,
-                     covariance)
+        return Plots(
+            np.full(count, time), none, none, none, np.zeros((count, 2)), position, covariance
+        )
 
     def covariances():
         root = rng.normal(0, 20, (count, 2, 2))
         return root @ root.swapaxes(1, 2) + 100 * np.eye(2)
+
     start = plots(rng.uniform(-3000, 3000, (count, 2)), covariances(), 0.0)
     separate = together = estimator.init(start)
     for time in (2.5, 5.0, 9.0):
-        (z1, r1), (z2, r2) = ((start.position + 5.0 * time + rng.normal(0, 30, (count, 2)), r)
-                              for r in (covariances(), covariances()))
+        (z1, r1), (z2, r2) = (
+            (start.position + 5.0 * time + rng.normal(0, 30, (count, 2)), r)
+            for r in (covariances(), covariances())
+        )
         w1, w2 = np.linalg.inv(r1), np.linalg.inv(r2)
         r = np.linalg.inv(w1 + w2)
         z = (r @ (w1 @ z1[..., None] + w2 @ z2[..., None]))[..., 0]
@@ -91,8 +112,7 @@ def test_the_track_knows_all_plots_in_the_order_of_their_times(fleet):
         before = {i: t for i, t in zip(memory.tracks.id, memory.tracks.last_time)}
         memory, report = tracker.step(memory, scan)
         p = tracker.radars[scan.radar]
-        plots = locate(scan.plots, scan.own_ship, p.range_sigma_m,
-                       np.radians(p.bearing_sigma_deg))
+        plots = locate(scan.plots, scan.own_ship, p.range_sigma_m, np.radians(p.bearing_sigma_deg))
         for row in np.flatnonzero(report.plot >= 0):
             id_ = report.tracks.id[row]
             new = len(report.plot) - row <= len(report.begun.time)
@@ -107,22 +127,29 @@ def test_the_track_knows_all_plots_in_the_order_of_their_times(fleet):
         state = tracker.estimator.init(first)
         for plot in sorted(rest, key=lambda plot: plot.time[0]):
             state = tracker.estimator.update(state, plot, np.arange(1))
-        np.testing.assert_allclose(memory.tracks.state.mean[row], state.mean[0], rtol=1e-8,
-                                   atol=1e-8)
+        np.testing.assert_allclose(
+            memory.tracks.state.mean[row], state.mean[0], rtol=1e-8, atol=1e-8
+        )
 
 
 def test_all_targets_are_confirmed_sooner_than_by_one_radar(fleet):
     a, b = fleet(40)
     both = next(scan.end for scan, memory in follow(merged(a, b)) if len(held(memory)) == 4)
-    alone = next(scan.end for scan, memory in follow(a, Tracker(TrackerParameters(**OWN[0])))
-                 if len(held(memory)) == 4)
+    alone = next(
+        scan.end
+        for scan, memory in follow(a, Tracker(TrackerParameters(**OWN[0])))
+        if len(held(memory)) == 4
+    )
     assert both < alone
 
 
 def test_a_target_that_one_radar_never_sees_is_held_and_does_not_coast(fleet):
     everyone = np.ones(4, bool)
-    scans = merged(*fleet(200, lambda radar, time: everyone if radar == 0 else
-                          np.array([True, False, True, True])))
+    scans = merged(
+        *fleet(
+            200, lambda radar, time: everyone if radar == 0 else np.array([True, False, True, True])
+        )
+    )
     found = [memory for scan, memory in follow(scans) if scan.end > 30]
     assert all(held(memory) == [1, 2, 3, 4] for memory in found)
     # The gate leaves one plot in two hundred out.
@@ -137,9 +164,10 @@ def test_a_radar_may_fail_and_return(fleet):
     for scan, memory in found:
         if scan.end > 30:
             assert held(memory) == [1, 2, 3, 4]
-    took = [memory.tracks.radar == 1 for scan, memory in found
-            if scan.radar == 1 and scan.end > 251]
-    assert took[0].all() and np.mean(took) > 0.97           # it joins in again at once
+    took = [
+        memory.tracks.radar == 1 for scan, memory in found if scan.radar == 1 and scan.end > 251
+    ]
+    assert took[0].all() and np.mean(took) > 0.97  # it joins in again at once
 
 
 def test_a_target_that_neither_sees_is_lost_when_its_time_is_over(fleet):
@@ -179,6 +207,7 @@ def test_false_plots_of_two_radars_make_no_more_tracks_than_both_alone(fleet):
         for scan in scans:
             memory, _ = tracker.step(memory, scan)
         return memory.next_number - 1
+
     alone = sum(made(scans, TrackerParameters(**own)) for scans, own in zip((a, b), OWN))
     # Of Poisson numbers with the same mean, two deviations apart at most.
     together = made(merged(a, b), parameters())
@@ -195,8 +224,7 @@ def test_a_scene_is_the_same_for_both_radars():
 
 def test_another_estimator_takes_the_tracks_of_two_radars_over(fleet):
     scans = list(merged(*fleet(80)))
-    before, after = Tracker(parameters(estimator='imm')), Tracker(parameters(
-        estimator='cs_kalman'))
+    before, after = Tracker(parameters(estimator='imm')), Tracker(parameters(estimator='cs_kalman'))
     memory = follow(scans[:30], before)[-1][1]
     memory = after.adopt(memory, before)
     for scan in scans[30:]:

@@ -29,6 +29,7 @@ def file(tmp_path):
         path = tmp_path / 'kinds.yaml'
         path.write_text(text)
         return path
+
     return write
 
 
@@ -45,21 +46,33 @@ def test_kinds_are_read_and_move_as_they_say(file):
     assert found.ships.manoeuvre[boats].all() and not found.ships.manoeuvre[barges].any()
 
 
-@pytest.mark.parametrize(('text', 'message'), [
-    ('{}', 'there is no kind of vessel in it'),
-    ('- tug', 'it must hold a mapping'),
-    ('tug: 7', 'tug is 7; it must be a mapping'),
-    ('tug: {speed_mps: [1, 5]}', 'tug has no manoeuvres_per_scan'),
-    ('tug: {manoeuvres_per_scan: 0.1}', 'tug has no speed_mps'),
-    ('tug: {speed_mps: [1, 5], manoeuvres_per_scan: 2}',
-     'tug.manoeuvres_per_scan is 2; it must be between 0 and 1'),
-    ('tug: {speed_mps: [5, 1], manoeuvres_per_scan: 0}', 'the least must not be above the most'),
-    ('tug: {speed_mps: 5, manoeuvres_per_scan: 0}', r'it must be a pair \[least, most\]'),
-    ('tug: {speed_mps: [1, fast], manoeuvres_per_scan: 0}',
-     r"tug.speed_mps\[1\].value is 'fast'; it must be a number"),
-    ('tug: {speed_mps: [1, 5], manoeuvres_per_scan: 0, turn_radius: [1, 2]}',
-     'tug.turn_radius is not known: the key must end in its unit'),
-])
+@pytest.mark.parametrize(
+    ('text', 'message'),
+    [
+        ('{}', 'there is no kind of vessel in it'),
+        ('- tug', 'it must hold a mapping'),
+        ('tug: 7', 'tug is 7; it must be a mapping'),
+        ('tug: {speed_mps: [1, 5]}', 'tug has no manoeuvres_per_scan'),
+        ('tug: {manoeuvres_per_scan: 0.1}', 'tug has no speed_mps'),
+        (
+            'tug: {speed_mps: [1, 5], manoeuvres_per_scan: 2}',
+            'tug.manoeuvres_per_scan is 2; it must be between 0 and 1',
+        ),
+        (
+            'tug: {speed_mps: [5, 1], manoeuvres_per_scan: 0}',
+            'the least must not be above the most',
+        ),
+        ('tug: {speed_mps: 5, manoeuvres_per_scan: 0}', r'it must be a pair \[least, most\]'),
+        (
+            'tug: {speed_mps: [1, fast], manoeuvres_per_scan: 0}',
+            r"tug.speed_mps\[1\].value is 'fast'; it must be a number",
+        ),
+        (
+            'tug: {speed_mps: [1, 5], manoeuvres_per_scan: 0, turn_radius: [1, 2]}',
+            'tug.turn_radius is not known: the key must end in its unit',
+        ),
+    ],
+)
 def test_what_is_wrong_in_a_file_of_kinds_is_told(file, text, message):
     with pytest.raises(ValueError, match=f'kinds.yaml.*{message}'):
         custom_traffic.read_kinds(file(text))
@@ -71,15 +84,32 @@ def test_a_missing_file_is_told(tmp_path):
 
 
 def harbour(duration=900.0):
-    return scenario.build({
-        'duration_s': duration,
-        'radar': {'rotation_rpm': 40, 'range_sigma_m': 6, 'bearing_sigma_deg': 1,
-                  'max_range_m': 4000, 'pd_near': 0.9, 'pd_far': 0.7},
-        'targets': [{'start': {'range_m': 2000, 'bearing_deg': 30}, 'course_deg': 200,
-                     'speed_mps': 4, 'legs': [{'straight': {'duration_s': 120}},
-                                              {'turn': {'angle_deg': 90, 'radius_m': 100}}]},
-                    {'start': {'range_m': 900, 'bearing_deg': 300}, 'course_deg': 0,
-                     'speed_mps': 0}]}, 'harbour')
+    return scenario.build(
+        {
+            'duration_s': duration,
+            'radar': {
+                'rotation_rpm': 40,
+                'range_sigma_m': 6,
+                'bearing_sigma_deg': 1,
+                'max_range_m': 4000,
+                'pd_near': 0.9,
+                'pd_far': 0.7,
+            },
+            'targets': [
+                {
+                    'start': {'range_m': 2000, 'bearing_deg': 30},
+                    'course_deg': 200,
+                    'speed_mps': 4,
+                    'legs': [
+                        {'straight': {'duration_s': 120}},
+                        {'turn': {'angle_deg': 90, 'radius_m': 100}},
+                    ],
+                },
+                {'start': {'range_m': 900, 'bearing_deg': 300}, 'course_deg': 0, 'speed_mps': 0},
+            ],
+        },
+        'harbour',
+    )
 
 
 def test_a_scenario_gives_its_radar_and_its_targets():

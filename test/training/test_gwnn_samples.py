@@ -9,8 +9,9 @@ from marine_tracker.training.gwnn_fusion import cell_weights, rivals
 
 
 def made(seed, chunk, vessel_class='ship'):
-    return gwnn_samples.make(bank.BANKS[vessel_class], training_tracks.WATERS[vessel_class], seed,
-                             chunk)
+    return gwnn_samples.make(
+        bank.BANKS[vessel_class], training_tracks.WATERS[vessel_class], seed, chunk
+    )
 
 
 @pytest.fixture(scope='module')
@@ -51,8 +52,8 @@ def test_the_base_knows_its_own_error(samples):
 def test_each_cell_counts_by_the_better_of_two_imms(samples):
     """The position error of that one, weighted, is 1 in every cell; the other's is no less."""
     weights = cell_weights(samples)
-    size = rivals(samples)[:, 0] / samples.truly[:, None] ** 2          # of the positions
-    counted = (weights[:, 0] * samples.truly ** 2)[:, None] * np.minimum(size, 40)
+    size = rivals(samples)[:, 0] / samples.truly[:, None] ** 2  # of the positions
+    counted = (weights[:, 0] * samples.truly**2)[:, None] * np.minimum(size, 40)
     for cell in np.unique(samples.cell):
         total = counted[samples.cell == cell].mean(0)
         assert total.min() == pytest.approx(1.0, rel=1e-3)

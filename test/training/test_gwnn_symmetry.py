@@ -25,10 +25,10 @@ def test_tracks_mirrored_give_the_inputs_mirrored():
     """Mirrored at the north axis, what lies across the line of sight changes sign."""
     count, scans, every = 20, 30, np.ones(20)
     rng = np.random.default_rng(6)
-    ships = ship_tracks.sail(['sharp'] * count, np.full(count, 5000.0),
-                             np.full((count, scans), PERIOD), rng)
-    radar = ship_tracks.RunRadar(15 * every, 0.006 * every, every, 0 * every, every,
-                              PERIOD * every)
+    ships = ship_tracks.sail(
+        ['sharp'] * count, np.full(count, 5000.0), np.full((count, scans), PERIOD), rng
+    )
+    radar = ship_tracks.RunRadar(15 * every, 0.006 * every, every, 0 * every, every, PERIOD * every)
     plots, _ = ship_tracks.observe(ships, radar, rng)
     mirror = np.diag([-1.0, 1.0])
 
@@ -38,8 +38,12 @@ def test_tracks_mirrored_give_the_inputs_mirrored():
         for one in plots[1:]:
             state, memory, _ = gwnn.advance(ship, state, memory, one)
         return inputs.inputs(ship, state, memory, PERIOD)
-    mirrored = [p._replace(position=p.position @ mirror,
-                           covariance=mirror @ p.covariance @ mirror) for p in plots]
+
+    mirrored = [
+        p._replace(position=p.position @ mirror, covariance=mirror @ p.covariance @ mirror)
+        for p in plots
+    ]
     way = gwnn_symmetry._symmetry(np.array([1, -1]), False)
-    np.testing.assert_allclose(seen(mirrored), seen(plots)[:, way.inputs] * way.sign,
-                               rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(
+        seen(mirrored), seen(plots)[:, way.inputs] * way.sign, rtol=1e-6, atol=1e-6
+    )

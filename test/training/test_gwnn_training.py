@@ -35,8 +35,9 @@ def test_gradients_of_fusing_are_those_of_differences(samples):
     for i in range(gwnn.OUTPUTS):
         push = np.zeros_like(output)
         push[:, i] = 1e-2
-        slope = ((fusion.fuse(output + push, batch)[0]
-                  - fusion.fuse(output - push, batch)[0]) * pull).sum(1) / 2e-2
+        slope = (
+            (fusion.fuse(output + push, batch)[0] - fusion.fuse(output - push, batch)[0]) * pull
+        ).sum(1) / 2e-2
         np.testing.assert_allclose(back[:, i], slope, rtol=0.02, atol=0.01)
 
 
@@ -48,6 +49,7 @@ def test_stopped_and_gone_on_it_ends_where_it_would_have(samples, tmp_path):
             gwnn_checkpoint.save(tmp_path / 'part', {'seed': 3}, training)
             training = gwnn_checkpoint.resume(tmp_path / 'part', {'seed': 3}, fusion.LAYOUT)
         return training.network
+
     for one, other in zip(trained([60])[:5], trained([20, 45, 60])[:5]):
         np.testing.assert_array_equal(one, other)
 
@@ -74,6 +76,5 @@ def test_the_worst_cells_gain_weight():
     size, against = np.ones((4, 2)), np.ones((4, 2))
     size[2] = 2.0
     against[3] = 0.0
-    emphasis = fusion.emphasize(np.zeros((4, 2)), size, np.stack([against, 2 * against], 2),
-                                -1.2)
+    emphasis = fusion.emphasize(np.zeros((4, 2)), size, np.stack([against, 2 * against], 2), -1.2)
     assert (emphasis[2] > emphasis[0]).all() and (emphasis[3] == 0).all()

@@ -8,8 +8,9 @@ from marine_tracker.training import rough_training as training
 
 def test_wanted_shares_are_those_of_the_rule():
     """All low: near 0; all high: near 1; one or two high: already much; never falling."""
-    quiet, one, two, three = (float(training.label(np.array(v))) for v in (
-        (0, 0, 0), (0, 1, 0), (1, 0, 1), (1, 1, 1)))
+    quiet, one, two, three = (
+        float(training.label(np.array(v))) for v in ((0, 0, 0), (0, 1, 0), (1, 0, 1), (1, 1, 1))
+    )
     assert (quiet, three) == pytest.approx((0.02, 0.98))
     assert 0.6 < one < 0.8 < two < 0.95
     levels = np.linspace(0, 1, 9)
@@ -53,5 +54,5 @@ def test_the_shipped_networks_say_what_they_were_taught(kind):
     _, deviations = training.normalisation()
     given = training.samples(deviations, rough_weights.NEURONS[kind])
     off = net.forward(weights.network, given.inputs) - given.wanted
-    assert np.sqrt(np.mean(off ** 2)) == pytest.approx(weights.manifest['rms_error'], abs=2e-4)
+    assert np.sqrt(np.mean(off**2)) == pytest.approx(weights.manifest['rms_error'], abs=2e-4)
     assert np.abs(off).max() < 0.03

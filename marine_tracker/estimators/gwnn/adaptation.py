@@ -12,10 +12,10 @@ import numpy as np
 from ...networks import wavelet_network as net
 from ...types import Array
 
-STEP = 0.001                    # of the error, a plot, along the units' values
-LEAK = 0.01                     # of a track's own weights forgotten a plot
-MOST_MOMENTUM = 0.9             # a share of 1 would never die out
-CLIP = 3.0                      # sigma: larger residuals count as this
+STEP = 0.001  # of the error, a plot, along the units' values
+LEAK = 0.01  # of a track's own weights forgotten a plot
+MOST_MOMENTUM = 0.9  # a share of 1 would never die out
+CLIP = 3.0  # sigma: larger residuals count as this
 
 
 class Adapted(NamedTuple):
@@ -43,7 +43,7 @@ def units_of(network: net.Network, inputs, outputs: slice):
     """The hidden units [N, 2, C] of four outputs: position at once, then per scan ahead."""
     group = net.group_size(network.layout)
     layout = network.layout._replace(outputs=4)
-    inner = network.inner[:, outputs.start * group:outputs.stop * group]
+    inner = network.inner[:, outputs.start * group : outputs.stop * group]
     value, _ = net.hidden(net.units(layout, inner.dtype), net.squash(network, inputs) @ inner)
     out = np.ones((len(inputs), 4, group + 1))
     out[:, :, :-1] = value.reshape(-1, 4, group)
@@ -67,9 +67,9 @@ def learn(adapted: Adapted, residual, scans, units) -> Adapted:
     Normalised gradient, with the momentum of paper 000: that of a neuron is its share in the
     layer's squared errors (eq 7-8).
     """
-    error = np.clip(residual, -CLIP, CLIP).T                        # [N, 2]
+    error = np.clip(residual, -CLIP, CLIP).T  # [N, 2]
     asked = _asked(adapted, scans)
-    share = error ** 2 / np.maximum((error ** 2).sum(1, keepdims=True), 1e-12)
+    share = error**2 / np.maximum((error**2).sum(1, keepdims=True), 1e-12)
     share = np.minimum(share, MOST_MOMENTUM)
     size = np.maximum((asked * asked).sum(2), 1e-12)
     moved = (STEP * error / size)[..., None] * asked + share[..., None] * adapted.moved

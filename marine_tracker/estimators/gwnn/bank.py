@@ -24,11 +24,11 @@ from .. import cs_kalman, imm
 from ..contract import Velocity, first_velocity
 from ..imm import Modes
 
-PERIOD = 60 / 22                # s, to which the settings refer
+PERIOD = 60 / 22  # s, to which the settings refer
 EXPERTS = 13
 BASE, RICH, SLOW, SECOND = slice(0, 4), slice(4, 13), slice(13, 17), slice(17, 21)
-CS, SECOND_IMM = 11, 12         # experts
-TURNS = ((2, 3), (5, 6))        # experts right and left
+CS, SECOND_IMM = 11, 12  # experts
+TURNS = ((2, 3), (5, 6))  # experts right and left
 
 
 class BankSettings(NamedTuple):
@@ -63,36 +63,53 @@ def _turns(*degrees):
 # The strongest four-mode IMMs that `marine_tracker tune imm` finds, by what they are tuned for:
 # every kind of motion and phase of the training tracks alike, or manoeuvres only.
 TUNED_ON_ALL = Modes(
-    noise=(2.7961e-06, 2.7429, 2.9895e-05, 2.9895e-05), turn_rate=(0, 0, 0.021336, -0.021336),
-    stay=(0.99417, 0.95174, 0.91282, 0.91282), period=PERIOD)
+    noise=(2.7961e-06, 2.7429, 2.9895e-05, 2.9895e-05),
+    turn_rate=(0, 0, 0.021336, -0.021336),
+    stay=(0.99417, 0.95174, 0.91282, 0.91282),
+    period=PERIOD,
+)
 TUNED_FOR_MANOEUVRE = Modes(
-    noise=(1.8237e-06, 4.3522, 1.926e-05, 1.926e-05), turn_rate=(0, 0, 0.023911, -0.023911),
-    stay=(0.93942, 0.98487, 0.93031, 0.93031), period=PERIOD)
+    noise=(1.8237e-06, 4.3522, 1.926e-05, 1.926e-05),
+    turn_rate=(0, 0, 0.023911, -0.023911),
+    stay=(0.93942, 0.98487, 0.93031, 0.93031),
+    period=PERIOD,
+)
 STRONGEST = {
     'ship': {'training': TUNED_ON_ALL, 'manoeuvre': TUNED_FOR_MANOEUVRE},
     'small_craft': {
         'training': Modes(
-            noise=(8.5223e-06, 0.12801, 0.48679, 0.48679), turn_rate=(0, 0, 0.20941, -0.20941),
-            stay=(0.99492, 0.9547, 0.55, 0.55), period=PERIOD),
+            noise=(8.5223e-06, 0.12801, 0.48679, 0.48679),
+            turn_rate=(0, 0, 0.20941, -0.20941),
+            stay=(0.99492, 0.9547, 0.55, 0.55),
+            period=PERIOD,
+        ),
         'manoeuvre': Modes(
-            noise=(5.6615e-05, 2.2873, 0.0091991, 0.0091991), turn_rate=(0, 0, 0.32648, -0.32648),
-            stay=(0.9055, 0.90073, 0.75464, 0.75464), period=PERIOD)},
+            noise=(5.6615e-05, 2.2873, 0.0091991, 0.0091991),
+            turn_rate=(0, 0, 0.32648, -0.32648),
+            stay=(0.9055, 0.90073, 0.75464, 0.75464),
+            period=PERIOD,
+        ),
+    },
 }
 
 SETTINGS = {
     'ship': BankSettings(
         base=TUNED_ON_ALL,
-        nine=_modes((0.0005, 0.05, 0.6) + (0.03,) * 6, _turns(1, 2.5, 6),
-                    (0.992,) + (0.85,) * 8),
-        entered=(1, 1, 0.5, 1, 1, 1, 1, 0.5, 0.5), slow=(0.0005, 0.006, 0.03, 0.12),
-        second=TUNED_FOR_MANOEUVRE, manoeuvre=cs_kalman.Manoeuvre(1.0, 1 / 60)),
+        nine=_modes((0.0005, 0.05, 0.6) + (0.03,) * 6, _turns(1, 2.5, 6), (0.992,) + (0.85,) * 8),
+        entered=(1, 1, 0.5, 1, 1, 1, 1, 0.5, 0.5),
+        slow=(0.0005, 0.006, 0.03, 0.12),
+        second=TUNED_FOR_MANOEUVRE,
+        manoeuvre=cs_kalman.Manoeuvre(1.0, 1 / 60),
+    ),
     # The product's own filters, so that the network begins where they are.
     'small_craft': BankSettings(
         base=imm.PRESETS['small_craft'],
         nine=_modes((0.005, 0.2, 1.5) + (0.1,) * 6, _turns(4, 10, 22), (0.97,) + (0.85,) * 8),
-        entered=(1, 1, 0.5, 1, 1, 1, 1, 0.5, 0.5), slow=(0.002, 0.02, 0.1, 0.4),
+        entered=(1, 1, 0.5, 1, 1, 1, 1, 0.5, 0.5),
+        slow=(0.002, 0.02, 0.1, 0.4),
         second=STRONGEST['small_craft']['training'],
-        manoeuvre=cs_kalman.PRESETS['small_craft']),
+        manoeuvre=cs_kalman.PRESETS['small_craft'],
+    ),
 }
 
 
@@ -118,25 +135,38 @@ def build(settings: BankSettings) -> Filters:
     """The bank with these settings."""
     slow = _modes(settings.slow, (0,) * 4, (1,) * 4)
     groups = (settings.base, settings.nine, slow, settings.second)
-    chains = [linear_modes.Chain(at, linear_modes.transition_power(modes.stay, modes.period,
-                                                                   entered))
-              for at, modes, entered in ((BASE, settings.base, None),
-                                         (RICH, settings.nine, settings.entered),
-                                         (SECOND, settings.second, None))]
-    modes = linear_modes.bank(sum((m.noise for m in groups), ()),
-                              sum((m.turn_rate for m in groups), ()), chains)
+    chains = [
+        linear_modes.Chain(at, linear_modes.transition_power(modes.stay, modes.period, entered))
+        for at, modes, entered in (
+            (BASE, settings.base, None),
+            (RICH, settings.nine, settings.entered),
+            (SECOND, settings.second, None),
+        )
+    ]
+    modes = linear_modes.bank(
+        sum((m.noise for m in groups), ()), sum((m.turn_rate for m in groups), ()), chains
+    )
     start = np.ones(len(modes.noise))
     for chain in chains:
         start[chain.modes] = linear_modes.stationary(chain)
     turn_rate = modes.turn_rate[RICH, 0]
     base = linear_modes.bank(settings.base.noise, settings.base.turn_rate, chains[:1])
-    return Filters(settings, modes, base, start,
-                   np.stack([turn_rate > 0, turn_rate < 0]).astype(float), _mark(settings))
+    return Filters(
+        settings,
+        modes,
+        base,
+        start,
+        np.stack([turn_rate > 0, turn_rate < 0]).astype(float),
+        _mark(settings),
+    )
 
 
 def _mark(settings: BankSettings) -> str:
-    numbers = [number for modes in (settings.base, settings.nine, settings.second)
-               for number in (*modes.noise, *modes.turn_rate, *modes.stay, modes.period)]
+    numbers = [
+        number
+        for modes in (settings.base, settings.nine, settings.second)
+        for number in (*modes.noise, *modes.turn_rate, *modes.stay, modes.period)
+    ]
     numbers += [*settings.entered, *settings.slow, *settings.manoeuvre]
     return hashlib.sha256(' '.join(f'{number:.9g}' for number in numbers).encode()).hexdigest()[:16]
 
@@ -176,8 +206,9 @@ class Ahead(NamedTuple):
     acceleration: Array
 
 
-def begin(bank: Filters, plots: Plots, max_speed: float,
-          velocity: Velocity | None = None) -> BankState:
+def begin(
+    bank: Filters, plots: Plots, max_speed: float, velocity: Velocity | None = None
+) -> BankState:
     """States of one plot each; max_speed m/s of the targets; what else is known of velocities."""
     count, j = len(plots.time), len(bank.start)
     velocity = first_velocity(velocity, count, max_speed)
@@ -186,8 +217,9 @@ def begin(bank: Filters, plots: Plots, max_speed: float,
     rows[..., [4, 5, 8]] = linear_modes.packed_noise(plots.covariance).T[:, None]
     rows[..., 11:] = linear_modes.packed_noise(velocity.covariance).T[:, None]
     cs = cs_kalman.cs_kalman(bank.settings.manoeuvre, max_speed).init(plots, velocity)
-    return BankState(plots.time.copy(), np.tile(bank.start, (count, 1)), rows, cs.mean,
-                     cs.covariance)
+    return BankState(
+        plots.time.copy(), np.tile(bank.start, (count, 1)), rows, cs.mean, cs.covariance
+    )
 
 
 def look(bank: Filters, state: BankState, step) -> Ahead:
@@ -201,8 +233,7 @@ def look(bank: Filters, state: BankState, step) -> Ahead:
 def base(bank: Filters, state: BankState, time):
     """Columns [14, N] of the base IMM at the times [N] s: mean and packed covariance."""
     step = time - state.time
-    columns, weight = linear_modes.mix(bank.base, state.rows[:, BASE], state.weight[:, BASE],
-                                       step)
+    columns, weight = linear_modes.mix(bank.base, state.rows[:, BASE], state.weight[:, BASE], step)
     columns = linear_modes.move(bank.base, columns, step)
     return linear_modes.combine(columns, weight.T)
 
@@ -244,21 +275,28 @@ def expect(bank: Filters, state: BankState, plots: Plots) -> Expected:
     weight = np.ascontiguousarray(weight.T)
     cs = cs_kalman.predict(state.cs_mean, state.cs_covariance, step, bank.settings.manoeuvre)
     mixture = linear_modes.combine(columns[:, BASE], weight[BASE])
-    _, nis, _ = linear_modes.innovate(mixture, plots.position.T,
-                                      linear_modes.packed_noise(plots.covariance))
+    _, nis, _ = linear_modes.innovate(
+        mixture, plots.position.T, linear_modes.packed_noise(plots.covariance)
+    )
     return Expected(_ahead(bank, columns[:4], weight, cs[0]), columns, cs, nis)
 
 
 def correct(bank: Filters, expected: Expected, plots: Plots) -> BankState:
     """The filters after the plots that `expect` was given."""
-    columns, score = linear_modes.correct(expected.columns, plots.position.T,
-                                          linear_modes.packed_noise(plots.covariance))
+    columns, score = linear_modes.correct(
+        expected.columns, plots.position.T, linear_modes.packed_noise(plots.covariance)
+    )
     weight = expected.ahead.weight.copy()
     for chain in bank.modes.chains:
         weight[chain.modes] = linear_modes.reweigh(weight[chain.modes], score[chain.modes])
     mean, covariance = expected.cs
     mean, covariance, _, _ = kalman_update(
-        mean, covariance, plots.position - mean[:, cs_kalman.POSITION], plots.covariance,
-        cs_kalman.POSITION)
-    return BankState(plots.time, np.ascontiguousarray(weight.T), linear_modes.rows_of(columns),
-                     mean, covariance)
+        mean,
+        covariance,
+        plots.position - mean[:, cs_kalman.POSITION],
+        plots.covariance,
+        cs_kalman.POSITION,
+    )
+    return BankState(
+        plots.time, np.ascontiguousarray(weight.T), linear_modes.rows_of(columns), mean, covariance
+    )

@@ -28,21 +28,25 @@ from ..contract import Estimator
 from . import adaptation, inputs
 from . import bank as filters
 
-GATE, REFUSALS = 16.0, 2        # squared distance from the base; plots refused in a row, at most
-SETTLED = 10                    # plots before any is refused
-WARM = 8                        # plots before the network is heard
-FADE = 3.0                      # scans ahead up to which the network speaks
-MOST = 4.0                      # what it may add by itself; trained, it adds less than half of it
-MISSED, SURE = 1.5, 1.0         # scans without a plot; sigma: then it corrects by no more
-OTHERS = -5.0                   # log weight, with a silent network, of all but the base's modes
+GATE, REFUSALS = 16.0, 2  # squared distance from the base; plots refused in a row, at most
+SETTLED = 10  # plots before any is refused
+WARM = 8  # plots before the network is heard
+FADE = 3.0  # scans ahead up to which the network speaks
+MOST = 4.0  # what it may add by itself; trained, it adds less than half of it
+MISSED, SURE = 1.5, 1.0  # scans without a plot; sigma: then it corrects by no more
+OTHERS = -5.0  # log weight, with a silent network, of all but the base's modes
 FALL, BACK, RETURN = 1.6, 1.0, 3
-KEEP, KEEP_LATELY = 0.9, 0.7    # of J, a plot: to fall back; to return
-WORST = 25.0                    # squared residual that counts at most
-EXPECTED = 2.2                  # squared residual of a good filter, sigma^2: where J starts
+KEEP, KEEP_LATELY = 0.9, 0.7  # of J, a plot: to fall back; to return
+WORST = 25.0  # squared residual that counts at most
+EXPECTED = 2.2  # squared residual of a good filter, sigma^2: where J starts
 WARMUP, GWNN, FALLBACK = 0.0, 1.0, 2.0
 STATUS = ('WARMUP', 'GWNN', 'FALLBACK')
-REASONS = ('', 'expectations worse than those of CS-Kalman', 'network output is not a number',
-           'network output out of all proportion')
+REASONS = (
+    '',
+    'expectations worse than those of CS-Kalman',
+    'network output is not a number',
+    'network output out of all proportion',
+)
 
 # The network's outputs: what it adds to the experts' log weights; corrections of the position
 # when it speaks and per scan ahead, and of the velocity; in the units of `gwnn_inputs`.
@@ -50,7 +54,7 @@ LOGITS = slice(0, filters.EXPERTS)
 AT_ONCE, PER_SCAN, OF_VELOCITY = slice(13, 15), slice(15, 17), slice(17, 19)
 POSITION = slice(13, 17)
 OUTPUTS = 19
-SPREADS = 8                     # log ratio of the variances to the base's: now, a scan ahead
+SPREADS = 8  # log ratio of the variances to the base's: now, a scan ahead
 
 
 class Monitor(NamedTuple):
@@ -103,8 +107,13 @@ class Account(NamedTuple):
 def account(state: GwnnState) -> Account:
     """Why each track is extrapolated as it is."""
     monitor = state.monitor
-    return Account(monitor.status.astype(np.int8), monitor.network / monitor.cs, monitor.network,
-                   monitor.cs, monitor.reason.astype(np.int8))
+    return Account(
+        monitor.status.astype(np.int8),
+        monitor.network / monitor.cs,
+        monitor.network,
+        monitor.cs,
+        monitor.reason.astype(np.int8),
+    )
 
 
 class Look(NamedTuple):
@@ -150,7 +159,7 @@ def correct(state: GwnnState, at: Look):
 
 def flaw(output):
     """What is wrong with outputs [N, 27]: index into REASONS, 0 for nothing."""
-    alone = np.abs(output[:, AT_ONCE.start:OF_VELOCITY.stop]).max(1)
+    alone = np.abs(output[:, AT_ONCE.start : OF_VELOCITY.stop]).max(1)
     return np.where(~np.isfinite(output).all(1), 2.0, np.where(alone > MOST, 3.0, 0.0))
 
 
@@ -179,12 +188,19 @@ def weights(path: str = '', vessel_class: str = 'ship') -> gwnn_weights.Weights:
         raise ValueError(
             f'GWNN weights {file} were trained over the filters of vessel class {theirs[0]} '
             f'(settings {theirs[1]}), not those of {ours[0]} (settings {ours[1]}): train anew '
-            f'with --vessel-class {vessel_class}')
+            f'with --vessel-class {vessel_class}'
+        )
     return found
 
 
-def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
-         fall: float = FALL, learning: bool = False, vessel_class: str = 'ship') -> Estimator:
+def gwnn(
+    weights: gwnn_weights.Weights,
+    max_speed: float,
+    period: float,
+    fall: float = FALL,
+    learning: bool = False,
+    vessel_class: str = 'ship',
+) -> Estimator:
     """The estimator.
 
     max_speed     m/s, of the targets: the velocity variance before the second plot
@@ -202,8 +218,9 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
         units = adaptation.begin(len(state.time), weights.fusion, learning).units
         warm = np.flatnonzero(memory.plots >= WARM)
         if len(warm):
-            seen = inputs.inputs(bank, _chosen(state, warm), _chosen(memory, warm), period
-                                      ).astype(np.float32)      # as the weights: half the time
+            seen = inputs.inputs(bank, _chosen(state, warm), _chosen(memory, warm), period).astype(
+                np.float32
+            )  # as the weights: half the time
             out[warm, :OUTPUTS] = forward(weights.fusion, seen)
             out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
             if learning:
@@ -213,11 +230,21 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
     def init(plots, velocity=None):
         count = len(plots.time)
         zero = np.zeros(count)
-        monitor = Monitor(zero, zero + EXPECTED, zero + EXPECTED, np.full((count, 2), EXPECTED),
-                          zero.copy(), zero.copy())
-        return GwnnState(filters.begin(bank, plots, max_speed, velocity), inputs.begin(plots),
-                         monitor, np.zeros((count, OUTPUTS + SPREADS)),
-                         adaptation.begin(count, weights.fusion, learning))
+        monitor = Monitor(
+            zero,
+            zero + EXPECTED,
+            zero + EXPECTED,
+            np.full((count, 2), EXPECTED),
+            zero.copy(),
+            zero.copy(),
+        )
+        return GwnnState(
+            filters.begin(bank, plots, max_speed, velocity),
+            inputs.begin(plots),
+            monitor,
+            np.zeros((count, OUTPUTS + SPREADS)),
+            adaptation.begin(count, weights.fusion, learning),
+        )
 
     def extrapolate(state, time):
         begun, frame = state.bank.time, state.memory.frame
@@ -228,8 +255,12 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
         heard = np.flatnonzero(state.monitor.status == GWNN)
         if len(heard):
             rows = _chosen(state, heard)
-            at = look(rows.bank, frame[heard],
-                      filters.look(bank, rows.bank, (near - begun)[heard]), near[heard])
+            at = look(
+                rows.bank,
+                frame[heard],
+                filters.look(bank, rows.bank, (near - begun)[heard]),
+                near[heard],
+            )
             shift, ratio = correct(rows, at), rows.output[:, OUTPUTS:]
             # After a missed plot the base says how sure the position is: were the network too
             # sure and wrong, no plot would come near enough to tell; were it too unsure, plots of
@@ -247,8 +278,12 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
         if len(fallen):
             rows = take(state.bank, fallen)
             mean[fallen], covariance[fallen] = cs_kalman.predict(
-                rows.cs_mean, rows.cs_covariance, (time - begun)[fallen],
-                bank.settings.manoeuvre, cs_kalman.SHOWN)
+                rows.cs_mean,
+                rows.cs_covariance,
+                (time - begun)[fallen],
+                bank.settings.manoeuvre,
+                cs_kalman.SHOWN,
+            )
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state, plots, rows):
@@ -262,14 +297,19 @@ def gwnn(weights: gwnn_weights.Weights, max_speed: float, period: float,
         sound = wrong == 0
         adapted = before.adapted
         if learning:
-            residual = inputs.turn(frame, plots.position.T - expected.ahead.mean[:2]
-                                        - shift[:2]) / frame[:, 2:].T
-            adapted = adaptation.learn(adapted, residual, at.scans,
-                                            np.where(sound[:, None, None], units, 0.0))
-        monitor = judge(before.monitor, plots, expected.ahead, shift, memory, wrong,
-                        fall)
-        return put(state, rows, GwnnState(after, memory, monitor,
-                                          np.where(sound[:, None], output, 0.0), adapted))
+            residual = (
+                inputs.turn(frame, plots.position.T - expected.ahead.mean[:2] - shift[:2])
+                / frame[:, 2:].T
+            )
+            adapted = adaptation.learn(
+                adapted, residual, at.scans, np.where(sound[:, None, None], units, 0.0)
+            )
+        monitor = judge(before.monitor, plots, expected.ahead, shift, memory, wrong, fall)
+        return put(
+            state,
+            rows,
+            GwnnState(after, memory, monitor, np.where(sound[:, None], output, 0.0), adapted),
+        )
 
     return Estimator(init, extrapolate, update)
 
@@ -287,15 +327,16 @@ def respread(covariance, ratio, frame, scans):
     """
     part = np.minimum(scans, 1.0)[:, None]
     scale = np.exp(0.5 * (ratio[:, :4] + part * (ratio[:, 4:] - ratio[:, :4])))
-    line = np.stack([frame[:, :2], np.stack([frame[:, 1], -frame[:, 0]], 1)], 1)    # [N, 2, 2]
+    line = np.stack([frame[:, :2], np.stack([frame[:, 1], -frame[:, 0]], 1)], 1)  # [N, 2, 2]
     stretch = np.zeros_like(covariance)
     for at in (slice(0, 2), slice(2, 4)):
         stretch[:, at, at] = np.matmul(line.swapaxes(1, 2), scale[:, at, None] * line)
     return sandwich(stretch, covariance)
 
 
-def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, wrong,
-          fall: float = FALL) -> Monitor:
+def judge(
+    monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, wrong, fall: float = FALL
+) -> Monitor:
     """The monitor after one plot each.
 
     shift [4, N]: the network's correction of the base, m; wrong [N]: the flaw of its new
@@ -306,13 +347,16 @@ def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, wrong,
     def residual(position):
         off = inputs.turn(memory.frame, plots.position.T - position) / sigma
         size = (off * off).sum(0)
-        return np.where(size < WORST, size, WORST)                  # nan counts as worst
-    speaking = memory.plots > WARM              # before, its output was still empty
-    residuals = np.stack([residual(ahead.mean[:2] + shift[:2]),
-                          residual(ahead.experts[:2, filters.CS])], 1)
+        return np.where(size < WORST, size, WORST)  # nan counts as worst
+
+    speaking = memory.plots > WARM  # before, its output was still empty
+    residuals = np.stack(
+        [residual(ahead.mean[:2] + shift[:2]), residual(ahead.experts[:2, filters.CS])], 1
+    )
 
     def averaged(j, keep):
         return np.where(speaking[:, None], keep * j + (1 - keep) * residuals, j)
+
     network, cs = averaged(np.stack([monitor.network, monitor.cs], 1), KEEP).T
     lately = averaged(monitor.lately, KEEP_LATELY)
     rho = network / cs
@@ -321,6 +365,9 @@ def judge(monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, wrong,
     better = np.where(fallen & ahead_of_cs, monitor.better + 1, 0.0)
     away = np.where(fallen, better < RETURN, rho > fall) | ~sound
     status = np.where(memory.plots < WARM, WARMUP, np.where(away, FALLBACK, GWNN))
-    reason = np.where(status != FALLBACK, 0.0, np.where(
-        ~sound, wrong, np.where(fallen, np.maximum(monitor.reason, 1.0), 1.0)))
+    reason = np.where(
+        status != FALLBACK,
+        0.0,
+        np.where(~sound, wrong, np.where(fallen, np.maximum(monitor.reason, 1.0), 1.0)),
+    )
     return Monitor(status, network, cs, lately, better, reason)

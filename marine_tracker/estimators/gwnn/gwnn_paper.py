@@ -26,7 +26,7 @@ from ..cs_kalman import POSITION_VELOCITY, CsState, Manoeuvre, cs_kalman
 
 LEVELS, TRANSLATIONS, WIDTH = 1, 5, 1.2
 RULE = Rule(step=0.02, rounds=3)
-SEED = 1                            # every track begins with the same weights
+SEED = 1  # every track begins with the same weights
 
 # D: what an output of 1 stands for, m in range and across, m/s, rad.
 POSITION_UNIT, SPEED_UNIT, COURSE_UNIT = 60.0, 0.2, np.radians(5)
@@ -34,15 +34,15 @@ POSITION_UNIT, SPEED_UNIT, COURSE_UNIT = 60.0, 0.2, np.radians(5)
 INPUT_UNIT = np.array([1000.0, 1000.0, 2.0, np.radians(20)])
 INPUT_LIMIT, INPUT_GAIN = 3.0, 2.0
 CENTRE_RATE = 0.05
-WANTED_LIMIT = 3.0                  # in D: the course of a ship at rest may be any next scan
+WANTED_LIMIT = 3.0  # in D: the course of a ship at rest may be any next scan
 
 # E1 and E2 follow "from the accuracy" (paper, below eq 10): its own for its noise of 0.3 m, or a
 # share of the posterior's deviation.
-FINEST, FAR_TO_NEAR = 1.852, 5.0    # m
+FINEST, FAR_TO_NEAR = 1.852, 5.0  # m
 NEAR_SHARE = 0.5
-LEAST_GAIN = 0.01                   # a plot that tells less is no plot: z(k) stays
-SHORTEST, LONGEST = 0.3, 3.0        # scans from plot to plot that can teach a difference
-WARM_UP = 5                         # plots
+LEAST_GAIN = 0.01  # a plot that tells less is no plot: z(k) stays
+SHORTEST, LONGEST = 0.3, 3.0  # scans from plot to plot that can teach a difference
+WARM_UP = 5  # plots
 # Squared distances from the filter, in its own covariance: up to the first the network answers,
 # beyond the second it begins anew. In between it may be the filter that lags.
 BELIEVED, HOPELESS = 2.0, 100.0
@@ -114,8 +114,11 @@ def gain(base: CsState, plots):
     """How far [N] the plots have moved the filter, 0 to 1: half the trace of P R^-1."""
     inverse, _ = invert_2x2(plots.covariance)
     spread = base.covariance
-    return 0.5 * (spread[:, 0, 0] * inverse[:, 0, 0] + spread[:, 3, 3] * inverse[:, 1, 1]
-                  + 2 * spread[:, 0, 3] * inverse[:, 0, 1])
+    return 0.5 * (
+        spread[:, 0, 0] * inverse[:, 0, 0]
+        + spread[:, 3, 3] * inverse[:, 1, 1]
+        + 2 * spread[:, 0, 3] * inverse[:, 0, 1]
+    )
 
 
 def distance(apart, covariance):
@@ -136,8 +139,15 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
         count = len(plots.time)
         base = filter_.init(plots, velocity)
         weights = take(fresh, np.zeros(count, int))
-        return PaperState(base, plots.time.copy(), base.mean[:, POSITION_VELOCITY], weights,
-                          np.zeros((count, 4)), plots.origin.copy(), np.zeros(count))
+        return PaperState(
+            base,
+            plots.time.copy(),
+            base.mean[:, POSITION_VELOCITY],
+            weights,
+            np.zeros((count, 4)),
+            plots.origin.copy(),
+            np.zeros(count),
+        )
 
     def ahead(state, time, base):
         """Rows whose networks are warm, what they extrapolate, its squared distance from base."""
@@ -154,8 +164,9 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
             position = here + scans * (there - here)
             velocity = now + np.minimum(scans, 1) * (z[:, 2:3] * unit_vector(z[:, 3]) - now)
             base = take(base, rows)
-            off = (distance(position - base.position, base.covariance[:, :2, :2])
-                   + distance(velocity - base.velocity, base.covariance[:, 2:, 2:]))
+            off = distance(position - base.position, base.covariance[:, :2, :2]) + distance(
+                velocity - base.velocity, base.covariance[:, 2:, 2:]
+            )
         return rows, base._replace(position=position, velocity=velocity), off
 
     def extrapolate(state, time):
@@ -175,8 +186,12 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
         centre = np.where((old.taught == 0)[:, None], after, old.centre)
         scans = (plots.time - old.time) / period
         a_scan = difference(after, before) / np.maximum(scans, SHORTEST)[:, None]
-        lesson = Lesson(network_inputs(before, centre), a_scan / output_unit(before), after[:, 2],
-                        deviation(base))
+        lesson = Lesson(
+            network_inputs(before, centre),
+            a_scan / output_unit(before),
+            after[:, 2],
+            deviation(base),
+        )
         told = gain(base, plots) >= LEAST_GAIN
         teaching = np.flatnonzero(told & (scans >= SHORTEST) & (scans <= LONGEST))
         old = put(old, teaching, teach(take(old, teaching), take(lesson, teaching)))
@@ -187,18 +202,33 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
 
     def renew(state, rows):
         """The state with new networks in the named rows."""
-        return put(state, rows, take(state, rows)._replace(
-            weights=take(fresh, np.zeros(len(rows), int)), taught=np.zeros(len(rows))))
+        return put(
+            state,
+            rows,
+            take(state, rows)._replace(
+                weights=take(fresh, np.zeros(len(rows), int)), taught=np.zeros(len(rows))
+            ),
+        )
 
     def teach(state, lesson):
         """The rows with their networks taught; one that overflows begins anew."""
         wanted = np.clip(lesson.wanted, -WANTED_LIMIT, WANTED_LIMIT)
         near = np.maximum(FINEST, NEAR_SHARE * lesson.deviation)
         with np.errstate(all='ignore'):
-            weights = learn(design, state.weights, lesson.inputs, wanted, lesson.speed, RULE,
-                            POSITION_UNIT, near, FAR_TO_NEAR * near)
+            weights = learn(
+                design,
+                state.weights,
+                lesson.inputs,
+                wanted,
+                lesson.speed,
+                RULE,
+                POSITION_UNIT,
+                near,
+                FAR_TO_NEAR * near,
+            )
         sound = np.isfinite(weights.outer).all((1, 2)) & np.isfinite(weights.inner).all((1, 2))
-        return renew(state._replace(weights=weights, taught=state.taught + 1),
-                     np.flatnonzero(~sound))
+        return renew(
+            state._replace(weights=weights, taught=state.taught + 1), np.flatnonzero(~sound)
+        )
 
     return Estimator(init, extrapolate, update)

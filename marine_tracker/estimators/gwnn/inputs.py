@@ -13,30 +13,41 @@ from ...gaussian import linear_modes
 from ...types import Array, Plots
 from . import bank as filters
 
-SCAN = filters.PERIOD           # s: the unit of time of every input, whatever the radar's period
-VELOCITY = 4 * SCAN             # s
-VAGUER = 1.5                    # times; sigma grows by no more from plot to plot: a plot shared
-                                # by several targets may be as vague as it likes
-TELLS = 100.0                   # times; a plot still vaguer is no plot to count
-FARTHEST = 25.0                 # sigma: experts farther from the base are drawn in to this
-MEMORIES = (2.0, 5.0, 12.0)     # plots over which the base's innovations are averaged
-SLOW_KEEP = (0.6, 0.85)         # part kept of the slow filters' mean innovations, a plot
+SCAN = filters.PERIOD  # s: the unit of time of every input, whatever the radar's period
+VELOCITY = 4 * SCAN  # s
+VAGUER = 1.5  # times; sigma grows by no more from plot to plot: a plot shared
+# by several targets may be as vague as it likes
+TELLS = 100.0  # times; a plot still vaguer is no plot to count
+FARTHEST = 25.0  # sigma: experts farther from the base are drawn in to this
+MEMORIES = (2.0, 5.0, 12.0)  # plots over which the base's innovations are averaged
+SLOW_KEEP = (0.6, 0.85)  # part kept of the slow filters' mean innovations, a plot
 NIS_KEEP = (0.8, 0.95)
-WORST = 25.0                    # squared residual that counts at most
+WORST = 25.0  # squared residual that counts at most
 DETAIL_KEEP = 0.96
-DETAIL_SCALE = float(np.sqrt(np.pi / 2))    # makes the mean size of a unit normal 1
+DETAIL_SCALE = float(np.sqrt(np.pi / 2))  # makes the mean size of a unit normal 1
 TRENDS = len(MEMORIES) + len(SLOW_KEEP) * 4
 # Experts whose residuals are remembered beside the base's.
 JUDGED = (4, filters.CS, filters.SECOND_IMM)
-LONE = (0, 1, 4, 7, 8, 9, 10, 11, 12)       # experts without a mirror image
+LONE = (0, 1, 4, 7, 8, 9, 10, 11, 12)  # experts without a mirror image
 
 # How each block of inputs changes with the axes: vector; vector that also changes sign when the
 # picture is mirrored; pair without signs; number; number that changes sign when mirrored.
 V, PV, E, S, P = 'vector', 'pseudovector', 'even pair', 'scalar', 'pseudoscalar'
-KINDS = ((V,) * 2 * len(LONE) + (V, PV) * 4
-         + (S, S, S, P) + (S, S, S) + (S, P) * 3 + (S, S, S, P)
-         + (E,) * 3 + (V,) * TRENDS + (S, S) + (S,) * 2 * (1 + len(JUDGED)) + (E,)
-         + (V, E, V) + (S,) * 3)
+KINDS = (
+    (V,) * 2 * len(LONE)
+    + (V, PV) * 4
+    + (S, S, S, P)
+    + (S, S, S)
+    + (S, P) * 3
+    + (S, S, S, P)
+    + (E,) * 3
+    + (V,) * TRENDS
+    + (S, S)
+    + (S,) * 2 * (1 + len(JUDGED))
+    + (E,)
+    + (V, E, V)
+    + (S,) * 3
+)
 COUNT = sum(1 if kind in (S, P) else 2 for kind in KINDS)
 _KEEP = np.array([1 - 1 / m for m in MEMORIES] + [keep for keep in SLOW_KEEP for _ in range(4)])
 
@@ -73,9 +84,18 @@ def begin(plots: Plots) -> ResidualMemory:
     """Memories of one plot each."""
     count = len(plots.time)
     zero, pair = np.zeros(count), np.zeros((count, 2))
-    return ResidualMemory(frame_of(plots), np.zeros((count, TRENDS, 2)), pair,
-                  np.full((count, 2, 1 + len(JUDGED)), 2.0), pair + 1, pair.copy(),
-                  zero, zero.copy(), zero + SCAN, zero + 1)
+    return ResidualMemory(
+        frame_of(plots),
+        np.zeros((count, TRENDS, 2)),
+        pair,
+        np.full((count, 2, 1 + len(JUDGED)), 2.0),
+        pair + 1,
+        pair.copy(),
+        zero,
+        zero.copy(),
+        zero + SCAN,
+        zero + 1,
+    )
 
 
 def frame_of(plots: Plots):
@@ -99,15 +119,17 @@ def turn(frame, vectors):
 def to_sigma(frame, states):
     """States [4, ..., N], m and m/s, in the units of the network."""
     sigma = frame[:, 2:].T.reshape((2,) + (1,) * (states.ndim - 2) + (-1,))
-    return np.concatenate([turn(frame, states[:2]) / sigma,
-                           turn(frame, states[2:]) * (VELOCITY / sigma)])
+    return np.concatenate(
+        [turn(frame, states[:2]) / sigma, turn(frame, states[2:]) * (VELOCITY / sigma)]
+    )
 
 
 def from_sigma(frame, states):
     """The way back from `to_sigma`, for states [4, N]."""
     sigma = frame[:, 2:].T
-    return np.concatenate([turn(frame, states[:2] * sigma),
-                           turn(frame, states[2:] * sigma / VELOCITY)])
+    return np.concatenate(
+        [turn(frame, states[:2] * sigma), turn(frame, states[2:] * sigma / VELOCITY)]
+    )
 
 
 def apart(frame, ahead: filters.Ahead):
@@ -119,40 +141,58 @@ def apart(frame, ahead: filters.Ahead):
 def variances(frame, covariance):
     """Variances [4, N] of covariances [N, 4, 4], in the units of the network."""
     sigma = frame[:, 2:].T
-    return np.concatenate([
-        _along_across(frame, linear_modes.packed_noise(covariance[:, at, at])) / (unit * unit)
-        for at, unit in ((slice(0, 2), sigma), (slice(2, 4), sigma / VELOCITY))])
+    return np.concatenate(
+        [
+            _along_across(frame, linear_modes.packed_noise(covariance[:, at, at])) / (unit * unit)
+            for at, unit in ((slice(0, 2), sigma), (slice(2, 4), sigma / VELOCITY))
+        ]
+    )
 
 
-def remember(memory: ResidualMemory, expected: filters.Expected, plots: Plots, step, used) -> ResidualMemory:
+def remember(
+    memory: ResidualMemory, expected: filters.Expected, plots: Plots, step, used
+) -> ResidualMemory:
     """Memories after one plot each, which the filters took where `used` [N] holds."""
     frame = frame_of(plots)
     tells = (frame[:, 2:] < TELLS * memory.frame[:, 2:]).all(1)
     frame[:, 2:] = np.minimum(frame[:, 2:], VAGUER * memory.frame[:, 2:])
     sigma = frame[:, 2:].T
-    off = turn(frame, plots.position.T - expected.ahead.mean[:2]) / sigma          # [2, N]
-    slow = turn(frame, plots.position.T[:, None] - expected.columns[:2, filters.SLOW]
-                ) / sigma[:, None]                                                  # [2, 4, N]
-    new = np.concatenate([np.repeat(off[:, None], len(MEMORIES), 1)]
-                         + [slow] * len(SLOW_KEEP), 1).transpose(2, 1, 0)
+    off = turn(frame, plots.position.T - expected.ahead.mean[:2]) / sigma  # [2, N]
+    slow = (
+        turn(frame, plots.position.T[:, None] - expected.columns[:2, filters.SLOW]) / sigma[:, None]
+    )  # [2, 4, N]
+    new = np.concatenate(
+        [np.repeat(off[:, None], len(MEMORIES), 1)] + [slow] * len(SLOW_KEEP), 1
+    ).transpose(2, 1, 0)
     keep = _KEEP[:, None]
     trend = keep * memory.trend + (1 - keep) * np.minimum(np.maximum(new, -8.0), 8.0)
-    judged = turn(frame, plots.position.T[:, None] - expected.ahead.experts[:2, JUDGED]
-                  ) / sigma[:, None]                                                # [2, 3, N]
+    judged = (
+        turn(frame, plots.position.T[:, None] - expected.ahead.experts[:2, JUDGED]) / sigma[:, None]
+    )  # [2, 3, N]
     square = np.concatenate([(off * off).sum(0)[None], (judged * judged).sum(0)]).T[:, None]
     keep = np.array(NIS_KEEP)[:, None]
     fit = keep * memory.fit + (1 - keep) * np.minimum(square, WORST)
     off = off.T
-    nis = np.array(NIS_KEEP) * memory.nis + (1 - np.array(NIS_KEEP)) * np.minimum(
-        expected.nis, WORST)[:, None]
+    nis = (
+        np.array(NIS_KEEP) * memory.nis
+        + (1 - np.array(NIS_KEEP)) * np.minimum(expected.nis, WORST)[:, None]
+    )
     differ = DETAIL_SCALE * np.minimum(np.abs(off - memory.last) / np.sqrt(2), 4.0)
     both = (used & (memory.used > 0))[:, None]
-    detail = np.where(both, DETAIL_KEEP * memory.detail + (1 - DETAIL_KEEP) * differ,
-                      memory.detail)
+    detail = np.where(both, DETAIL_KEEP * memory.detail + (1 - DETAIL_KEEP) * differ, memory.detail)
     taken = used[:, None]
-    return ResidualMemory(frame, np.where(taken[..., None], trend, memory.trend), nis, fit, detail,
-                  np.where(taken, off, memory.last), used.astype(float),
-                  np.where(used, 0.0, memory.refused + 1), step, memory.plots + tells)
+    return ResidualMemory(
+        frame,
+        np.where(taken[..., None], trend, memory.trend),
+        nis,
+        fit,
+        detail,
+        np.where(taken, off, memory.last),
+        used.astype(float),
+        np.where(used, 0.0, memory.refused + 1),
+        step,
+        memory.plots + tells,
+    )
 
 
 def inputs(bank: filters.Filters, state: filters.BankState, memory: ResidualMemory, period):
@@ -169,24 +209,30 @@ def inputs(bank: filters.Filters, state: filters.BankState, memory: ResidualMemo
     blocks.append(_modes(weight[filters.RICH], 3))
     blocks.append(_modes(weight[filters.SECOND], 2))
 
-    columns = linear_modes.columns_of(state.rows[:, :filters.RICH.stop])
+    columns = linear_modes.columns_of(state.rows[:, : filters.RICH.stop])
     posterior = state.weight.T
     base = linear_modes.combine(columns[:, filters.BASE], posterior[filters.BASE])
     rich = linear_modes.combine(columns[:, filters.RICH], posterior[filters.RICH])
-    for spread, unit in ((base[[4, 5, 8]], sigma), (base[[11, 12, 13]], sigma / VELOCITY),
-                         (rich[[4, 5, 8]], sigma)):
+    for spread, unit in (
+        (base[[4, 5, 8]], sigma),
+        (base[[11, 12, 13]], sigma / VELOCITY),
+        (rich[[4, 5, 8]], sigma),
+    ):
         blocks.append(0.5 * np.log(_along_across(frame, spread) / (unit * unit) + 1e-6))
     blocks.append(np.arcsinh(memory.trend).transpose(1, 2, 0).reshape(2 * TRENDS, -1))
     blocks.append(np.log(memory.nis + 0.1).T)
     fit = np.log(memory.fit + 0.1)
-    fit[..., 1:] -= fit[..., :1]                # better or worse than the base
+    fit[..., 1:] -= fit[..., :1]  # better or worse than the base
     blocks.append(fit.reshape(len(fit), -1).T)
     blocks.append(np.log(memory.detail + 0.05).T)
     blocks.append(np.arcsinh(turn(frame, ahead.mean[2:]) * (SCAN / sigma)))
     blocks.append(np.log(sigma / 25))
-    blocks.append(np.arcsinh(turn(frame, ahead.acceleration) * (4 * SCAN ** 2 / sigma)))
-    blocks.append(np.stack([memory.step / SCAN - 1, np.full(len(frame), period) / SCAN - 1,
-                            10 / memory.plots]))
+    blocks.append(np.arcsinh(turn(frame, ahead.acceleration) * (4 * SCAN**2 / sigma)))
+    blocks.append(
+        np.stack(
+            [memory.step / SCAN - 1, np.full(len(frame), period) / SCAN - 1, 10 / memory.plots]
+        )
+    )
     return np.ascontiguousarray(np.concatenate(blocks).T)
 
 
@@ -206,5 +252,9 @@ def _along_across(frame, spread):
     """Variances [2, N] along and across the line of sight, of ee, en, nn [3, N]."""
     east, north = frame[:, 0], frame[:, 1]
     ee, en, nn = spread
-    return np.stack([ee * east * east + 2 * en * east * north + nn * north * north,
-                     ee * north * north - 2 * en * east * north + nn * east * east])
+    return np.stack(
+        [
+            ee * east * east + 2 * en * east * north + nn * north * north,
+            ee * north * north - 2 * en * east * north + nn * east * east,
+        ]
+    )

@@ -31,10 +31,10 @@ HELP = "adaptive alpha-beta with Doppler: paper 002's HF radar, and a marine one
 RUNS = 200
 KALMAN, IMM = 'polar Kalman', 'imm, no Doppler'
 NO_DOPPLER = np.array([hf_trials.GATE[0], np.inf, hf_trials.GATE[2]])
-SETTLED = 10                            # scans that do not count
+SETTLED = 10  # scans that do not count
 UNITS = (('R', 'km', 1e3), ('v', 'km/h', 1 / 3.6), ('theta', 'deg', float(np.radians(1))))
-DOPPLER_SIGMA = 0.5                     # m/s, of the marine radar
-FASTER = 40 / 3.6                       # m/s: the crossing ship once more, harder
+DOPPLER_SIGMA = 0.5  # m/s, of the marine radar
+FASTER = 40 / 3.6  # m/s: the crossing ship once more, harder
 PROTOTYPE = 'prototype'
 
 
@@ -51,28 +51,38 @@ class Summary(NamedTuple):
 def filters(on: Scene) -> dict[str, Estimator]:
     """The four modes, and what they are to be measured by."""
     sigma = on.sigma.tolist()
-    rows = {mode: alpha_beta(mode, on.max_speed, sigma[1], NOISE['ship'])
-            for mode in ('method2', 'method1', 'hf', 'hf_soft')}
+    rows = {
+        mode: alpha_beta(mode, on.max_speed, sigma[1], NOISE['ship'])
+        for mode in ('method2', 'method1', 'hf', 'hf_soft')
+    }
     assert set(rows) == set(GAINS)
-    return {**rows, KALMAN: polar_kalman(on.max_speed, *sigma),
-            IMM: imm.imm(imm.PRESETS['ship'], on.max_speed)}
+    return {
+        **rows,
+        KALMAN: polar_kalman(on.max_speed, *sigma),
+        IMM: imm.imm(imm.PRESETS['ship'], on.max_speed),
+    }
 
 
 def summary(outcome: Outcome) -> Summary:
     """Its figures. Roughness: RMS second difference from scan to scan of the error in place."""
     error = outcome.error[SETTLED:, :, CROSSING]
-    off = error[..., [0, 2]] * [1.0, 110e3]                 # m along and across
+    off = error[..., [0, 2]] * [1.0, 110e3]  # m along and across
     rough = np.diff(off, 2, axis=0)
-    return Summary(float(outcome.lost[-1, :, CROSSING].mean()), np.sqrt(_mean(error ** 2)),
-                   float(outcome.lost[-1].mean()), float(np.sqrt(_mean(rough ** 2).sum())))
+    return Summary(
+        float(outcome.lost[-1, :, CROSSING].mean()),
+        np.sqrt(_mean(error**2)),
+        float(outcome.lost[-1].mean()),
+        float(np.sqrt(_mean(rough**2).sum())),
+    )
 
 
 def _mean(values):
     """Over scans and runs, [3 or 2]; nan where every track is lost."""
     known = np.isfinite(values)
     count = known.sum((0, 1))
-    return np.where(count > 0, np.where(known, values, 0.0).sum((0, 1)) / np.maximum(count, 1),
-                    np.nan)
+    return np.where(
+        count > 0, np.where(known, values, 0.0).sum((0, 1)) / np.maximum(count, 1), np.nan
+    )
 
 
 def marine(leg: marine_table.Leg, runs: int, seed: int, doppler: bool) -> tuple[float, float]:
@@ -87,18 +97,22 @@ def marine(leg: marine_table.Leg, runs: int, seed: int, doppler: bool) -> tuple[
         r = distance[k] + rng.normal(0, marine_table.RANGE_SIGMA, runs)
         b = bearing[k] + rng.normal(0, marine_table.BEARING_SIGMA, runs)
         v = leaving[k] + rng.normal(0, DOPPLER_SIGMA, runs)
-        z, covariance = polar_to_position(r, b, marine_table.RANGE_SIGMA,
-                                          marine_table.BEARING_SIGMA)
+        z, covariance = polar_to_position(
+            r, b, marine_table.RANGE_SIGMA, marine_table.BEARING_SIGMA
+        )
         time = np.full(runs, k * marine_table.PERIOD)
-        plots = Plots(time, r, b, np.zeros(runs), np.zeros((runs, 2)), z, covariance,
-                      v if doppler else None)
+        plots = Plots(
+            time, r, b, np.zeros(runs), np.zeros((runs, 2)), z, covariance, v if doppler else None
+        )
         state = filter_.init(plots) if state is None else filter_.update(state, plots, every)
         if k >= marine_table.SETTLED:
             now = filter_.extrapolate(state, time)
             off.append(now.position - position[k])
             turned.append(wrap_angle(np.arctan2(*now.velocity.T) - np.arctan2(*velocity[k])))
-    return (float(np.sqrt(np.mean(np.square(off)))),
-            float(np.degrees(np.sqrt(np.mean(np.square(turned))))))
+    return (
+        float(np.sqrt(np.mean(np.square(off)))),
+        float(np.degrees(np.sqrt(np.mean(np.square(turned))))),
+    )
 
 
 def run(runs: int, seed: int, progress: Progress = silent) -> Result:
@@ -112,11 +126,15 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
         outcomes[name] = hf_trials.run(estimator, on, runs, seed, gate)
     found = {name: summary(outcome) for name, outcome in outcomes.items()}
     faster = hf_trials.scene(FASTER)
-    lost = {name: summary(hf_trials.run(estimator, faster, runs, seed)).lost
-            for name, estimator in rows.items() if name != IMM}
+    lost = {
+        name: summary(hf_trials.run(estimator, faster, runs, seed)).lost
+        for name, estimator in rows.items()
+        if name != IMM
+    }
     figures = hf_figures(found) + [
         report.Figure(f'{name}: lost at {3.6 * FASTER:.0f} km/h', 100 * share, '%')
-        for name, share in lost.items()]
+        for name, share in lost.items()
+    ]
     for done, (track, leg) in enumerate(list(marine_table.TRACKS.items())[:2]):
         progress(len(rows) + done, len(rows) + 2)
         figures += marine_figures(track, leg, runs, seed)
@@ -140,8 +158,11 @@ def hf_figures(found: dict[str, Summary]) -> list[report.Figure]:
         figures.append(report.Figure(f'{name}: any of the five lost', 100 * row.all_lost, '%'))
         for (what, unit, size), value in zip(UNITS, row.error, strict=True):
             title, value = f'{name}: {what}', value / size
-            figures.append(report.at_most(title, value, limits[what], unit, PROTOTYPE)
-                           if name == 'hf_soft' else report.Figure(title, value, unit))
+            figures.append(
+                report.at_most(title, value, limits[what], unit, PROTOTYPE)
+                if name == 'hf_soft'
+                else report.Figure(title, value, unit)
+            )
     return figures
 
 
@@ -151,9 +172,14 @@ def marine_figures(track: str, leg, runs: int, seed: int) -> list[report.Figure]
     for doppler in (True, False):
         how = 'with Doppler' if doppler else 'without'
         position, course = marine(leg, runs, seed, doppler)
-        for what, value, limit, unit in (('position', position, 16.0, 'm'),
-                                         ('course', course, 5.5, 'deg')):
+        for what, value, limit, unit in (
+            ('position', position, 16.0, 'm'),
+            ('course', course, 5.5, 'deg'),
+        ):
             name = f'marine, {track}, hf_soft {how}: {what}'
-            figures.append(report.at_most(name, value, limit, unit, PROTOTYPE)
-                           if doppler and track == 'straight' else report.Figure(name, value, unit))
+            figures.append(
+                report.at_most(name, value, limit, unit, PROTOTYPE)
+                if doppler and track == 'straight'
+                else report.Figure(name, value, unit)
+            )
     return figures

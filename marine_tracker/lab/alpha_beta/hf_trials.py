@@ -21,13 +21,13 @@ from ...parameters import read_yaml_mapping
 from ...simulation import scenario
 from ...types import Array, Plots, take
 
-CLUTTER = 150                                   # false plots a scan in the station's sector:
-NEAR, FAR = 20e3, 180e3                         # m
-SECTOR = np.radians(60)                         # either side of north
-BAND = 12.5                                     # m/s, radial speeds either way
-GATE = np.array([4.0, 3.0, 6.0])                # sigma of range, radial speed, bearing
-LOST_AFTER = 8                                  # scans without plot, or out of the gate, in a row
-CROSSING = 4                                    # the paper's fifth ship
+CLUTTER = 150  # false plots a scan in the station's sector:
+NEAR, FAR = 20e3, 180e3  # m
+SECTOR = np.radians(60)  # either side of north
+BAND = 12.5  # m/s, radial speeds either way
+GATE = np.array([4.0, 3.0, 6.0])  # sigma of range, radial speed, bearing
+LOST_AFTER = 8  # scans without plot, or out of the gate, in a row
+CROSSING = 4  # the paper's fifth ship
 
 
 class Scene(NamedTuple):
@@ -70,13 +70,23 @@ def scene(crossing_speed: float | None = None) -> Scene:
     loaded = scenario.build(values, 'hf_radar')
     time = loaded.radar.scan_period * np.arange(loaded.scans, dtype=float)
     truths = [loaded.truth_at(at) for at in time]
-    truth = np.stack([to_polar(np.concatenate([t.position, t.velocity], 1),
-                               np.zeros((len(t.time), 2)))[0][:, :3] for t in truths])
+    truth = np.stack(
+        [
+            to_polar(np.concatenate([t.position, t.velocity], 1), np.zeros((len(t.time), 2)))[0][
+                :, :3
+            ]
+            for t in truths
+        ]
+    )
     radar = loaded.radar
     assert radar.radial_speed_sigma is not None
-    return Scene(time, np.asarray(truth, float),
-                 np.array([radar.range_sigma, radar.radial_speed_sigma, radar.bearing_sigma]),
-                 radar.pd_near, loaded.tracker_parameters()['max_target_speed_mps'])
+    return Scene(
+        time,
+        np.asarray(truth, float),
+        np.array([radar.range_sigma, radar.radial_speed_sigma, radar.bearing_sigma]),
+        radar.pd_near,
+        loaded.tracker_parameters()['max_target_speed_mps'],
+    )
 
 
 def observe(on: Scene, runs: int, seed: int) -> Iterator[tuple[Array, NDArray[np.bool_]]]:
@@ -90,8 +100,10 @@ def observe(on: Scene, runs: int, seed: int) -> Iterator[tuple[Array, NDArray[np
         seen = (rng.random((runs, ships)) < on.detection) | (k < 2)
         plots = truth + on.sigma * rng.standard_normal((runs, ships, 3))
         false = rng.uniform([NEAR, -BAND, -SECTOR], [FAR, BAND, SECTOR], (runs, CLUTTER, 3))
-        yield (np.concatenate([plots, false], 1),
-               np.concatenate([seen, np.ones((runs, CLUTTER), bool)], 1))
+        yield (
+            np.concatenate([plots, false], 1),
+            np.concatenate([seen, np.ones((runs, CLUTTER), bool)], 1),
+        )
 
 
 def as_plots(polar, time: float, sigma) -> Plots:
@@ -99,8 +111,16 @@ def as_plots(polar, time: float, sigma) -> Plots:
     distance, speed, bearing = polar.T
     position, covariance = polar_to_position(distance, bearing, sigma[0], sigma[2])
     none = np.zeros(len(distance))
-    return Plots(none + time, distance, bearing, none, np.zeros((len(distance), 2)), position,
-                 covariance, speed)
+    return Plots(
+        none + time,
+        distance,
+        bearing,
+        none,
+        np.zeros((len(distance), 2)),
+        position,
+        covariance,
+        speed,
+    )
 
 
 def run(estimator: Estimator, on: Scene, runs: int, seed: int, gate=GATE) -> Outcome:

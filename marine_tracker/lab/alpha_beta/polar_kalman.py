@@ -15,9 +15,9 @@ from ...gaussian.linear import sandwich
 from ...geometry import wrap_angle
 from ...types import Array, Extrapolation, put, take
 
-SPEED_NOISE = 20 / 3.6 ** 2 / 3600              # m^2/s^3: 20 (km/h)^2 an hour
-RATE_NOISE = 40 * np.radians(1) ** 2 / 3600 ** 3    # rad^2/s^3: 40 (deg/h)^2 an hour
-MEASURED = np.array([0, 1, 2])                  # of range, radial speed, bearing, bearing rate
+SPEED_NOISE = 20 / 3.6**2 / 3600  # m^2/s^3: 20 (km/h)^2 an hour
+RATE_NOISE = 40 * np.radians(1) ** 2 / 3600**3  # rad^2/s^3: 40 (deg/h)^2 an hour
+MEASURED = np.array([0, 1, 2])  # of range, radial speed, bearing, bearing rate
 
 
 class PolarState(NamedTuple):
@@ -30,8 +30,9 @@ class PolarState(NamedTuple):
     origin: Array
 
 
-def polar_kalman(max_speed: float, range_sigma: float, speed_sigma: float,
-                 bearing_sigma: float) -> Estimator:
+def polar_kalman(
+    max_speed: float, range_sigma: float, speed_sigma: float, bearing_sigma: float
+) -> Estimator:
     """The filter for a radar of these deviations: m, m/s and rad; max_speed m/s of the targets."""
     noise = np.diag([range_sigma, speed_sigma, bearing_sigma]) ** 2
 
@@ -51,10 +52,10 @@ def polar_kalman(max_speed: float, range_sigma: float, speed_sigma: float,
         for value, density in ((0, SPEED_NOISE), (2, RATE_NOISE)):
             mean[:, value] += step * mean[:, value + 1]
             transition[:, value, value + 1] = step
-            covariance[:, value, value] = density * step ** 3 / 3
+            covariance[:, value, value] = density * step**3 / 3
             covariance[:, value + 1, value + 1] = density * step
-            covariance[:, value, value + 1] = density * step ** 2 / 2
-            covariance[:, value + 1, value] = density * step ** 2 / 2
+            covariance[:, value, value + 1] = density * step**2 / 2
+            covariance[:, value + 1, value] = density * step**2 / 2
         return mean, covariance + sandwich(transition, state.covariance)
 
     def extrapolate(state, time):

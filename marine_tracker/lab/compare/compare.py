@@ -36,14 +36,24 @@ from . import pictures
 HELP = 'all estimators on all scenes, the recordings too: which one to choose when'
 RUNS = 200
 OPTIONS = {
-    'data': {'metavar': 'FOLDER', 'help': 'folder of recordings (plots.csv ...) and of AIS '
-                                          '(ais.csv), one folder each'},
-    'page': {'metavar': 'FILE', 'help': 'also write the table into this page, between its marks'}}
-AIS_OWN_SHIP = '14'             # a vessel that reports all the time and meets some
-AIS_SCENE = {'duration_s': 1800, 'ais': {'file': 'ais.csv'}, 'own_ship': {'vessel': AIS_OWN_SHIP},
-             'radar': {'max_range_nm': 24}, 'clutter': {'uniform': 50}}
-SHARP = {'sharp turns': ('ship', ship_tracks.KINDS, (1500.0, 6000.0)),
-         'boat': ('small_craft', ship_tracks.SMALL_CRAFT, (150.0, 1500.0))}
+    'data': {
+        'metavar': 'FOLDER',
+        'help': 'folder of recordings (plots.csv ...) and of AIS (ais.csv), one folder each',
+    },
+    'page': {'metavar': 'FILE', 'help': 'also write the table into this page, between its marks'},
+}
+AIS_OWN_SHIP = '14'  # a vessel that reports all the time and meets some
+AIS_SCENE = {
+    'duration_s': 1800,
+    'ais': {'file': 'ais.csv'},
+    'own_ship': {'vessel': AIS_OWN_SHIP},
+    'radar': {'max_range_nm': 24},
+    'clutter': {'uniform': 50},
+}
+SHARP = {
+    'sharp turns': ('ship', ship_tracks.KINDS, (1500.0, 6000.0)),
+    'boat': ('small_craft', ship_tracks.SMALL_CRAFT, (150.0, 1500.0)),
+}
 SHARP_SCANS = 150
 
 
@@ -58,23 +68,36 @@ class Errors(NamedTuple):
 
 def made(name: str, vessel_class: str = 'ship') -> Estimator:
     """The estimator as shipped."""
-    return ESTIMATORS[name](TrackerParameters(estimator=name, vessel_class=vessel_class,
-                                              range_sigma_m=RANGE_SIGMA))
+    return ESTIMATORS[name](
+        TrackerParameters(estimator=name, vessel_class=vessel_class, range_sigma_m=RANGE_SIGMA)
+    )
 
 
-def run(runs: int, seed: int, progress: Progress = silent, data: str | None = None,
-        page: str | None = None, processes: int | None = None) -> Result:
+def run(
+    runs: int,
+    seed: int,
+    progress: Progress = silent,
+    data: str | None = None,
+    page: str | None = None,
+    processes: int | None = None,
+) -> Result:
     """Every estimator of the registry in every scene."""
     processes = processes or os.cpu_count() or 1
     scenes = scenes_of(runs, seed, data)
-    work = [parallel.Job(function, (name, *arguments)) for name in ESTIMATORS
-            for function, *arguments in scenes.values()]
+    work = [
+        parallel.Job(function, (name, *arguments))
+        for name in ESTIMATORS
+        for function, *arguments in scenes.values()
+    ]
     results = iter(parallel.run(work, processes, progress))
     found = {name: {scene: next(results) for scene in scenes} for name in ESTIMATORS}
-    figures = [report.Figure(f'{name}, {scene}: {what}', getattr(errors, what), unit)
-               for name, row in found.items() for scene, errors in row.items()
-               for what, unit in (('position', 'm'), ('velocity', 'm/s'), ('held', ''))
-               if what != 'held' or errors.held != 1.0]
+    figures = [
+        report.Figure(f'{name}, {scene}: {what}', getattr(errors, what), unit)
+        for name, row in found.items()
+        for scene, errors in row.items()
+        for what, unit in (('position', 'm'), ('velocity', 'm/s'), ('held', ''))
+        if what != 'held' or errors.held != 1.0
+    ]
     figures += _imazu(max(1, runs // 200), seed, processes)
     if page:
         write_table(page, found)
@@ -84,7 +107,8 @@ def run(runs: int, seed: int, progress: Progress = silent, data: str | None = No
 def scenes_of(runs: int, seed: int, data: str | None) -> dict[str, tuple[Any, ...]]:
     """A function and its arguments after the estimator's name, for each scene."""
     scenes: dict[str, tuple[Callable[..., Errors], *tuple[Any, ...]]] = {
-        name: (on_track, name, runs, seed) for name in marine_table.TRACKS}
+        name: (on_track, name, runs, seed) for name in marine_table.TRACKS
+    }
     scenes |= {name: (in_sharp_turns, name, runs, seed) for name in SHARP}
     whole = max(1, runs // 50)
     scenes['busy strait'] = (in_traffic, 'busy_strait', whole, seed)
@@ -109,12 +133,26 @@ def in_sharp_turns(name: str, scene: str, runs: int, seed: int) -> Errors:
     """Targets that turn hard, at ranges of their kind."""
     vessel_class, kinds, (near, far) = SHARP[scene]
     rng = np.random.default_rng([seed, 7])
-    ships = ship_tracks.sail(['sharp'] * runs, rng.uniform(near, far, runs),
-                             np.full((runs, SHARP_SCANS), PERIOD), rng, kinds=kinds)
+    ships = ship_tracks.sail(
+        ['sharp'] * runs,
+        rng.uniform(near, far, runs),
+        np.full((runs, SHARP_SCANS), PERIOD),
+        rng,
+        kinds=kinds,
+    )
     every = np.ones(runs)
-    on = track_trials.trial(ships, ship_tracks.RunRadar(
-        RANGE_SIGMA * every, BEARING_SIGMA * every, 0.9 * every, 0 * every, every,
-        PERIOD * every), rng)
+    on = track_trials.trial(
+        ships,
+        ship_tracks.RunRadar(
+            RANGE_SIGMA * every,
+            BEARING_SIGMA * every,
+            0.9 * every,
+            0 * every,
+            every,
+            PERIOD * every,
+        ),
+        rng,
+    )
     estimator, count = made(name, vessel_class), np.arange(runs)
     state, off = estimator.init(on.plots[0]), []
     for k in range(1, SHARP_SCANS):
@@ -123,8 +161,7 @@ def in_sharp_turns(name: str, scene: str, runs: int, seed: int) -> Errors:
         if k >= track_trials.SETTLED:
             now = estimator.extrapolate(state, ships.time[:, k])
             off.append((now.position - ships.position[:, k], now.velocity - ships.velocity[:, k]))
-    return Errors(*(float(np.sqrt(np.mean(np.square([pair[i] for pair in off]))))
-                    for i in (0, 1)))
+    return Errors(*(float(np.sqrt(np.mean(np.square([pair[i] for pair in off])))) for i in (0, 1)))
 
 
 def in_traffic(name: str, scene: str, runs: int, seed: int) -> Errors:
@@ -134,8 +171,9 @@ def in_traffic(name: str, scene: str, runs: int, seed: int) -> Errors:
     else:
         chosen = scenario.load(scene)
     seeds = np.random.SeedSequence([seed, 8]).generate_state(runs).tolist()
-    return _scored([scored_tracks.figures(scored_tracks.simulated(chosen, one), name)
-                    for one in seeds])
+    return _scored(
+        [scored_tracks.figures(scored_tracks.simulated(chosen, one), name) for one in seeds]
+    )
 
 
 def on_recording(name: str, folder: str) -> Errors:
@@ -147,9 +185,13 @@ def _scored(runs: list[dict[str, Any]]) -> Errors:
     def mean(name, power):
         told = [run[name] for run in runs if run[name] is not None]
         return float(np.mean(np.power(told, power)) ** (1 / power)) if told else float('nan')
+
     # Of both axes together in the score, of one elsewhere here.
-    return Errors(mean('position_rmse_m', 2) / np.sqrt(2), mean('velocity_rmse_mps', 2)
-                  / np.sqrt(2), mean('held', 1))
+    return Errors(
+        mean('position_rmse_m', 2) / np.sqrt(2),
+        mean('velocity_rmse_mps', 2) / np.sqrt(2),
+        mean('held', 1),
+    )
 
 
 def _imazu(runs: int, seed: int, processes: int) -> list[report.Figure]:
@@ -159,10 +201,14 @@ def _imazu(runs: int, seed: int, processes: int) -> list[report.Figure]:
     for e, name in enumerate(ESTIMATORS):
         warned = np.concatenate([one.warned[e].ravel() for one in found])
         cpa = np.concatenate([one.cpa[e].ravel() for one in found])
-        figures += [report.Figure(f'{name}, Imazu: warned with 6 minutes left',
-                                  float(np.mean(warned > WARNED_BEFORE))),
-                    report.Figure(f'{name}, Imazu: CPA off after 3 minutes, 95 %',
-                                  float(np.percentile(cpa, 95)), 'NM')]
+        figures += [
+            report.Figure(
+                f'{name}, Imazu: warned with 6 minutes left', float(np.mean(warned > WARNED_BEFORE))
+            ),
+            report.Figure(
+                f'{name}, Imazu: CPA off after 3 minutes, 95 %', float(np.percentile(cpa, 95)), 'NM'
+            ),
+        ]
     return figures
 
 
@@ -176,8 +222,10 @@ def write_table(page: str, found: dict[str, dict[str, Errors]]) -> None:
     _, end, tail = rest.partition(END)
     if not (begin and end):
         raise ValueError(f'{page} has not the lines {BEGIN} and {END}')
-    lines = ['| scene | ' + ' | '.join(f'`{name}`' for name in found) + ' |',
-             '|---' * (len(found) + 1) + '|']
+    lines = [
+        '| scene | ' + ' | '.join(f'`{name}`' for name in found) + ' |',
+        '|---' * (len(found) + 1) + '|',
+    ]
     for scene in next(iter(found.values())):
         row = [errors[scene] for errors in found.values()]
         best = [np.nanmin([one[k] for one in row] + [np.inf]) for k in (0, 1)]
@@ -191,5 +239,6 @@ def _cell(errors: Errors, best) -> str:
             return '-'
         text = f'{value:.{places}f}'
         return f'**{text}**' if value <= 1.02 * least else text
+
     cell = f'{told(errors.position, best[0], 1)} / {told(errors.velocity, best[1], 2)}'
     return cell if errors.held == 1.0 else f'{cell} ({100 * errors.held:.0f} %)'

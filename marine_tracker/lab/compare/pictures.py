@@ -10,17 +10,26 @@ from ...evaluation.result import Picture
 
 BESIDE = 'imm'
 # Colours of Okabe and Ito, and a mark each; estimators that are not named here take what is left.
-MARKS = (('s', '#e69f00'), ('o', '#0072b2'), ('^', '#009e73'), ('v', '#cc79a7'), ('D', '#56b4e9'),
-         ('P', '#d55e00'), ('X', '#000000'), ('*', '#7f7f7f'))
-MOST = 2.5                      # ratio; what is above stands at the edge
-FEWER = 0.02                    # held by so much less than with the IMM: drawn hollow
+MARKS = (
+    ('s', '#e69f00'),
+    ('o', '#0072b2'),
+    ('^', '#009e73'),
+    ('v', '#cc79a7'),
+    ('D', '#56b4e9'),
+    ('P', '#d55e00'),
+    ('X', '#000000'),
+    ('*', '#7f7f7f'),
+)
+MOST = 2.5  # ratio; what is above stands at the edge
+FEWER = 0.02  # held by so much less than with the IMM: drawn hollow
 
 
 def picture(found: Mapping[str, Mapping[str, Any]]) -> Picture:
     """Of Errors by estimator and scene (compare.py)."""
     scenes = list(next(iter(found.values())))
-    return Picture('compare', (10, 1.7 + 0.36 * len(scenes)),
-                   partial(paint, found=found, scenes=scenes))
+    return Picture(
+        'compare', (10, 1.7 + 0.36 * len(scenes)), partial(paint, found=found, scenes=scenes)
+    )
 
 
 def paint(figure, found, scenes) -> None:
@@ -34,8 +43,14 @@ def paint(figure, found, scenes) -> None:
         axes.axvline(1.0, color='0.35', linewidth=1)
         for row, scene in enumerate(scenes):
             for place, name in enumerate(others):
-                _mark(axes, row + 0.7 * (place + 0.5) / len(others) - 0.35, place,
-                      found[name][scene], found[BESIDE][scene], what)
+                _mark(
+                    axes,
+                    row + 0.7 * (place + 0.5) / len(others) - 0.35,
+                    place,
+                    found[name][scene],
+                    found[BESIDE][scene],
+                    what,
+                )
         ticks = (0.6, 0.7, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5)
         axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
         axes.minorticks_off()
@@ -48,10 +63,17 @@ def paint(figure, found, scenes) -> None:
         mark, colour = MARKS[place % len(MARKS)]
         panels[0].plot([], [], mark, color=colour, linestyle='', label=name)
     panels[0].plot([], [], color='0.35', linewidth=1, label=BESIDE)
-    figure.legend(loc='outside upper left', ncols=len(found), frameon=False, fontsize=9,
-                  title=f'Left of 1 is better; at the right edge: {MOST:g} or more; hollow: holds '
-                        'its targets for less of the time',
-                  alignment='left', columnspacing=1.0, handletextpad=0.2)
+    figure.legend(
+        loc='outside upper left',
+        ncols=len(found),
+        frameon=False,
+        fontsize=9,
+        title=f'Left of 1 is better; at the right edge: {MOST:g} or more; hollow: holds '
+        'its targets for less of the time',
+        alignment='left',
+        columnspacing=1.0,
+        handletextpad=0.2,
+    )
 
 
 def _mark(axes, y: float, place: int, errors, beside, what: str) -> None:
@@ -60,5 +82,12 @@ def _mark(axes, y: float, place: int, errors, beside, what: str) -> None:
     if np.isnan(value):
         return
     hollow = errors.held < beside.held - FEWER
-    axes.plot(min(value, MOST), y, mark, color=colour, markersize=5, clip_on=False,
-              markerfacecolor='white' if hollow else colour)
+    axes.plot(
+        min(value, MOST),
+        y,
+        mark,
+        color=colour,
+        markersize=5,
+        clip_on=False,
+        markerfacecolor='white' if hollow else colour,
+    )

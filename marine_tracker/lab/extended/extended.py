@@ -24,8 +24,12 @@ from .trials import RANDOM_MATRIX, gaussian_process_trial, random_matrix_trial
 HELP = 'outlines of extended targets by Gaussian processes and by a random matrix'
 RUNS = 100
 OPTIONS = {
-    'processes': {'type': int, 'metavar': 'N', 'default': os.cpu_count(),
-                  'help': 'how many at once (default %(default)s); no figure depends on it'},
+    'processes': {
+        'type': int,
+        'metavar': 'N',
+        'default': os.cpu_count(),
+        'help': 'how many at once (default %(default)s); no figure depends on it',
+    }
 }
 
 
@@ -34,12 +38,25 @@ def run(runs: int, seed: int, progress: Progress = silent, processes: int | None
     if processes is not None and processes < 1:
         raise ValueError(f'--processes is {processes}; it must be at least 1')
     paper, ship = plan(runs, seed)
-    found = dict(zip([*paper, *ship], parallel.run([*paper.values(), *ship.values()],
-                                               processes or os.cpu_count() or 1, progress)))
+    found = dict(
+        zip(
+            [*paper, *ship],
+            parallel.run(
+                [*paper.values(), *ship.values()], processes or os.cpu_count() or 1, progress
+            ),
+        )
+    )
     trials = {of: found[of] for of in paper}
-    return Result([*figures.figures(trials), figures.jacobian(),
-                   *handover.figures({aspect: found[aspect] for aspect in ship}),
-                   *figures.costs()], claims(trials), pictures(trials))
+    return Result(
+        [
+            *figures.figures(trials),
+            figures.jacobian(),
+            *handover.figures({aspect: found[aspect] for aspect in ship}),
+            *figures.costs(),
+        ],
+        claims(trials),
+        pictures(trials),
+    )
 
 
 def plan(runs: int, seed: int):
@@ -58,6 +75,6 @@ def plan(runs: int, seed: int):
             for name, changes in OTHERWISE.items():
                 for variant in OTHER_VARIANTS:
                     paper[f'{case}, {name}', variant] = Job(
-                        gaussian_process_trial, (what, variant, runs, its, *changes))
-    return paper, {aspect: Job(handover.trial, (aspect, runs, next(seeds)))
-                   for aspect in ASPECTS}
+                        gaussian_process_trial, (what, variant, runs, its, *changes)
+                    )
+    return paper, {aspect: Job(handover.trial, (aspect, runs, next(seeds))) for aspect in ASPECTS}

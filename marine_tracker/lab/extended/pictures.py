@@ -12,23 +12,38 @@ from .trials import PRIOR, RANDOM_MATRIX, SHAPES, START
 
 ESTIMATE, TRUTH, MISSED = '#0072b2', '0.25', '#d55e00'
 SHOWN = ('gp', 'gp_ts', 'gp_mc', 'gp_q15', RANDOM_MATRIX)
-NAMES = {'gp': 'GP', 'gp_ts': 'GP-TS', 'gp_ss': 'GP-SS', 'gp_mc': 'GP-MC', 'gp_q15': 'GP-Q15',
-         RANDOM_MATRIX: 'random matrix'}
-REACH = 9.0             # m from the centre that is shown
+NAMES = {
+    'gp': 'GP',
+    'gp_ts': 'GP-TS',
+    'gp_ss': 'GP-SS',
+    'gp_mc': 'GP-MC',
+    'gp_q15': 'GP-Q15',
+    RANDOM_MATRIX: 'random matrix',
+}
+REACH = 9.0  # m from the centre that is shown
 
 
 def pictures(found: Findings) -> list[Picture]:
     """Outlines, and error bars of few and of many points."""
-    return [Picture('extended_outlines', (12.5, 10.6), partial(outlines, found=found)),
-            *(Picture(f'extended_error_bars_{name}', (12.5, 3.4),
-                      partial(error_bars, found=found, case=case))
-              for name, case in (('sparse', SPARSE), ('dense', DENSE)))]
+    return [
+        Picture('extended_outlines', (12.5, 10.6), partial(outlines, found=found)),
+        *(
+            Picture(
+                f'extended_error_bars_{name}',
+                (12.5, 3.4),
+                partial(error_bars, found=found, case=case),
+            )
+            for name, case in (('sparse', SPARSE), ('dense', DENSE))
+        ),
+    ]
 
 
 def outlines(figure, found: Findings) -> None:
     """The first run of each case and filter after 100 s, with bands of 3 deviations."""
-    figure.suptitle('Outlines after 100 s, the first run of each: truth dashed, estimates with '
-                    'bands of 3 deviations')
+    figure.suptitle(
+        'Outlines after 100 s, the first run of each: truth dashed, estimates with '
+        'bands of 3 deviations'
+    )
     axes = figure.subplots(len(CASES), len(SHOWN), sharex=True, sharey=True)
     angle = np.linspace(0, 2 * np.pi, 361)
     for row, (case, what) in zip(axes, CASES.items()):
@@ -57,8 +72,15 @@ def error_bars(figure, found: Findings, case: str) -> None:
         drawn = found[case, name].drawn
         beyond = np.abs(drawn.error) > 3 * drawn.deviation
         for those, colour in ((~beyond, ESTIMATE), (beyond, MISSED)):
-            ax.errorbar(angle[those], drawn.error[those], 3 * drawn.deviation[those], fmt='o',
-                        markersize=3, color=colour, elinewidth=1)
+            ax.errorbar(
+                angle[those],
+                drawn.error[those],
+                3 * drawn.deviation[those],
+                fmt='o',
+                markersize=3,
+                color=colour,
+                elinewidth=1,
+            )
         ax.axhline(0, color=TRUTH, linewidth=1)
         ax.set(xlabel='angle off the bow, deg', xlim=(-10, 360), xticks=(0, 90, 180, 270))
         ax.set_title(f'{NAMES[name]}: {beyond.sum()} of {len(angle)} beyond', fontsize=10)

@@ -19,16 +19,16 @@ from ...geometry import unit_vector
 from ...types import Array
 from .pcrlb import bound_step
 
-PERIOD, SCANS = 1.0, 100                        # s
-START = np.array([10.0, 10.0, 2.0, 2.0, np.pi / 4, 0.0])        # e n ve vn psi psi'
+PERIOD, SCANS = 1.0, 100  # s
+START = np.array([10.0, 10.0, 2.0, 2.0, np.pi / 4, 0.0])  # e n ve vn psi psi'
 START_VARIANCE = np.array([1.0, 1.0, 0.1, 0.1, 0.1, 0.001])
-SIGMA = 1.0                                     # m
-NOISE, TURN_NOISE = 0.01 ** 2, 1e-4 ** 2        # m^2/s^3, rad^2/s^3
+SIGMA = 1.0  # m
+NOISE, TURN_NOISE = 0.01**2, 1e-4**2  # m^2/s^3, rad^2/s^3
 PRIOR = contour_prior(points=36, deviation=2.0, mean_deviation=2.0, scale=np.pi / 18)
 ELLIPSE = random_matrix.Model(NOISE, memory=1e9, spread=random_matrix.CONTOUR)
 RANDOM_MATRIX = 'rm'
 NOTHING = np.empty(0)
-FINE = 2000                                     # points of an outline, to measure it by
+FINE = 2000  # points of an outline, to measure it by
 
 SHAPES: dict[str, Callable[[Array], Array]] = {
     'complex': lambda b: 4 + 1.2 * np.cos(2 * b) + 0.8 * np.sin(3 * b) + 0.5 * np.cos(5 * b),
@@ -110,7 +110,8 @@ def scene(case: Case, runs: int, rng) -> Scene:
         truth[k] = now
     b = np.interp(rng.uniform(0, along[-1], (SCANS, runs, count.max())), along, angle)
     cells = truth[:, :, None, :2] + SHAPES[case.shape](b)[..., None] * unit_vector(
-        b + truth[:, :, None, 4])
+        b + truth[:, :, None, 4]
+    )
     return Scene(truth, cells + SIGMA * rng.standard_normal(cells.shape), count)
 
 
@@ -120,42 +121,61 @@ def first_guess(runs: int, drawn: bool, rng):
     return START + drawn * off
 
 
-def gaussian_process_trial(case: Case, variant: str, runs: int, seed: int,
-                           full: bool = True, drawn: bool = False) -> ExtendedTrial:
+def gaussian_process_trial(
+    case: Case, variant: str, runs: int, seed: int, full: bool = True, drawn: bool = False
+) -> ExtendedTrial:
     """All runs of one variant, on the scenes of the seed, with its bound."""
     rng = np.random.default_rng(seed)
     seen, guess = scene(case, runs, rng), first_guess(runs, drawn, rng)
     at_angles = np.tile(SHAPES[case.shape](PRIOR.angle), (runs, 1))
     model = Model(PRIOR, variant, NOISE, TURN_NOISE, full)
-    state = gaussian_process.start(model, np.zeros(runs), guess, np.diag(START_VARIANCE),
-                                   np.ones((runs, len(PRIOR.angle))), np.ones((runs, 2)))
+    state = gaussian_process.start(
+        model,
+        np.zeros(runs),
+        guess,
+        np.diag(START_VARIANCE),
+        np.ones((runs, len(PRIOR.angle))),
+        np.ones((runs, 2)),
+    )
     bound, every = state.covariance[0], np.arange(runs)
-    noise = np.tile(SIGMA ** 2 * np.eye(2), (runs, 1, 1))
+    noise = np.tile(SIGMA**2 * np.eye(2), (runs, 1, 1))
     for k in range(SCANS):
         time = np.full(runs, (k + 1) * PERIOD)
         state = gaussian_process.predict(state, time, model)
-        known = GpState(time, np.concatenate([seen.truth[k], at_angles], 1), state.covariance,
-                        state.semi_axes)
-        bound = bound_step(bound, k * PERIOD, known, seen.cells[k], seen.number[k], noise, model,
-                           rng)
-        state, _ = gaussian_process.update(state, every, seen.cells[k], seen.number[k], noise,
-                                           model, rng)
+        known = GpState(
+            time, np.concatenate([seen.truth[k], at_angles], 1), state.covariance, state.semi_axes
+        )
+        bound = bound_step(
+            bound, k * PERIOD, known, seen.cells[k], seen.number[k], noise, model, rng
+        )
+        state, _ = gaussian_process.update(
+            state, every, seen.cells[k], seen.number[k], noise, model, rng
+        )
     off = outline_measures.error(state, PRIOR, at_angles)
     found = outline_measures.of_gaussian_process(state, PRIOR)
     shape, place = _against(found, case, seen, state.mean)
-    return ExtendedTrial(_rms(off.rmse), float(off.mahalanobis.mean()), float(off.coverage.mean()),
-                 _rms(np.sqrt(np.diag(bound)[FIRST_RADIUS:])), shape, place,
-                 _drawn(state, found, at_angles, seen))
+    return ExtendedTrial(
+        _rms(off.rmse),
+        float(off.mahalanobis.mean()),
+        float(off.coverage.mean()),
+        _rms(np.sqrt(np.diag(bound)[FIRST_RADIUS:])),
+        shape,
+        place,
+        _drawn(state, found, at_angles, seen),
+    )
 
 
 def _drawn(state: GpState, found: outline_measures.Outline, at_angles, seen: Scene) -> Drawn:
     middle, centre = state.mean[0, :2], seen.truth[-1, 0, :2]
     share = 3 * (found.radius_sd[0] / found.radius[0])[:, None]
-    inner, outer = (middle - centre + np.maximum(1 + side * share, 0) * (found.points[0] - middle)
-                    for side in (-1, 1))
+    inner, outer = (
+        middle - centre + np.maximum(1 + side * share, 0) * (found.points[0] - middle)
+        for side in (-1, 1)
+    )
     at = outline_measures.of_gaussian_process(state, PRIOR, PRIOR.angle)
-    return Drawn(found.points[0] - centre, inner, outer, at.radius[0] - at_angles[0],
-                 at.radius_sd[0])
+    return Drawn(
+        found.points[0] - centre, inner, outer, at.radius[0] - at_angles[0], at.radius_sd[0]
+    )
 
 
 def random_matrix_trial(case: Case, runs: int, seed: int) -> ExtendedTrial:
@@ -163,18 +183,24 @@ def random_matrix_trial(case: Case, runs: int, seed: int) -> ExtendedTrial:
     rng = np.random.default_rng(seed)
     seen, guess = scene(case, runs, rng), first_guess(runs, False, rng)
     spread = [np.tile(np.diag(START_VARIANCE[at]), (runs, 1, 1)) for at in ([0, 1], [2, 3])]
-    state = random_matrix.start(np.zeros(runs), guess[:, :2], spread[0],
-                                Velocity(guess[:, 2:4], spread[1]),
-                                np.tile(np.eye(2), (runs, 1, 1)), weight=4.0)
-    noise = np.tile(SIGMA ** 2 * np.eye(2), (runs, 1, 1))
+    state = random_matrix.start(
+        np.zeros(runs),
+        guess[:, :2],
+        spread[0],
+        Velocity(guess[:, 2:4], spread[1]),
+        np.tile(np.eye(2), (runs, 1, 1)),
+        weight=4.0,
+    )
+    noise = np.tile(SIGMA**2 * np.eye(2), (runs, 1, 1))
     for k in range(SCANS):
         state = random_matrix.predict(state, np.full(runs, (k + 1) * PERIOD), ELLIPSE)
         rows, centroid, scatter, count = cluster_of(seen.cells[k], seen.number[k])
         state = random_matrix.update(state, rows, centroid, scatter, count, noise[rows], ELLIPSE)
     found = outline_measures.of_random_matrix(state)
     shape, place = _against(found, case, seen, state.mean)
-    return ExtendedTrial(np.nan, np.nan, np.nan, np.nan, shape, place,
-                 Drawn(found.points[0] - seen.truth[-1, 0, :2]))
+    return ExtendedTrial(
+        np.nan, np.nan, np.nan, np.nan, shape, place, Drawn(found.points[0] - seen.truth[-1, 0, :2])
+    )
 
 
 def _rms(values) -> float:
@@ -184,8 +210,9 @@ def _rms(values) -> float:
 def _against(found: outline_measures.Outline, case: Case, seen: Scene, mean):
     """`shape` and `place` of a `ExtendedTrial`."""
     truth = seen.truth[-1]
-    shape = outline_measures.shape_error(found.points, truth[:, :2], truth[:, 4],
-                                         SHAPES[case.shape])
+    shape = outline_measures.shape_error(
+        found.points, truth[:, :2], truth[:, 4], SHAPES[case.shape]
+    )
     return _rms(shape), _rms(np.hypot(*(mean[:, :2] - truth[:, :2]).T))
 
 

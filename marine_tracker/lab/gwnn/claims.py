@@ -14,30 +14,44 @@ from .figures import (
 from .trials import ALONE, IMM, OWN, TANH, Cell
 
 MANOEUVRE = 'IMM for manoeuvre'
-NEEDLESS = 0.01                 # part of the scans in fallback that is little
-LITTLE = 0.01                   # of the error
+NEEDLESS = 0.01  # part of the scans in fallback that is little
+LITTLE = 0.01  # of the error
 
 
 def claims(found: Findings) -> list[Claim]:
     """Each with what was found and the verdict; the interval says which cells are won or lost."""
     ships, boats = (fair_cells(found, name) for name in ('ship', 'small_craft'))
-    return [_mean(ships), _everywhere(ships, IMM, 'the IMM tuned on the same tracks'),
-            _everywhere(ships, MANOEUVRE, 'the IMM tuned for manoeuvre'),
-            _everywhere(ships, 'CS of the fallback', 'CS-Kalman, which it falls back to'),
-            _units(ships), _fallback(ships), _rubbish(found),
-            _everywhere(boats, SHIPPED, '`imm` as shipped for small craft'),
-            _everywhere(boats, IMM, 'the IMM tuned on the same tracks of small craft')]
+    return [
+        _mean(ships),
+        _everywhere(ships, IMM, 'the IMM tuned on the same tracks'),
+        _everywhere(ships, MANOEUVRE, 'the IMM tuned for manoeuvre'),
+        _everywhere(ships, 'CS of the fallback', 'CS-Kalman, which it falls back to'),
+        _units(ships),
+        _fallback(ships),
+        _rubbish(found),
+        _everywhere(boats, SHIPPED, '`imm` as shipped for small craft'),
+        _everywhere(boats, IMM, 'the IMM tuned on the same tracks of small craft'),
+    ]
 
 
 def _mean(cells: list[Cell]) -> Claim:
-    means = [geometric_mean([getattr(cell, what)[OWN] for cell in cells])
-             for what in ('position', 'velocity')]
-    told = [f'{what} {1 - mean.value:+.1%} [{1 - mean.high:+.1%} {1 - mean.low:+.1%}]'
-            for what, mean in zip(('position', 'velocity'), means)]
-    return Claim('ships, mean of all cells', 'errors some 4 % below those of the strongest IMM',
-                 'gain, geometric mean over the cells: ' + ', '.join(told),
-                 verdict(all(mean.value <= GEOMETRIC_MEAN for mean in means),
-                         IN_PART if all(mean.high < 1 for mean in means) else NOT_BORNE_OUT))
+    means = [
+        geometric_mean([getattr(cell, what)[OWN] for cell in cells])
+        for what in ('position', 'velocity')
+    ]
+    told = [
+        f'{what} {1 - mean.value:+.1%} [{1 - mean.high:+.1%} {1 - mean.low:+.1%}]'
+        for what, mean in zip(('position', 'velocity'), means)
+    ]
+    return Claim(
+        'ships, mean of all cells',
+        'errors some 4 % below those of the strongest IMM',
+        'gain, geometric mean over the cells: ' + ', '.join(told),
+        verdict(
+            all(mean.value <= GEOMETRIC_MEAN for mean in means),
+            IN_PART if all(mean.high < 1 for mean in means) else NOT_BORNE_OUT,
+        ),
+    )
 
 
 def _everywhere(cells: list[Cell], rival: str, called: str) -> Claim:
@@ -46,39 +60,56 @@ def _everywhere(cells: list[Cell], rival: str, called: str) -> Claim:
     won = [name for name, ratio in over.items() if ratio.high < 1]
     lost = {name: ratio for name, ratio in over.items() if ratio.low > 1}
     mean = geometric_mean(list(over.values()))
-    told = (f'ratio {mean.value:.3f} [{mean.low:.3f} {mean.high:.3f}], geometric mean; '
-            f'{len(won)} of {len(over)} cells won, {len(lost)} lost')
+    told = (
+        f'ratio {mean.value:.3f} [{mean.low:.3f} {mean.high:.3f}], geometric mean; '
+        f'{len(won)} of {len(over)} cells won, {len(lost)} lost'
+    )
     if lost:
         told += ': ' + ', '.join(f'{name} {ratio.value:.3f}' for name, ratio in lost.items())
     whose = 'small craft' if cells[0].vessel_class == 'small_craft' else 'ships'
-    return Claim(f'{whose}, every kind of motion', f'better than {called}', told, verdict(
-        len(won) == len(over), IN_PART if mean.high < 1 else NOT_BORNE_OUT))
+    return Claim(
+        f'{whose}, every kind of motion',
+        f'better than {called}',
+        told,
+        verdict(len(won) == len(over), IN_PART if mean.high < 1 else NOT_BORNE_OUT),
+    )
 
 
 def _units(cells: list[Cell]) -> Claim:
     """A gain of less than LITTLE is not much to build on: there was one training of each."""
     mean = geometric_mean([cell.over[TANH] for cell in cells])
-    told = ('with as many plain tanh units in their place, trained once by the same command, the '
-            f'ratio is {mean.value:.3f} [{mean.low:.3f} {mean.high:.3f}]')
+    told = (
+        'with as many plain tanh units in their place, trained once by the same command, the '
+        f'ratio is {mean.value:.3f} [{mean.low:.3f} {mean.high:.3f}]'
+    )
     if mean.value > 1 - LITTLE:
         told += ': what is gained is gained by weighing the filters, whatever the units'
-    return Claim('paper 000', 'wavelets do better than plain sigmoids', told, verdict(
-        mean.high < 1 - LITTLE, IN_PART if mean.high < 1 else NOT_BORNE_OUT))
+    return Claim(
+        'paper 000',
+        'wavelets do better than plain sigmoids',
+        told,
+        verdict(mean.high < 1 - LITTLE, IN_PART if mean.high < 1 else NOT_BORNE_OUT),
+    )
 
 
 def _fallback(cells: list[Cell]) -> Claim:
     most = max(cells, key=lambda cell: cell.idle)
     mean = geometric_mean([cell.over[ALONE] for cell in cells])
-    return Claim('monitor', 'on good weights it hardly ever falls back',
-                 f'at most {most.idle:.1%} of the scans ({name_of(most)}); the errors are '
-                 f'{mean.value:.3f} of those of a network that never does',
-                 verdict(most.idle <= NEEDLESS, IN_PART))
+    return Claim(
+        'monitor',
+        'on good weights it hardly ever falls back',
+        f'at most {most.idle:.1%} of the scans ({name_of(most)}); the errors are '
+        f'{mean.value:.3f} of those of a network that never does',
+        verdict(most.idle <= NEEDLESS, IN_PART),
+    )
 
 
 def _rubbish(found: Findings) -> Claim:
     ratios = [ratio for pair in found.rubbish.values() for ratio in pair]
     told = ', '.join('not numbers' if ratio is None else f'{ratio.value:.3f}' for ratio in ratios)
-    return Claim('monitor', 'bad weights cost little more than CS-Kalman',
-                 f'position ratios with random weights, and with ones that are no numbers: {told}',
-                 verdict(all(ratio is not None and ratio.value <= RUBBISH_LIMIT
-                             for ratio in ratios)))
+    return Claim(
+        'monitor',
+        'bad weights cost little more than CS-Kalman',
+        f'position ratios with random weights, and with ones that are no numbers: {told}',
+        verdict(all(ratio is not None and ratio.value <= RUBBISH_LIMIT for ratio in ratios)),
+    )

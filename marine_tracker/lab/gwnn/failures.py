@@ -9,8 +9,8 @@ from ...networks.gwnn_weights import Weights
 from ...training import track_trials
 from .trials import FLEETS, SCANS, fallback, network, trial
 
-BREAK_SCAN, BREAK_SIZE = 40, 3.0                    # sigma, of the network's position
-LATER = 6                                           # scans after the break that do not count
+BREAK_SCAN, BREAK_SIZE = 40, 3.0  # sigma, of the network's position
+LATER = 6  # scans after the break that do not count
 COST_TRACKS, COST_SCANS = 1000, 30
 
 
@@ -31,16 +31,18 @@ def scans_to_fallback(vessel_class: str, kind: str, runs: int, seed: int, weight
     on = trial(vessel_class, kind, runs, radar, rng, None)
     angle = rng.uniform(0, 2 * np.pi)
     shift = BREAK_SIZE * np.array([np.cos(angle), np.sin(angle)])
-    sound, bad = (network(vessel_class, one, 60 / radar.rpm)
-                  for one in (weights, broken(weights, shift)))
-    first = np.full(len(on.seen), float(SCANS))         # plots that it took
+    sound, bad = (
+        network(vessel_class, one, 60 / radar.rpm) for one in (weights, broken(weights, shift))
+    )
+    first = np.full(len(on.seen), float(SCANS))  # plots that it took
 
     def watch(k, state):
         if k < BREAK_SCAN:
             return None
         down = (state.monitor.status == gwnn.FALLBACK) & (first == SCANS)
-        first[down] = k - BREAK_SCAN - 1            # scan BREAK_SCAN + 2 is the first expected so
+        first[down] = k - BREAK_SCAN - 1  # scan BREAK_SCAN + 2 is the first expected so
         return bad
+
     own = track_trials.run(sound, on, False, watch)
     return first, _over_cs(own, vessel_class, on, rng)
 
@@ -48,7 +50,7 @@ def scans_to_fallback(vessel_class: str, kind: str, runs: int, seed: int, weight
 def _over_cs(own, vessel_class, on, rng) -> track_trials.Ratio:
     cs = track_trials.run(fallback(vessel_class), on, True)
     chosen = on.counts.copy()
-    chosen[:, :BREAK_SCAN + LATER] = False
+    chosen[:, : BREAK_SCAN + LATER] = False
     return track_trials.ratio(own.position, cs.position, chosen, rng)
 
 
@@ -83,4 +85,4 @@ def cost(seed: int, weights: Weights) -> float:
         estimator.extrapolate(state, on.plots[k].time)
         state = estimator.update(state, on.plots[k], rows)
         spent.append(time.process_time() - begin)
-    return 1e3 * float(np.median(spent[gwnn.WARM:]))
+    return 1e3 * float(np.median(spent[gwnn.WARM :]))

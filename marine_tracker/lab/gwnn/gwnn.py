@@ -16,11 +16,20 @@ RUNS = monte_carlo.RUNS
 OPTIONS = monte_carlo.OPTIONS
 
 
-def run(runs: int, seed: int, progress: Progress = silent, data: Path | None = None,
-        processes: int | None = None) -> Result:
+def run(
+    runs: int,
+    seed: int,
+    progress: Progress = silent,
+    data: Path | None = None,
+    processes: int | None = None,
+) -> Result:
     """Figures, claims and pictures of both parts."""
-    parts = (gwnn_paper.run(min(runs, gwnn_paper.RUNS), seed, progress),
-             monte_carlo.run(runs, seed, progress, data, processes))
-    return Result([figure for part in parts for figure in part.figures],
-                  [claim for part in parts for claim in part.claims],
-                  [picture for part in parts for picture in part.pictures])
+    parts = (
+        gwnn_paper.run(min(runs, gwnn_paper.RUNS), seed, progress),
+        monte_carlo.run(runs, seed, progress, data, processes),
+    )
+    return Result(
+        [figure for part in parts for figure in part.figures],
+        [claim for part in parts for claim in part.claims],
+        [picture for part in parts for picture in part.pictures],
+    )

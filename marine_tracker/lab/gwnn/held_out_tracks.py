@@ -13,13 +13,13 @@ from ...geometry import unit_vector
 from ...simulation import ais, motion
 from ...training.ship_tracks import Ships
 
-TURN_SCAN, TURN_RADIUS, TURN_ANGLE = 100, 200.0, float(np.radians(50))      # paper 000, 5.2
-TURNING = 0.04                  # m/s^2, acceleration that counts as manoeuvre
-WARM_UP = 20                    # scans at the start that do not count
+TURN_SCAN, TURN_RADIUS, TURN_ANGLE = 100, 200.0, float(np.radians(50))  # paper 000, 5.2
+TURNING = 0.04  # m/s^2, acceleration that counts as manoeuvre
+WARM_UP = 20  # scans at the start that do not count
 TRIES = 40
-FASTEST = 2.5                   # m/s^2: a ship cannot; the reports were late
-LONGEST_GAP = 60.0              # s between two AIS reports
-HOUR = 3600.0                   # s, the length of an AIS file that is used
+FASTEST = 2.5  # m/s^2: a ship cannot; the reports were late
+LONGEST_GAP = 60.0  # s between two AIS reports
+HOUR = 3600.0  # s, the length of an AIS file that is used
 
 
 def _clock(steps):
@@ -33,7 +33,8 @@ def nomoto(steps, rng) -> Ships:
     """
     count, scans = steps.shape
     position = rng.uniform(1500, 15000, count)[:, None] * unit_vector(
-        rng.uniform(0, 2 * np.pi, count))
+        rng.uniform(0, 2 * np.pi, count)
+    )
     course, speed = rng.uniform(0, 2 * np.pi, count), rng.uniform(2, 16, count)
     ordered_course, ordered_speed, rate = course.copy(), speed.copy(), np.zeros(count)
     lag = rng.uniform(3, 20, count)
@@ -46,19 +47,24 @@ def nomoto(steps, rng) -> Ships:
     for k in range(scans):
         new = rng.random(count) < 1 / 70
         side = np.where(rng.random(count) < 0.5, -1, 1)
-        ordered_course = np.where(new, course + side * np.radians(rng.uniform(10, 120, count)),
-                                  ordered_course)
+        ordered_course = np.where(
+            new, course + side * np.radians(rng.uniform(10, 120, count)), ordered_course
+        )
         new = rng.random(count) < 1 / 200
         ordered_speed = np.where(new, rng.uniform(2, 16, count), ordered_speed)
         positions[:, k] = position
         velocities[:, k] = speed[:, None] * unit_vector(course) + stream
         manoeuvre[:, k] = (np.abs(rate) * speed > TURNING) | (
-            np.abs(ordered_speed - speed) / speed_lag > 0.03)
+            np.abs(ordered_speed - speed) / speed_lag > 0.03
+        )
         dt = steps[:, min(k + 1, scans - 1)] / parts
         for _ in range(parts):
             wanted = np.clip((ordered_course - course) / (2 * lag), -most, most)
-            rate = (rate + dt * 2 * (wanted - rate) / lag
-                    + rng.normal(0, np.radians(0.02), count) * np.sqrt(dt))
+            rate = (
+                rate
+                + dt * 2 * (wanted - rate) / lag
+                + rng.normal(0, np.radians(0.02), count) * np.sqrt(dt)
+            )
             course = course + dt * rate
             speed = speed + dt * (ordered_speed - speed) / speed_lag
             position = position + dt[:, None] * (speed[:, None] * unit_vector(course) + stream)
@@ -76,6 +82,7 @@ def paper_turn(steps, rng) -> Ships:
 
     def speed():
         return 9.26 + 1.03 * np.sin(2 * np.pi * time / 1000)
+
     for k in range(scans):
         positions[:, k], velocities[:, k] = position, speed()[:, None] * unit_vector(course)
         manoeuvre[:, k] = (k >= TURN_SCAN) & (left > 0)
@@ -102,8 +109,7 @@ def real_ships(file: Path, steps, rng) -> Ships:
     stretches = []
     for ship, way in enumerate(ways):
         ends = [p.start for p in way if not p.exists and p.start > 0] + [HOUR]
-        starts = [max(a.start, 0.0) for a, b in zip(way[1:], way[:-1])
-                  if a.exists and not b.exists]
+        starts = [max(a.start, 0.0) for a, b in zip(way[1:], way[:-1]) if a.exists and not b.exists]
         for begin in starts:
             end = min(end for end in ends if end > begin)
             where, _ = motion.locate_ships(paths, np.full(2, ship), np.array([begin, end - 1]))
@@ -126,6 +132,7 @@ def real_ships(file: Path, steps, rng) -> Ships:
             if (size[WARM_UP:] > TURNING).any() == (run % 2 == 0) and size.max() < FASTEST:
                 break
         return found
+
     return _place(draw, steps, rng)
 
 
@@ -135,17 +142,20 @@ def recorded_boats(file: Path, steps, rng) -> Ships:
     with open(file, newline='') as table:
         for row in csv.DictReader(table):
             rows.setdefault(row['target'], []).append(
-                (float(row['time_s']), float(row['east_m']), float(row['north_m'])))
+                (float(row['time_s']), float(row['east_m']), float(row['north_m']))
+            )
     splines = []
     for track in rows.values():
         time, east, north = np.unique(np.array(track), axis=0).T
-        splines.append((time[0], time[-1], [make_smoothing_spline(time, x, lam=1.0)
-                                            for x in (east, north)]))
+        splines.append(
+            (time[0], time[-1], [make_smoothing_spline(time, x, lam=1.0) for x in (east, north)])
+        )
 
     def draw(run, time):
         begin, end, axes = splines[run % len(splines)]
         at = np.minimum(begin + rng.random() * max(end - begin - time[-1], 0.0) + time, end)
         return tuple(np.stack([axis(at, order) for axis in axes], -1) for order in (0, 1))
+
     return _place(draw, steps, rng)
 
 
@@ -166,7 +176,8 @@ def _place(draw, steps, rng) -> Ships:
         sin, cos = np.sin(angle), np.cos(angle)
         turn = np.array([[cos, sin], [-sin, cos]]) @ np.diag([1, rng.choice([-1, 1])])
         centre = np.exp(rng.uniform(np.log(2500), np.log(15000))) * unit_vector(
-            rng.uniform(0, 2 * np.pi))
+            rng.uniform(0, 2 * np.pi)
+        )
         positions[run] = (position - position[scans // 2]) @ turn.T + centre
         velocities[run] = velocity @ turn.T
         manoeuvre[run] = _acceleration(velocity, time[run]) > TURNING

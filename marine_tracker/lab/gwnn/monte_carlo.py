@@ -27,15 +27,28 @@ from .trials import FLEETS, OWN, RECORDED, TANH, cells, kinds
 HELP = 'GWNN against CS-Kalman, CV and IMMs, on tracks it was trained on and others'
 RUNS = 300
 OPTIONS = {
-    'data': {'type': Path, 'metavar': 'FOLDER', 'help': 'also judge on real tracks: a folder that '
-             'holds ' + ' or '.join(map(str, RECORDED.values())) + ', or both'},
-    'processes': {'type': int, 'metavar': 'N', 'default': os.cpu_count(),
-                  'help': 'how many at once (default %(default)s); no figure depends on it'},
+    'data': {
+        'type': Path,
+        'metavar': 'FOLDER',
+        'help': 'also judge on real tracks: a folder that '
+        'holds ' + ' or '.join(map(str, RECORDED.values())) + ', or both',
+    },
+    'processes': {
+        'type': int,
+        'metavar': 'N',
+        'default': os.cpu_count(),
+        'help': 'how many at once (default %(default)s); no figure depends on it',
+    },
 }
 
 
-def run(runs: int, seed: int, progress: Progress = silent, data: Path | None = None,
-        processes: int | None = None) -> Result:
+def run(
+    runs: int,
+    seed: int,
+    progress: Progress = silent,
+    data: Path | None = None,
+    processes: int | None = None,
+) -> Result:
     """All cells and failures; what is demanded of them, what is claimed, and the picture."""
     if processes is not None and processes < 1:
         raise ValueError(f'--processes is {processes}; it must be at least 1')
@@ -43,41 +56,54 @@ def run(runs: int, seed: int, progress: Progress = silent, data: Path | None = N
     return Result(figures.figures(found), claims(found), pictures.pictures(found))
 
 
-def measure(runs: int, seed: int, progress: Progress, data: Path | None,
-            processes: int) -> Findings:
+def measure(
+    runs: int, seed: int, progress: Progress, data: Path | None, processes: int
+) -> Findings:
     """All measurements, in `processes` processes."""
     if data is not None and not any((data / file).exists() for file in RECORDED.values()):
-        raise ValueError(f'--data is {data}; it holds neither of '
-                         + ', '.join(map(str, RECORDED.values())))
+        raise ValueError(
+            f'--data is {data}; it holds neither of ' + ', '.join(map(str, RECORDED.values()))
+        )
     weights = {name: {OWN: gwnn.weights(vessel_class=name)} for name in FLEETS}
     weights['ship'][TANH] = gwnn.weights(str(gwnn_weights.FOLDER / 'gwnn_tanh.npz'))
     # Apart from every seed of a training, whose numbers come in pairs.
     seeds = iter(np.random.SeedSequence([seed, 7, 7]).generate_state(100).tolist())
-    planned = {of: job for name in FLEETS
-               for of, job in plan(name, runs, data, weights[name], seeds)}
+    planned = {
+        of: job for name in FLEETS for of, job in plan(name, runs, data, weights[name], seeds)
+    }
     results = dict(zip(planned, parallel.run(list(planned.values()), processes, progress)))
 
     def those(what):
         return {of[1:]: result for of, result in results.items() if of[0] == what}
+
     # Timed last, with nothing beside it.
-    cost, = parallel.run([Job(failures.cost, (next(seeds), weights['ship'][OWN]))], 1, silent)
-    return Findings(those('fair'), those('hard'), those('sigma'), those('broken'),
-                    those('rubbish'), cost)
+    (cost,) = parallel.run([Job(failures.cost, (next(seeds), weights['ship'][OWN]))], 1, silent)
+    return Findings(
+        those('fair'), those('hard'), those('sigma'), those('broken'), those('rubbish'), cost
+    )
 
 
-def plan(name: str, runs: int, data: Path | None, weights: dict[str, gwnn_weights.Weights],
-         seeds: Iterator[int]) -> Iterator[tuple[tuple[str, str, str], Job]]:
+def plan(
+    name: str,
+    runs: int,
+    data: Path | None,
+    weights: dict[str, gwnn_weights.Weights],
+    seeds: Iterator[int],
+) -> Iterator[tuple[tuple[str, str, str], Job]]:
     """The measurements of a vessel class: of `Findings` which, vessel class, kind of motion."""
     fleet, own = FLEETS[name], weights[OWN]
     for kind in kinds(name):
-        its = next(seeds)       # also where it is not used: without data the others stay the same
+        its = next(seeds)  # also where it is not used: without data the others stay the same
         if kind not in RECORDED or (data is not None and (data / RECORDED[kind]).exists()):
-            yield ('fair', name, kind), Job(cells, (name, kind, runs, fleet.radar, its, data,
-                                                    weights))
+            yield (
+                ('fair', name, kind),
+                Job(cells, (name, kind, runs, fleet.radar, its, data, weights)),
+            )
     for what, kind, radar in figures.conditions(name):
         yield (what, name, kind), Job(cells, (name, kind, runs, radar, next(seeds), data, weights))
     for kind in figures.BROKEN[name]:
-        yield ('broken', name, kind), Job(failures.scans_to_fallback,
-                                          (name, kind, runs, next(seeds), own))
-    yield ('rubbish', name, fleet.usual), Job(failures.rubbish,
-                                              (name, runs, next(seeds), own))
+        yield (
+            ('broken', name, kind),
+            Job(failures.scans_to_fallback, (name, kind, runs, next(seeds), own)),
+        )
+    yield ('rubbish', name, fleet.usual), Job(failures.rubbish, (name, runs, next(seeds), own))

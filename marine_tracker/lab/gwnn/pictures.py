@@ -15,9 +15,9 @@ STYLES = {
     TANH: ('o', '#56b4e9', 'GWNN with plain tanh units'),
     OWN: ('o', '#0072b2', 'GWNN'),
 }
-LEFT_OUT = {'ship': SHIPPED, 'small_craft': TANH}   # to keep the picture readable
-LEAST, MOST = 0.8, 1.6          # ratio; above, it is told as a number at the edge
-LINE = 0.16                     # rows between two estimators
+LEFT_OUT = {'ship': SHIPPED, 'small_craft': TANH}  # to keep the picture readable
+LEAST, MOST = 0.8, 1.6  # ratio; above, it is told as a number at the edge
+LINE = 0.16  # rows between two estimators
 
 
 def pictures(found: Findings) -> list[Picture]:
@@ -25,8 +25,13 @@ def pictures(found: Findings) -> list[Picture]:
     made = []
     for name, title in (('ship', 'Ships'), ('small_craft', 'Small craft')):
         cells = fair_cells(found, name)
-        made.append(Picture(f'gwnn_{name}', (9, 1.5 + 0.4 * len(cells)),
-                            partial(compare, cells=cells, title=title)))
+        made.append(
+            Picture(
+                f'gwnn_{name}',
+                (9, 1.5 + 0.4 * len(cells)),
+                partial(compare, cells=cells, title=title),
+            )
+        )
     return made
 
 
@@ -50,24 +55,48 @@ def compare(figure, cells: list[Cell], title: str) -> None:
         edge += len(group)
         axes.axhline(edge - 0.5, color='0.35', linewidth=1)
     if groups['never trained on']:
-        axes.annotate('never trained on', (MOST, edge - 0.5), xytext=(-4, -3), fontsize=8,
-                      textcoords='offset points', ha='right', va='top', color='0.35')
+        axes.annotate(
+            'never trained on',
+            (MOST, edge - 0.5),
+            xytext=(-4, -3),
+            fontsize=8,
+            textcoords='offset points',
+            ha='right',
+            va='top',
+            color='0.35',
+        )
     axes.set_yticks(range(len(rows)), [f'{cell.kind}, {cell.phase}' for cell in rows])
     axes.tick_params(axis='y', length=0)
     ticks = [tick / 10 for tick in range(1, 17) if tick / 10 >= least]
     axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
     axes.minorticks_off()
-    axes.set_xlabel('position error one scan ahead, over that of the IMM tuned on all kinds of '
-                    'motion   (left of 1 is better)')
+    axes.set_xlabel(
+        'position error one scan ahead, over that of the IMM tuned on all kinds of '
+        'motion   (left of 1 is better)'
+    )
     axes.grid(axis='x', color='0.9')
     axes.set_axisbelow(True)
     for name in reversed(shown):
         mark, colour, text = STYLES[name]
-        axes.plot([], [], mark, color=colour, markersize=_size(name), linestyle='',
-                  markerfacecolor='white' if name == TANH else colour, label=text)
+        axes.plot(
+            [],
+            [],
+            mark,
+            color=colour,
+            markersize=_size(name),
+            linestyle='',
+            markerfacecolor='white' if name == TANH else colour,
+            label=text,
+        )
     axes.plot([], [], color='0.35', linewidth=1, label='1: IMM tuned on all kinds of motion')
-    figure.legend(loc='outside upper left', ncols=3, frameon=False, fontsize=9,
-                  title=f'{title}: 95 % intervals over the tracks', alignment='left')
+    figure.legend(
+        loc='outside upper left',
+        ncols=3,
+        frameon=False,
+        fontsize=9,
+        title=f'{title}: 95 % intervals over the tracks',
+        alignment='left',
+    )
 
 
 def _size(name: str) -> int:
@@ -78,9 +107,23 @@ def _mark(axes, y: float, name: str, ratio) -> None:
     mark, colour, _ = STYLES[name]
     if ratio.value > MOST:
         axes.plot(MOST, y, '>', color=colour, markersize=5, clip_on=False)
-        axes.annotate(f'{ratio.value:.1f}', (MOST, y), xytext=(6, 0), textcoords='offset points',
-                      va='center', fontsize=8, color=colour, annotation_clip=False)
+        axes.annotate(
+            f'{ratio.value:.1f}',
+            (MOST, y),
+            xytext=(6, 0),
+            textcoords='offset points',
+            va='center',
+            fontsize=8,
+            color=colour,
+            annotation_clip=False,
+        )
         return
     axes.plot([ratio.low, ratio.high], [y, y], color=colour, linewidth=1.2)
-    axes.plot(ratio.value, y, mark, color=colour, markersize=_size(name),
-              markerfacecolor='white' if name == TANH else colour)
+    axes.plot(
+        ratio.value,
+        y,
+        mark,
+        color=colour,
+        markersize=_size(name),
+        markerfacecolor='white' if name == TANH else colour,
+    )

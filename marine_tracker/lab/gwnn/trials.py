@@ -23,13 +23,16 @@ from ...types import take
 from . import held_out_tracks
 
 SCANS = 150
-SPEED = 25.0                    # m/s, what every estimator is told of the targets
-LEAST_CELL = 300                # scans; smaller cells are not judged
+SPEED = 25.0  # m/s, what every estimator is told of the targets
+LEAST_CELL = 300  # scans; smaller cells are not judged
 AIS, BOAT = Path('ais_north_sea', 'ais.csv'), Path('autosea_joyride', 'truth.csv')
-RECORDED = {'AIS': AIS, 'boat': BOAT}           # kinds of motion that need --data
-HELD_OUT = {'autopilot': lambda file, steps, rng: held_out_tracks.nomoto(steps, rng),
-            'paper turn': lambda file, steps, rng: held_out_tracks.paper_turn(steps, rng),
-            'AIS': held_out_tracks.real_ships, 'boat': held_out_tracks.recorded_boats}
+RECORDED = {'AIS': AIS, 'boat': BOAT}  # kinds of motion that need --data
+HELD_OUT = {
+    'autopilot': lambda file, steps, rng: held_out_tracks.nomoto(steps, rng),
+    'paper turn': lambda file, steps, rng: held_out_tracks.paper_turn(steps, rng),
+    'AIS': held_out_tracks.real_ships,
+    'boat': held_out_tracks.recorded_boats,
+}
 # The network; with plain units; with its monitor silenced; and what all ratios refer to.
 OWN, TANH, ALONE, IMM = 'GWNN', 'tanh units', 'never falling back', 'IMM'
 
@@ -65,8 +68,13 @@ class Fleet(NamedTuple):
 
 
 FLEETS = {
-    'ship': Fleet(Conditions(25.0, 0.4, 22.0), (1500.0, 18000.0), 1000.0,
-                  ('autopilot', 'paper turn', 'AIS', 'boat'), 'mix'),
+    'ship': Fleet(
+        Conditions(25.0, 0.4, 22.0),
+        (1500.0, 18000.0),
+        1000.0,
+        ('autopilot', 'paper turn', 'AIS', 'boat'),
+        'mix',
+    ),
     'small_craft': Fleet(Conditions(6.0, 0.7, 30.0), (150.0, 4000.0), 50.0, ('boat',), 'cruise'),
 }
 
@@ -74,8 +82,12 @@ FLEETS = {
 # What a short search came to, of 75 evaluations on ships: beside the strongest IMM it tells what
 # that one's tuning is worth.
 BRIEFLY = 'IMM tuned in brief'
-IN_BRIEF = Modes(tuple(bank.PERIOD * a * a for a in (0.0010256, 0.79201, 0.014074, 0.014074)),
-                 (0, 0, 0.020922, -0.020922), (0.99797, 0.78744, 0.78744, 0.78744), bank.PERIOD)
+IN_BRIEF = Modes(
+    tuple(bank.PERIOD * a * a for a in (0.0010256, 0.79201, 0.014074, 0.014074)),
+    (0, 0, 0.020922, -0.020922),
+    (0.99797, 0.78744, 0.78744, 0.78744),
+    bank.PERIOD,
+)
 
 
 def kinds(vessel_class: str) -> tuple[str, ...]:
@@ -91,20 +103,30 @@ def trial(vessel_class: str, kind: str, runs: int, radar: Conditions, rng, data:
     ranges = np.exp(rng.uniform(*np.log(fleet.ranges), 2 * runs))
     if kind in HELD_OUT:
         ships = HELD_OUT[kind](_file(data, kind), steps, rng)
-        if kind in RECORDED:            # may lie anywhere: put where the others are
+        if kind in RECORDED:  # may lie anywhere: put where the others are
             away = ranges[:, None] * unit_vector(rng.uniform(0, 2 * np.pi, 2 * runs))
             ships = ships._replace(
-                position=ships.position + (away - ships.position[:, SCANS // 2])[:, None])
+                position=ships.position + (away - ships.position[:, SCANS // 2])[:, None]
+            )
     else:
-        ships = ship_tracks.sail([kind] * 2 * runs, ranges, steps, rng,
-                                 kinds=WATERS[vessel_class].kinds)
+        ships = ship_tracks.sail(
+            [kind] * 2 * runs, ranges, steps, rng, kinds=WATERS[vessel_class].kinds
+        )
     nearest = np.hypot(*np.moveaxis(ships.position, -1, 0)).min(1)
     ships = take(ships, np.flatnonzero(nearest > fleet.nearest)[:runs])
     every = np.ones(len(ships.time))
-    return track_trials.trial(ships, ship_tracks.RunRadar(
-        radar.range_sigma * every, np.radians(radar.bearing_sigma) * every,
-        radar.detection * every, radar.outliers * every, radar.truly * every,
-        period * every), rng)
+    return track_trials.trial(
+        ships,
+        ship_tracks.RunRadar(
+            radar.range_sigma * every,
+            np.radians(radar.bearing_sigma) * every,
+            radar.detection * every,
+            radar.outliers * every,
+            radar.truly * every,
+            period * every,
+        ),
+        rng,
+    )
 
 
 def _file(data, kind) -> Path | None:
@@ -120,12 +142,16 @@ def rivals(vessel_class: str) -> dict[str, Estimator]:
     """The filters beside the network; the IMM is tuned on the tracks of its training."""
     best, tuned = bank.STRONGEST[vessel_class], TUNED[vessel_class]
     brief = {BRIEFLY: imm.imm(IN_BRIEF, SPEED)} if vessel_class == 'ship' else {}
-    return {IMM: imm.imm(best['training'], SPEED), **brief,
-            'IMM for manoeuvre': imm.imm(best['manoeuvre'], SPEED),
-            'IMM as shipped': imm.imm(imm.PRESETS[vessel_class], SPEED),
-            'CV/CV': imm.imm(tuned.cv_cv, SPEED), 'CV': imm.imm(tuned.cv, SPEED),
-            'CS': cs_kalman.cs_kalman(tuned.cs, SPEED),
-            'CS of the fallback': fallback(vessel_class)}
+    return {
+        IMM: imm.imm(best['training'], SPEED),
+        **brief,
+        'IMM for manoeuvre': imm.imm(best['manoeuvre'], SPEED),
+        'IMM as shipped': imm.imm(imm.PRESETS[vessel_class], SPEED),
+        'CV/CV': imm.imm(tuned.cv_cv, SPEED),
+        'CV': imm.imm(tuned.cv, SPEED),
+        'CS': cs_kalman.cs_kalman(tuned.cs, SPEED),
+        'CS of the fallback': fallback(vessel_class),
+    }
 
 
 def fallback(vessel_class: str) -> Estimator:
@@ -159,8 +185,15 @@ class Cell(NamedTuple):
     idle: float
 
 
-def cells(vessel_class: str, kind: str, runs: int, radar: Conditions, seed: int,
-          data: Path | None, weights: dict[str, gwnn_weights.Weights]) -> list[Cell]:
+def cells(
+    vessel_class: str,
+    kind: str,
+    runs: int,
+    radar: Conditions,
+    seed: int,
+    data: Path | None,
+    weights: dict[str, gwnn_weights.Weights],
+) -> list[Cell]:
     """Both phases of one kind of motion.
 
     weights  of the network, OWN, and of others to compare with it
@@ -172,16 +205,22 @@ def cells(vessel_class: str, kind: str, runs: int, radar: Conditions, seed: int,
 
     def watch(k, state):
         fallen[:, k] = state.monitor.status == gwnn.FALLBACK
-    outcomes = {OWN: track_trials.run(network(vessel_class, weights[OWN], period), on, False,
-                                      watch)}
+
+    outcomes = {
+        OWN: track_trials.run(network(vessel_class, weights[OWN], period), on, False, watch)
+    }
     outcomes[ALONE] = track_trials.run(
-        network(vessel_class, weights[OWN], period, fall=np.inf), on, gated=False)
+        network(vessel_class, weights[OWN], period, fall=np.inf), on, gated=False
+    )
     for name in weights:
         if name != OWN:
-            outcomes[name] = track_trials.run(network(vessel_class, weights[name], period), on,
-                                              gated=False)
-    outcomes |= {name: track_trials.run(rival, on, gated=True)
-                 for name, rival in rivals(vessel_class).items()}
+            outcomes[name] = track_trials.run(
+                network(vessel_class, weights[name], period), on, gated=False
+            )
+    outcomes |= {
+        name: track_trials.run(rival, on, gated=True)
+        for name, rival in rivals(vessel_class).items()
+    }
     found = []
     for phase, within in (('straight', ~on.phase), ('manoeuvre', on.phase)):
         chosen = within & on.counts
@@ -189,14 +228,24 @@ def cells(vessel_class: str, kind: str, runs: int, radar: Conditions, seed: int,
             continue
 
         def ratio(one, other, what, chosen=chosen):
-            return track_trials.ratio(getattr(outcomes[one], what), getattr(outcomes[other], what),
-                                      chosen, rng)
-        found.append(Cell(
-            vessel_class, kind, phase,
-            {name: track_trials.rms(outcome.position, chosen)
-             for name, outcome in outcomes.items()},
-            {name: ratio(name, IMM, 'position') for name in outcomes if name != IMM},
-            {name: ratio(name, IMM, 'velocity') for name in outcomes if name != IMM},
-            {name: ratio(OWN, name, 'position') for name in outcomes if name != OWN},
-            float(outcomes[OWN].nis[chosen & on.seen].mean()), float(fallen[chosen].mean())))
+            return track_trials.ratio(
+                getattr(outcomes[one], what), getattr(outcomes[other], what), chosen, rng
+            )
+
+        found.append(
+            Cell(
+                vessel_class,
+                kind,
+                phase,
+                {
+                    name: track_trials.rms(outcome.position, chosen)
+                    for name, outcome in outcomes.items()
+                },
+                {name: ratio(name, IMM, 'position') for name in outcomes if name != IMM},
+                {name: ratio(name, IMM, 'velocity') for name in outcomes if name != IMM},
+                {name: ratio(OWN, name, 'position') for name in outcomes if name != OWN},
+                float(outcomes[OWN].nis[chosen & on.seen].mean()),
+                float(fallen[chosen].mean()),
+            )
+        )
     return found

@@ -40,6 +40,7 @@ def estimated_bounds(q: float, b: float, a: float = DILATION, both_signs: bool =
 
     def leak(s):
         return (own * np.abs(spectrum(scales + s, q))).sum(0).max()
+
     cross = 0.0
     for k in range(1, 1000):
         right, left = leak(2 * np.pi * k / b), leak(-2 * np.pi * k / b)
@@ -57,16 +58,17 @@ def measured_bounds(q: float, b: float, octaves: int = 5):
     harmonic and frequency 32 pi / b: the operator restricted, so the frame's true A is at most
     the first and its B at least the second.
     """
-    length, half = 2 ** octaves * b, 2 ** octaves * 16
+    length, half = 2**octaves * b, 2**octaves * 16
     harmonic = np.concatenate([np.arange(-half, -7), np.arange(8, half)])
     apart = harmonic[:, None] - harmonic
     operator = np.zeros(apart.shape)
     for level in range(-12, octaves + 1):
-        translations = 2.0 ** (octaves - level)         # of this level around the circle
-        psi = spectrum(2.0 ** level * 2 * np.pi * harmonic / length, q)
+        translations = 2.0 ** (octaves - level)  # of this level around the circle
+        psi = spectrum(2.0**level * 2 * np.pi * harmonic / length, q)
         # The sum over the translations leaves harmonics that differ by a multiple of them.
-        operator += np.where(apart % translations == 0,
-                             2.0 ** level * translations / length * np.outer(psi, psi), 0.0)
+        operator += np.where(
+            apart % translations == 0, 2.0**level * translations / length * np.outer(psi, psi), 0.0
+        )
     values = np.linalg.eigvalsh(operator)
     return float(values[0]), float(values[-1])
 

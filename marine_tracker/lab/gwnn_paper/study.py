@@ -29,15 +29,15 @@ from ...simulation import motion
 from ...types import Array
 from .frame import spectrum
 
-PERIOD = 60 / 22                                # s
+PERIOD = 60 / 22  # s
 START = 4600 * np.array([np.sin(np.radians(30)), np.cos(np.radians(30))])
 COURSE, SPEED, WAVE = np.radians(70), 9.26, motion.Wave(1.03, 1000.0)
-TURN, TURN_RADIUS, TURN_AT = np.radians(50), 200.0, 500         # rad, m, scan
-NEAR, FAR = 1.852, 9.26                         # E1, E2, m
-NOISE_MEAN, NOISE_SIGMA = 0.5, 0.3              # m, of Fig 4
-RADAR_SIGMA = 15.0                              # m, along and across, of a real radar at 2 km
-NOISY_WINDOW = 10                               # scans, from which speed and course are taken
-STEADY = 100                                    # last scans of a run, over which errors are RMS
+TURN, TURN_RADIUS, TURN_AT = np.radians(50), 200.0, 500  # rad, m, scan
+NEAR, FAR = 1.852, 9.26  # E1, E2, m
+NOISE_MEAN, NOISE_SIGMA = 0.5, 0.3  # m, of Fig 4
+RADAR_SIGMA = 15.0  # m, along and across, of a real radar at 2 km
+NOISY_WINDOW = 10  # scans, from which speed and course are taken
+STEADY = 100  # last scans of a run, over which errors are RMS
 
 GWNN = net.gwnn(4, 4, LEVELS, TRANSLATIONS, WIDTH)
 BP = net.bp(4, 4, GWNN.groups * GWNN.group, WIDTH)
@@ -46,34 +46,48 @@ VARIABLE = net.Rule(step=0.1)
 STRONG = VARIABLE._replace(step=0.5)
 LOOP = VARIABLE._replace(rounds=10)
 LEARNERS = {
-    'BP, equal step': (BP, EQUAL), 'BP, variable step': (BP, VARIABLE),
-    'GWNN, equal step': (GWNN, EQUAL), 'GWNN, variable step': (GWNN, VARIABLE),
-    'BP, to E1 in each scan': (BP, LOOP), 'GWNN, to E1 in each scan': (GWNN, LOOP),
+    'BP, equal step': (BP, EQUAL),
+    'BP, variable step': (BP, VARIABLE),
+    'GWNN, equal step': (GWNN, EQUAL),
+    'GWNN, variable step': (GWNN, VARIABLE),
+    'BP, to E1 in each scan': (BP, LOOP),
+    'GWNN, to E1 in each scan': (GWNN, LOOP),
 }
 TURNERS = {
-    'BP, eta .1': (BP, VARIABLE), 'GWNN, eta .1': (GWNN, VARIABLE),
-    'BP, eta .5': (BP, STRONG), 'GWNN, eta .5': (GWNN, STRONG),
-    'BP, to E1 in each scan': (BP, LOOP), 'GWNN, to E1 in each scan': (GWNN, LOOP),
+    'BP, eta .1': (BP, VARIABLE),
+    'GWNN, eta .1': (GWNN, VARIABLE),
+    'BP, eta .5': (BP, STRONG),
+    'GWNN, eta .5': (GWNN, STRONG),
+    'BP, to E1 in each scan': (BP, LOOP),
+    'GWNN, to E1 in each scan': (GWNN, LOOP),
 }
 
 
-def track(scans: int, speed: float = SPEED, wave: motion.Wave | None = WAVE,
-          turn_at: int | None = None):
+def track(
+    scans: int, speed: float = SPEED, wave: motion.Wave | None = WAVE, turn_at: int | None = None
+):
     """z [scans, 4]: range m, bearing rad, speed m/s, course rad of the paper's target."""
-    legs = () if turn_at is None else (motion.Straight(turn_at * PERIOD),
-                                       motion.Turn(TURN, radius=TURN_RADIUS))
+    legs = (
+        ()
+        if turn_at is None
+        else (motion.Straight(turn_at * PERIOD), motion.Turn(TURN, radius=TURN_RADIUS))
+    )
     paths = motion.table([motion.sail(START, COURSE, speed, legs, wave)], scans * PERIOD)
-    position, velocity = motion.locate_ships(paths, np.zeros(scans, int),
-                                             np.arange(scans) * PERIOD)
+    position, velocity = motion.locate_ships(paths, np.zeros(scans, int), np.arange(scans) * PERIOD)
     return to_z(position, velocity)
 
 
 def to_z(position, velocity):
     """z [..., 4] of positions and velocities [..., 2]."""
-    return np.stack([np.hypot(*np.moveaxis(position, -1, 0)),
-                     np.arctan2(position[..., 0], position[..., 1]),
-                     np.hypot(*np.moveaxis(velocity, -1, 0)),
-                     np.arctan2(velocity[..., 0], velocity[..., 1])], -1)
+    return np.stack(
+        [
+            np.hypot(*np.moveaxis(position, -1, 0)),
+            np.arctan2(position[..., 0], position[..., 1]),
+            np.hypot(*np.moveaxis(velocity, -1, 0)),
+            np.arctan2(velocity[..., 0], velocity[..., 1]),
+        ],
+        -1,
+    )
 
 
 def noisy(truth, runs: int, rng, mean: float = NOISE_MEAN, sigma: float = NOISE_SIGMA):
@@ -82,8 +96,10 @@ def noisy(truth, runs: int, rng, mean: float = NOISE_MEAN, sigma: float = NOISE_
     The paper does not say how noisy its speed and course are. A radar has them from positions:
     here the difference over ten scans, and the first ten scans the truth.
     """
+
     def draw():
         return rng.normal(mean, sigma, (runs, len(truth)))
+
     distance = truth[:, 0] + draw()
     bearing = truth[:, 1] + draw() / truth[:, 0]
     position = distance[..., None] * np.stack([np.sin(bearing), np.cos(bearing)], -1)
@@ -104,8 +120,17 @@ def predict(design: net.Design, rule: net.Rule, seen, rng):
     for k in range(1, scans - 1):
         before, now = seen[:, k - 1], seen[:, k]
         wanted = difference(now, before) / output_unit(before)
-        weights = net.learn(design, weights, network_inputs(before, centre), wanted, now[:, 2],
-                            rule, POSITION_UNIT, NEAR, FAR)
+        weights = net.learn(
+            design,
+            weights,
+            network_inputs(before, centre),
+            wanted,
+            now[:, 2],
+            rule,
+            POSITION_UNIT,
+            NEAR,
+            FAR,
+        )
         output = net.forward(design, weights, network_inputs(now, centre)).output
         ahead[:, k + 1] = now + output_unit(now) * output
     return ahead
@@ -121,8 +146,7 @@ def two_point(z):
 
 def radial_error(ahead, truth):
     """E_R [..., N] m."""
-    return np.hypot(ahead[..., 0] - truth[..., 0],
-                    truth[..., 0] * (ahead[..., 1] - truth[..., 1]))
+    return np.hypot(ahead[..., 0] - truth[..., 0], truth[..., 0] * (ahead[..., 1] - truth[..., 1]))
 
 
 def plots_to_converge(error, over: int = 10):
@@ -131,7 +155,7 @@ def plots_to_converge(error, over: int = 10):
     Column j of the errors is that after j + 1 plots.
     """
     sums = np.concatenate([np.zeros((len(error), 1)), np.cumsum(np.square(error), 1)], 1)
-    good = sums[:, over:] - sums[:, :-over] <= over * NEAR ** 2
+    good = sums[:, over:] - sums[:, :-over] <= over * NEAR**2
     return np.where(good.any(1), np.argmax(good, 1) + 1, error.shape[1])
 
 
@@ -190,9 +214,23 @@ def study(runs: int, seed: int, progress: Progress = silent) -> Study:
     progress(4, parts)
     of_units = {r: broken(1 / r, rng) for r in (0.6, 0.8, 0.9)}
     progress(5, parts)
-    return Study(speeds, along, bearing, learnt, plots, noise, noise_rms, real_noise, turned, peak,
-                 ratio, steep, float(crossing), of_units,
-                 {q: half_band(q) for q in (0.5, WIDTH, 2.0)})
+    return Study(
+        speeds,
+        along,
+        bearing,
+        learnt,
+        plots,
+        noise,
+        noise_rms,
+        real_noise,
+        turned,
+        peak,
+        ratio,
+        steep,
+        float(crossing),
+        of_units,
+        {q: half_band(q) for q in (0.5, WIDTH, 2.0)},
+    )
 
 
 def steady(runs, rng, scans=400):
@@ -207,10 +245,14 @@ def steady(runs, rng, scans=400):
 def learning(runs, rng, scans=500):
     """Fig 2 and 3: error curves of the learners, and plots until they have converged."""
     truth = np.repeat(track(scans)[None], runs, 0)
-    error = {name: radial_error(predict(design, rule, truth, rng), truth)[:, 2:]
-             for name, (design, rule) in LEARNERS.items()}
-    return ({name: np.median(e, 0) for name, e in error.items()},
-            {name: plots_to_converge(e) for name, e in error.items()})
+    error = {
+        name: radial_error(predict(design, rule, truth, rng), truth)[:, 2:]
+        for name, (design, rule) in LEARNERS.items()
+    }
+    return (
+        {name: np.median(e, 0) for name, e in error.items()},
+        {name: plots_to_converge(e) for name, e in error.items()},
+    )
 
 
 def under_noise(runs, rng, scans=500):
@@ -223,8 +265,11 @@ def under_noise(runs, rng, scans=500):
     seen = noisy(truth, runs, rng, 0.0, RADAR_SIGMA)
     real = predict(GWNN, VARIABLE, seen, rng)
     radial = [float(rms(radial_error(z, truth)[:, -STEADY:])) for z in (ahead, real, seen)]
-    return (np.median(np.abs(off), 0),
-            (radial[0], float(rms(late[..., 2])), float(rms(late[..., 3]))), tuple(radial[1:]))
+    return (
+        np.median(np.abs(off), 0),
+        (radial[0], float(rms(late[..., 2])), float(rms(late[..., 3]))),
+        tuple(radial[1:]),
+    )
 
 
 def turning(runs, rng):
@@ -232,11 +277,15 @@ def turning(runs, rng):
     truth = track(TURN_AT + 40, turn_at=TURN_AT)
     around = slice(TURN_AT - 10, TURN_AT + 40)
     every = np.repeat(truth[None], runs, 0)
-    error = {name: radial_error(predict(design, rule, every, rng), every)[:, around]
-             for name, (design, rule) in TURNERS.items()}
+    error = {
+        name: radial_error(predict(design, rule, every, rng), every)[:, around]
+        for name, (design, rule) in TURNERS.items()
+    }
     error['line through two plots'] = radial_error(two_point(truth), truth)[None, around]
-    return ({name: np.median(e, 0) for name, e in error.items()},
-            {name: float(np.median(e.max(1))) for name, e in error.items()})
+    return (
+        {name: np.median(e, 0) for name, e in error.items()},
+        {name: float(np.median(e.max(1))) for name, e in error.items()},
+    )
 
 
 def broken(width: float, rng, tries: int = 20000):
@@ -254,8 +303,7 @@ def broken(width: float, rng, tries: int = 20000):
     tries //= 5
     inputs, error = rng.uniform(-6, 6, (tries, 4)), rng.normal(size=(tries, 4))
     gradient = []
-    for design in (net.gwnn(4, 4, LEVELS, TRANSLATIONS, width),
-                   net.bp(4, 4, BP.group, width)):
+    for design in (net.gwnn(4, 4, LEVELS, TRANSLATIONS, width), net.bp(4, 4, BP.group, width)):
         weights = net.draw(design, tries, rng)
         gradient.append(np.linalg.norm(net.input_gradient(design, weights, inputs, error), axis=1))
     return float(np.mean(ours >= theirs)), float(np.mean(gradient[0] >= gradient[1]))

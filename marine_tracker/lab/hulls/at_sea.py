@@ -12,12 +12,12 @@ from ...simulation import radar, scenario
 from ...tracking.lifecycle import CONFIRMED
 from ...tracking.tracker import Tracker
 
-SPEED = 6.0                     # m/s
-SCANS = 44                      # two minutes
-PERIOD = 60 / 22                # s
-BEARING = 45.0                  # deg, of the ship half way
+SPEED = 6.0  # m/s
+SCANS = 44  # two minutes
+PERIOD = 60 / 22  # s
+BEARING = 45.0  # deg, of the ship half way
 BEAMS = {60: 12, 120: 20, 200: 32, 300: 45}
-FINE, COARSE = (10.0, 0.75), (30.0, 1.2)        # m, deg: cells of a short and of a long pulse
+FINE, COARSE = (10.0, 0.75), (30.0, 1.2)  # m, deg: cells of a short and of a long pulse
 
 
 class Case(NamedTuple):
@@ -48,15 +48,31 @@ def scene(case: Case) -> scenario.Scenario:
     course = BEARING + case.aspect
     way = 0.5 * SCANS * PERIOD * SPEED
     at, along = np.radians(BEARING), np.radians(course)
-    return scenario.build({
-        'duration_s': (SCANS + 0.5) * PERIOD,
-        'radar': {'range_resolution_m': case.cell[0], 'beam_width_deg': case.cell[1],
-                  'range_sigma_m': 0.6 * case.cell[0], 'bearing_sigma_deg': 0.4 * case.cell[1],
-                  'max_range_m': 8000},
-        'targets': [{'start': {'north_m': float(case.distance * np.cos(at) - way * np.cos(along)),
-                               'east_m': float(case.distance * np.sin(at) - way * np.sin(along))},
-                     'course_deg': course, 'speed_mps': SPEED, 'length_m': case.length,
-                     'hull': {'beam_m': BEAMS[case.length]}}]}, 'one ship')
+    return scenario.build(
+        {
+            'duration_s': (SCANS + 0.5) * PERIOD,
+            'radar': {
+                'range_resolution_m': case.cell[0],
+                'beam_width_deg': case.cell[1],
+                'range_sigma_m': 0.6 * case.cell[0],
+                'bearing_sigma_deg': 0.4 * case.cell[1],
+                'max_range_m': 8000,
+            },
+            'targets': [
+                {
+                    'start': {
+                        'north_m': float(case.distance * np.cos(at) - way * np.cos(along)),
+                        'east_m': float(case.distance * np.sin(at) - way * np.sin(along)),
+                    },
+                    'course_deg': course,
+                    'speed_mps': SPEED,
+                    'length_m': case.length,
+                    'hull': {'beam_m': BEAMS[case.length]},
+                }
+            ],
+        },
+        'one ship',
+    )
 
 
 def run(case: Case, extent: str, seed: int) -> HullsAtSea:
@@ -80,8 +96,11 @@ def run(case: Case, extent: str, seed: int) -> HullsAtSea:
             continue
         row = int(away.argmin())
         velocity = known.hulls.matrix.mean[row, 2:]
-        last = (shapes.length[row] - case.length,
-                wrap_angle(np.arctan2(*velocity) - course), shapes.beam[row] - BEAMS[case.length])
+        last = (
+            shapes.length[row] - case.length,
+            wrap_angle(np.arctan2(*velocity) - course),
+            shapes.beam[row] - BEAMS[case.length],
+        )
         if k >= SCANS // 2:
             off.append(axes @ (estimate.position[row] - there[row]))
             lined.append(known.hulls.method[row] == BY_GAUSSIAN_PROCESS)

@@ -43,14 +43,28 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
                     one_more()
                     own += _runs(Case(length, distance, aspect, cell), 'random_matrix', runs, seed)
                 found += own
-                figures.append(report.Figure(f'{name}, {length} m at {distance:.0f} m: length',
-                                             _rms([of.length for of in own]), 'm'))
-        figures.append(report.at_most(f'random matrix, {name}: length',
-                                      _rms([of.length for of in found]), limit, 'm', 'prototype'))
+                figures.append(
+                    report.Figure(
+                        f'{name}, {length} m at {distance:.0f} m: length',
+                        _rms([of.length for of in own]),
+                        'm',
+                    )
+                )
+        figures.append(
+            report.at_most(
+                f'random matrix, {name}: length',
+                _rms([of.length for of in found]),
+                limit,
+                'm',
+                'prototype',
+            )
+        )
         course = float(np.degrees(_rms([of.course for of in found])))
-        figures.append(report.at_most(f'random matrix, {name}: course', course, 2.0, 'deg',
-                                      'prototype') if cell == FINE else
-                       report.Figure(f'random matrix, {name}: course', course, 'deg'))
+        figures.append(
+            report.at_most(f'random matrix, {name}: course', course, 2.0, 'deg', 'prototype')
+            if cell == FINE
+            else report.Figure(f'random matrix, {name}: course', course, 'deg')
+        )
 
     bias = {}
     for extent in ('random_matrix', 'gp'):
@@ -59,36 +73,73 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
             one_more()
             parts.append(_bias(_runs(case, extent, runs, seed)))
         bias[extent] = float(np.mean(parts))
-        figures.append(report.Figure(f'200 m at 1 km, {extent}: bias of the track', bias[extent],
-                                     'm'))
-    figures.append(report.at_most('200 m at 1 km: bias over that of plain centroids',
-                                  bias['gp'] / bias['random_matrix'], 0.5, '', 'plain centroids'))
+        figures.append(
+            report.Figure(f'200 m at 1 km, {extent}: bias of the track', bias[extent], 'm')
+        )
+    figures.append(
+        report.at_most(
+            '200 m at 1 km: bias over that of plain centroids',
+            bias['gp'] / bias['random_matrix'],
+            0.5,
+            '',
+            'plain centroids',
+        )
+    )
 
     tracked = {}
-    for name, extent in (('hulls', 'off'), ('hulls', 'random_matrix'), ('hulls', 'gp'),
-                         ('coast', 'off'), ('coast', 'gp')):
+    for name, extent in (
+        ('hulls', 'off'),
+        ('hulls', 'random_matrix'),
+        ('hulls', 'gp'),
+        ('coast', 'off'),
+        ('coast', 'gp'),
+    ):
         one_more()
         tracked[name, extent] = now = track(name, extent, seed)
         figures += [
             report.Figure(f'{name}, extent {extent}: tracks confirmed', now.confirmed),
             report.Figure(f'{name}, extent {extent}: least held ship', float(now.held.min())),
-            report.Figure(f'{name}, extent {extent}: RMSE of the nearest track', now.nearest, 'm')]
+            report.Figure(f'{name}, extent {extent}: RMSE of the nearest track', now.nearest, 'm'),
+        ]
     for extent in ('random_matrix', 'gp'):
         now, plain = tracked['hulls', extent], tracked['hulls', 'off']
         figures += [
-            report.at_most(f'hulls, extent {extent}: position RMSE', now.rmse, plain.rmse, 'm',
-                           'extent off'),
-            report.at_least(f'hulls, extent {extent}: held', float(now.held.mean()),
-                            float(plain.held.mean()), '', 'extent off')]
+            report.at_most(
+                f'hulls, extent {extent}: position RMSE', now.rmse, plain.rmse, 'm', 'extent off'
+            ),
+            report.at_least(
+                f'hulls, extent {extent}: held',
+                float(now.held.mean()),
+                float(plain.held.mean()),
+                '',
+                'extent off',
+            ),
+        ]
     coast = tracked['coast', 'gp']
     figures += [
-        report.at_most('coast: tracks confirmed over those with extent off',
-                       coast.confirmed / tracked['coast', 'off'].confirmed, 0.1, '', 'extent off'),
-        report.at_least('coast: held', float(coast.held.mean()),
-                        float(tracked['coast', 'off'].held.mean()), '', 'extent off')]
+        report.at_most(
+            'coast: tracks confirmed over those with extent off',
+            coast.confirmed / tracked['coast', 'off'].confirmed,
+            0.1,
+            '',
+            'extent off',
+        ),
+        report.at_least(
+            'coast: held',
+            float(coast.held.mean()),
+            float(tracked['coast', 'off'].held.mean()),
+            '',
+            'extent off',
+        ),
+    ]
     progress(whole, whole)
-    pictures = [Picture('hulls', (11, 5.5), partial(
-        paint, hulls=tracked['hulls', 'gp'].snapshot, coast=coast.snapshot))]
+    pictures = [
+        Picture(
+            'hulls',
+            (11, 5.5),
+            partial(paint, hulls=tracked['hulls', 'gp'].snapshot, coast=coast.snapshot),
+        )
+    ]
     return Result(figures, (), pictures)
 
 

@@ -13,9 +13,9 @@ from ...tracking.lifecycle import COASTING, CONFIRMED
 from ...tracking.tracker import Tracker
 from ...types import Array, Extrapolation
 
-SETTLED = 10            # scans that do not count
-CUTOFF = 100.0          # m beyond half the length: a track farther off is not on the ship
-OUTLINE_SCAN = 110      # whose picture is kept
+SETTLED = 10  # scans that do not count
+CUTOFF = 100.0  # m beyond half the length: a track farther off is not on the ship
+OUTLINE_SCAN = 110  # whose picture is kept
 
 
 class Snapshot(NamedTuple):
@@ -66,9 +66,14 @@ def track(name: str, extent: str, seed: int) -> HullsInTraffic:
         live = np.isin(tracks.status, (CONFIRMED, COASTING))
         if k == OUTLINE_SCAN and shapes is not None:
             snapshot = Snapshot(
-                _positions(scan), estimate.position[live], shapes.outline[live],
-                shapes.extended[live], truth.position,
-                _outlines(loaded.fleet, truth), scan.own_ship.position[-1])
+                _positions(scan),
+                estimate.position[live],
+                shapes.outline[live],
+                shapes.extended[live],
+                truth.position,
+                _outlines(loaded.fleet, truth),
+                scan.own_ship.position[-1],
+            )
         if k < SETTLED:
             continue
         for row, ship in enumerate((truth.target - 1).tolist()):

@@ -9,17 +9,26 @@ from .trials import BP, CS, IMM, ROUGH, SETTINGS
 
 # Colours of Okabe and Ito, as in `gwnn_pictures`.
 # The BP network's line is wide: the other one hides it.
-STYLES = {CS: ('#000000', '--', 1.5, 'CS filter alone'), IMM: ('#009e73', '-', 1.5, IMM),
-          BP: ('#e69f00', '-', 4.0, 'BP network'), ROUGH: ('#0072b2', '-', 1.5, 'rough network')}
+STYLES = {
+    CS: ('#000000', '--', 1.5, 'CS filter alone'),
+    IMM: ('#009e73', '-', 1.5, IMM),
+    BP: ('#e69f00', '-', 4.0, 'BP network'),
+    ROUGH: ('#0072b2', '-', 1.5, 'rough network'),
+}
 PAPER = {'0 -> 5': 'weak (Fig 3)', '0 -> 40': 'strong (Fig 4)', '5 -> 25': 'step (Fig 5)'}
-BEFORE = 10                     # scans shown before the step
+BEFORE = 10  # scans shown before the step
 
 
 def pictures(found) -> list[Picture]:
     """One for the paper's scenario, one at sea."""
-    return [Picture(f'rough_nn_{name}', (3.6 * len(setting.steps), 5.6),
-                    partial(paint, found=found, name=name))
-            for name, setting in SETTINGS.items()]
+    return [
+        Picture(
+            f'rough_nn_{name}',
+            (3.6 * len(setting.steps), 5.6),
+            partial(paint, found=found, name=name),
+        )
+        for name, setting in SETTINGS.items()
+    ]
 
 
 def paint(figure, found, name: str) -> None:
@@ -29,17 +38,25 @@ def paint(figure, found, name: str) -> None:
     time = (np.arange(setting.scans) - setting.change) * setting.period
     for step, top, bottom in zip(setting.steps, above, below):
         before, after = setting.steps[step]
-        top.step(time, np.where(time < 0, before, after), where='post', color='0.6', linewidth=1,
-                 label='truth')
+        top.step(
+            time,
+            np.where(time < 0, before, after),
+            where='post',
+            color='0.6',
+            linewidth=1,
+            label='truth',
+        )
         for rival, (colour, line, width, text) in STYLES.items():
             cell = found[name, step, rival]
             top.plot(time, cell.mean, line, color=colour, linewidth=width, label=text)
             if rival != CS:
                 bottom.plot(time, cell.share, line, color=colour, linewidth=width)
         size = after - before
-        top.set(title=f'{step} m/s² {PAPER.get(step, "")}'.rstrip(),
-                xlim=(-BEFORE * setting.period, time[-1]),
-                ylim=(before - 0.2 * size, after + 0.45 * size))
+        top.set(
+            title=f'{step} m/s² {PAPER.get(step, "")}'.rstrip(),
+            xlim=(-BEFORE * setting.period, time[-1]),
+            ylim=(before - 0.2 * size, after + 0.45 * size),
+        )
         bottom.set(xlabel='time after the step, s', ylim=(0, 1))
         for axes in (top, bottom):
             axes.grid(color='0.92')

@@ -24,10 +24,10 @@ from ...types import Array
 
 HELP = 'the fused track of two radars against that of each alone, with one of them failing'
 RUNS = 100
-SETTLED, EVERY = 120.0, 5.0             # s
-WITHIN = 300.0                          # m, a track no farther from a ship is its track
-SILENT = 300.0, 600.0                   # s, of the S band radar
-SEEN_BY_BOTH = 6                        # ships; the seventh is the boat
+SETTLED, EVERY = 120.0, 5.0  # s
+WITHIN = 300.0  # m, a track no farther from a ship is its track
+SILENT = 300.0, 600.0  # s, of the S band radar
+SEEN_BY_BOTH = 6  # ships; the seventh is the boat
 WAYS = 'X band', 'S band', 'both', 'both, S band silent', 'both, as plots come'
 
 
@@ -44,8 +44,13 @@ class Course(NamedTuple):
     false: int
 
 
-def run(runs: int, seed: int, progress: Progress = silent, estimator: str = 'imm',
-        processes: int | None = None) -> Result:
+def run(
+    runs: int,
+    seed: int,
+    progress: Progress = silent,
+    estimator: str = 'imm',
+    processes: int | None = None,
+) -> Result:
     """The scene `runs` times in every way."""
     seeds = np.random.SeedSequence([seed, 5]).generate_state(runs)
     work = [parallel.Job(scene, (estimator, int(one))) for one in seeds]
@@ -54,27 +59,46 @@ def run(runs: int, seed: int, progress: Progress = silent, estimator: str = 'imm
     rng = np.random.default_rng(seed)
     figures = []
     for what, unit in (('position', 'm'), ('velocity', 'm/s')):
-        squares = {way: np.array([np.nanmean(np.square(
-            getattr(course, what)[:, :SEEN_BY_BOTH])) for course in courses])
-            for way, courses in by_way.items()}
-        figures += [report.Figure(f'{way}: {what}, RMS', float(np.sqrt(square.mean())), unit)
-                    for way, square in squares.items()]
-        for way, against in (('both', 'X band'), ('both', 'S band'),
-                             ('both, S band silent', 'X band')):
+        squares = {
+            way: np.array(
+                [
+                    np.nanmean(np.square(getattr(course, what)[:, :SEEN_BY_BOTH]))
+                    for course in courses
+                ]
+            )
+            for way, courses in by_way.items()
+        }
+        figures += [
+            report.Figure(f'{way}: {what}, RMS', float(np.sqrt(square.mean())), unit)
+            for way, square in squares.items()
+        ]
+        for way, against in (
+            ('both', 'X band'),
+            ('both', 'S band'),
+            ('both, S band silent', 'X band'),
+        ):
             value, low, high = _ratio(squares[way], squares[against], rng)
             name = f'{way} over {against}: {what}'
-            figures += [report.Figure(name, value),
-                        report.Figure(f'{name}, 95 % from', low),
-                        report.at_most(f'{name}, 95 % to', high, 1.0)]
+            figures += [
+                report.Figure(name, value),
+                report.Figure(f'{name}, 95 % from', low),
+                report.at_most(f'{name}, 95 % to', high, 1.0),
+            ]
     for way, courses in by_way.items():
         ships = SEEN_BY_BOTH if way == 'S band' else SEEN_BY_BOTH + 1
         gone = np.mean([np.isnan(course.position[:, :ships]).mean() for course in courses])
         name = f'{way}: of the time without a track'
-        figures.append(report.at_most(name, float(gone), 0.001) if way.startswith('both')
-                       else report.Figure(name, float(gone)))
-        figures += [report.Figure(f'{way}: changes of track', sum(c.changes for c in courses)),
-                    report.Figure(f'{way}: false tracks a run',
-                                  float(np.mean([course.false for course in courses])))]
+        figures.append(
+            report.at_most(name, float(gone), 0.001)
+            if way.startswith('both')
+            else report.Figure(name, float(gone))
+        )
+        figures += [
+            report.Figure(f'{way}: changes of track', sum(c.changes for c in courses)),
+            report.Figure(
+                f'{way}: false tracks a run', float(np.mean([course.false for course in courses]))
+            ),
+        ]
     return Result(figures, [_claim(figures)])
 
 
@@ -87,11 +111,14 @@ def scene(estimator: str, seed: int) -> list[Course]:
     fails = [scan for scan in of_s if not SILENT[0] < scan.end < SILENT[1]]
     both = fused([x.tracker_parameters(), s.tracker_parameters()], ['x', 's'])
     as_they_come = Service(x, estimator, **both)
-    as_they_come.tracker.updates = 0                # none is held to be undone
-    return [follow(Service(x, estimator), of_x, x), follow(Service(s, estimator), of_s, s),
-            follow(Service(x, estimator, **both), merged(of_x, of_s), x),
-            follow(Service(x, estimator, **both), merged(of_x, fails), x),
-            follow(as_they_come, merged(of_x, of_s), x)]
+    as_they_come.tracker.updates = 0  # none is held to be undone
+    return [
+        follow(Service(x, estimator), of_x, x),
+        follow(Service(s, estimator), of_s, s),
+        follow(Service(x, estimator, **both), merged(of_x, of_s), x),
+        follow(Service(x, estimator, **both), merged(of_x, fails), x),
+        follow(as_they_come, merged(of_x, of_s), x),
+    ]
 
 
 def follow(service: Service, scans, truth: scenario.Scenario) -> Course:
@@ -128,8 +155,10 @@ def _ratio(square, against, rng, resamples: int = 2000):
     """RMS over RMS of the runs [R], and its 95 % interval: runs are drawn anew in pairs."""
     pick = rng.integers(0, len(square), (resamples, len(square)))
     spread = np.sqrt(square[pick].mean(1) / against[pick].mean(1))
-    return (float(np.sqrt(square.mean() / against.mean())),
-            *(float(limit) for limit in np.percentile(spread, [2.5, 97.5])))
+    return (
+        float(np.sqrt(square.mean() / against.mean())),
+        *(float(limit) for limit in np.percentile(spread, [2.5, 97.5])),
+    )
 
 
 def _claim(figures) -> report.Claim:
@@ -138,6 +167,8 @@ def _claim(figures) -> report.Claim:
     found = ', '.join(f'{named[f"{way}: position, RMS"]:.1f} m {way}' for way in WAYS[:4])
     late = named['both, as plots come: position, RMS'] / named['both: position, RMS'] - 1
     return report.Claim(
-        'two radars', 'the fused track is better than that of each radar alone',
+        'two radars',
+        'the fused track is better than that of each radar alone',
         f'{found}. Late plots taken as they come cost {100 * late:+.1f} %.',
-        BORNE_OUT if highest < 1 else NOT_BORNE_OUT)
+        BORNE_OUT if highest < 1 else NOT_BORNE_OUT,
+    )

@@ -83,12 +83,24 @@ def case(scene: str, runs: int, rng) -> Case:
     """The scene as both radars see it."""
     path = truth(scene)
     distance, bearing = to_range_bearing(path[:, POSITION])
-    plots = [polar_to_position(distance + rng.normal(0, sigma, (runs, SCANS)),
-                               bearing + rng.normal(0, BEARING_SIGMA, (runs, SCANS)), sigma,
-                               BEARING_SIGMA) for sigma in RANGE_SIGMAS]
+    plots = [
+        polar_to_position(
+            distance + rng.normal(0, sigma, (runs, SCANS)),
+            bearing + rng.normal(0, BEARING_SIGMA, (runs, SCANS)),
+            sigma,
+            BEARING_SIGMA,
+        )
+        for sigma in RANGE_SIGMAS
+    ]
     position, noise = weighted_fusion(*plots[0], *plots[1])
-    return Case(path, plots, position, noise, np.tile(START, (runs, 1)),
-                np.tile(START_COVARIANCE, (runs, 1, 1)))
+    return Case(
+        path,
+        plots,
+        position,
+        noise,
+        np.tile(START, (runs, 1)),
+        np.tile(START_COVARIANCE, (runs, 1, 1)),
+    )
 
 
 def sea_case(runs: int, rng) -> Case:
@@ -96,9 +108,11 @@ def sea_case(runs: int, rng) -> Case:
     position, velocity = marine_table.truth(marine_table.TRACKS['turns'])
     distance, bearing = to_range_bearing(position)
     sigmas = marine_table.RANGE_SIGMA, marine_table.BEARING_SIGMA
-    seen, noise = polar_to_position(distance + rng.normal(0, sigmas[0], (runs, len(position))),
-                                    bearing + rng.normal(0, sigmas[1], (runs, len(position))),
-                                    *sigmas)
+    seen, noise = polar_to_position(
+        distance + rng.normal(0, sigmas[0], (runs, len(position))),
+        bearing + rng.normal(0, sigmas[1], (runs, len(position))),
+        *sigmas,
+    )
     path = np.zeros((len(position), 6))
     path[:, ::3], path[:, 1::3] = position, velocity
     first = cs_kalman.cs_kalman(SEA, 30.0).init(_plots(0.0, seen[:, 0], noise[:, 0]))
@@ -116,9 +130,10 @@ def kalman(on: Case, manoeuvre: Manoeuvre, plots=None, hold: int = 1) -> Filtere
     mean, covariance = on.mean, on.covariance
     step = np.ones(len(mean))
     move = wavelet_block.transition(manoeuvre.frequency, step)
-    drive = np.array([0.5, 1, 1])[None] - move[0, :3, 2]            # U: F + U e3' is constant a
-    out = Filtered(*(np.empty((len(mean), plots[0][0].shape[1], 6) + tail)
-                     for tail in ((), (6,), (), (6,))))
+    drive = np.array([0.5, 1, 1])[None] - move[0, :3, 2]  # U: F + U e3' is constant a
+    out = Filtered(
+        *(np.empty((len(mean), plots[0][0].shape[1], 6) + tail) for tail in ((), (6,), (), (6,)))
+    )
     for k in range(out.mean.shape[1]):
         if k % hold == 0:
             limit = manoeuvre.max_acceleration
@@ -129,8 +144,9 @@ def kalman(on: Case, manoeuvre: Manoeuvre, plots=None, hold: int = 1) -> Filtere
         out.expected[:, k], out.spread[:, k] = mean, covariance
         for position, noise_of in plots:
             innovation = position[:, k] - mean[:, POSITION]
-            mean, covariance, _, _ = kalman_update(mean, covariance, innovation, noise_of[:, k],
-                                                   POSITION)
+            mean, covariance, _, _ = kalman_update(
+                mean, covariance, innovation, noise_of[:, k], POSITION
+            )
         out.mean[:, k], out.covariance[:, k] = mean, covariance
     return out
 
@@ -150,8 +166,9 @@ def smoothed(found: Filtered, frequency: float) -> Array:
 def late(on: Case, manoeuvre: Manoeuvre, **how) -> Array:
     """`wavelet_block.smooth`: means [B, K, 6]."""
     time = np.tile(np.arange(1.0 + on.position.shape[1]), (len(on.mean), 1))
-    return wavelet_block.smooth(on.mean, on.covariance, time, on.position, on.noise, manoeuvre,
-                                **how).mean
+    return wavelet_block.smooth(
+        on.mean, on.covariance, time, on.position, on.noise, manoeuvre, **how
+    ).mean
 
 
 def causal(on: Case, manoeuvre: Manoeuvre) -> Array:
@@ -180,15 +197,21 @@ def interacting(on: Case) -> Array:
 
 def each_second(on: Case):
     """The fused plots as an estimator takes them."""
-    return (_plots(1.0 + k, on.position[:, k], on.noise[:, k])
-            for k in range(on.position.shape[1]))
+    return (_plots(1.0 + k, on.position[:, k], on.noise[:, k]) for k in range(on.position.shape[1]))
 
 
 def _plots(time, position, noise):
     count = len(position)
     distance, bearing = to_range_bearing(position)
-    return Plots(np.full(count, time), distance, bearing, np.zeros(count), np.zeros((count, 2)),
-                 position, noise)
+    return Plots(
+        np.full(count, time),
+        distance,
+        bearing,
+        np.zeros(count),
+        np.zeros((count, 2)),
+        position,
+        noise,
+    )
 
 
 class Literal(NamedTuple):
@@ -211,7 +234,7 @@ def literal(on: Case, manoeuvre: Manoeuvre, low_pass_only: bool, period: float =
         part = slice(at, at + SIZE)
         block = wavelet_block.predict(mean, covariance, steps, manoeuvre)
         noise = on.noise[:, part].sum(1) / SIZE
-        own = states @ block.covariance @ states.T                          # P_1
+        own = states @ block.covariance @ states.T  # P_1
         expected = own[:, ::3, ::3] + noise
         gain = np.linalg.solve(expected, own[:, ::3]).swapaxes(1, 2)
         shift = (rows @ (on.position[:, part] - block.mean[..., POSITION]))[:, 0]
@@ -223,5 +246,8 @@ def literal(on: Case, manoeuvre: Manoeuvre, low_pass_only: bool, period: float =
         broken.append(np.mean(np.linalg.eigvalsh(covariance)[:, 0] < 0))
         out.append(flat.reshape(block.mean.shape))
         mean = out[-1][:, -1]
-    return Literal(np.concatenate(out, 1), float(np.mean(broken[:2])),
-                   float(np.sqrt(covariance[:, 0, 0].mean())))
+    return Literal(
+        np.concatenate(out, 1),
+        float(np.mean(broken[:2])),
+        float(np.sqrt(covariance[:, 0, 0].mean())),
+    )

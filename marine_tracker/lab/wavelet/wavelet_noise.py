@@ -6,7 +6,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from ...types import Array
 
-NORMAL = 0.6745                 # median of |z| of a normal z of deviation 1
+NORMAL = 0.6745  # median of |z| of a normal z of deviation 1
 
 
 def noise_deviation(series, wavelet: str = 'db2') -> Array:

@@ -22,7 +22,7 @@ from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking.tracker import Tracker
 from marine_tracker.types import Scan, take
 
-EPOCH_NS = 1_700_000_000 * 1_000_000_000       # stamps as a real radar has them
+EPOCH_NS = 1_700_000_000 * 1_000_000_000  # stamps as a real radar has them
 
 
 @pytest.fixture(scope='module')
@@ -39,18 +39,28 @@ class Rig:
     def __init__(self, graph, node_helpers, sea, namespace='', **parameters):
         self.wait, self._listener = node_helpers
         self.scans, self.parameters, *_ = sea
-        given = {name: getattr(self.parameters, name)
-                 for name in ('range_sigma_m', 'bearing_sigma_deg', 'max_range_m')}
-        self.tracker = graph.make(TrackerNode, ('-r', f'__ns:=/{namespace}') if namespace else (),
-                                  **{**given, **parameters})
+        given = {
+            name: getattr(self.parameters, name)
+            for name in ('range_sigma_m', 'bearing_sigma_deg', 'max_range_m')
+        }
+        self.tracker = graph.make(
+            TrackerNode,
+            ('-r', f'__ns:=/{namespace}') if namespace else (),
+            **{**given, **parameters},
+        )
         self.other = graph.bystander(namespace=namespace)
         self.radar = self.other.create_publisher(PointCloud2, topics.PLOTS, topics.reliable(50))
-        self.own_ship = self.other.create_publisher(
-            Odometry, topics.ODOMETRY, topics.reliable(500))
+        self.own_ship = self.other.create_publisher(Odometry, topics.ODOMETRY, topics.reliable(500))
         self.targets = self._listener(
-            self.other, DiagnosticArray, topics.TARGETS, topics.latched(50))
-        self.wait(lambda: self.radar.get_subscription_count()
-                  and self.own_ship.get_subscription_count() and self.targets.connected)
+            self.other, DiagnosticArray, topics.TARGETS, topics.latched(50)
+        )
+        self.wait(
+            lambda: (
+                self.radar.get_subscription_count()
+                and self.own_ship.get_subscription_count()
+                and self.targets.connected
+            )
+        )
         self.shift_ns = EPOCH_NS
 
     # -- in ------------------------------------------------------------------------------------
@@ -83,9 +93,15 @@ class Rig:
     def set(self, **values):
         """Parameters changed by the node's service, all at once; its answers."""
         client = self.client(SetParameters, f'{self.tracker.get_name()}/set_parameters')
-        return self.call(client, SetParameters.Request(parameters=[
-            Parameter(name, value=value).to_parameter_msg()
-            for name, value in values.items()])).results
+        return self.call(
+            client,
+            SetParameters.Request(
+                parameters=[
+                    Parameter(name, value=value).to_parameter_msg()
+                    for name, value in values.items()
+                ]
+            ),
+        ).results
 
     def client(self, kind, name):
         client = self.other.create_client(kind, name)
@@ -116,9 +132,14 @@ class Rig:
     def rows(self):
         """The last targets as dicts by name, with `status` and `level`."""
         last = self.targets[-1].status if len(self.targets) else ()
-        return {entry.name: {'status': entry.message, 'level': entry.level,
-                             **{pair.key: pair.value for pair in entry.values}}
-                for entry in last}
+        return {
+            entry.name: {
+                'status': entry.message,
+                'level': entry.level,
+                **{pair.key: pair.value for pair in entry.values},
+            }
+            for entry in last
+        }
 
 
 @pytest.fixture
@@ -139,7 +160,7 @@ class Bridge(Rig):
 
     def sail(self, count):
         """The next scans."""
-        for scan in self.scans[self._played:self._played + count]:
+        for scan in self.scans[self._played : self._played + count]:
             self._played += 1
             self.play([scan])
 
@@ -159,9 +180,19 @@ class Bridge(Rig):
     def name_of(self, ship, within=400.0):
         """The target that shows where the scenario's ship is; None where there is none."""
         own, _ = own_ship_at(self.last.own_ship, self.last.end)
-        away = {name: np.hypot(*(own + float(row['range_nm']) * NAUTICAL_MILE * unit_vector(
-            np.radians(float(row['bearing_deg']))) - self.place(ship)))
-            for name, row in self.rows().items() if row['status'] != 'LOST'}
+        away = {
+            name: np.hypot(
+                *(
+                    own
+                    + float(row['range_nm'])
+                    * NAUTICAL_MILE
+                    * unit_vector(np.radians(float(row['bearing_deg'])))
+                    - self.place(ship)
+                )
+            )
+            for name, row in self.rows().items()
+            if row['status'] != 'LOST'
+        }
         near = [name for name in away if away[name] < within]
         return near[0] if near else None
 
@@ -203,8 +234,12 @@ class Bridge(Rig):
         desk = self.tracker._desk
         before, refused = len(desk._memory.acquisition.targets.id), desk.refused.counts.total()
         self.say(UInt32, topics.CANCEL, UInt32(data=number))
-        self.wait(lambda: len(desk._memory.acquisition.targets.id) < before
-                  or desk.refused.counts.total() > refused)
+        self.wait(
+            lambda: (
+                len(desk._memory.acquisition.targets.id) < before
+                or desk.refused.counts.total() > refused
+            )
+        )
 
     def acknowledge_target(self, number):
         self.say(UInt32, topics.ACKNOWLEDGE_TARGET, UInt32(data=number))
@@ -259,15 +294,33 @@ def simulated():
     ships: (range NM, bearing deg, course deg, speed kn), numbered from 1. Own ship goes north.
     Clear weather: every ship shows in every scan, and nothing else.
     """
+
     def make(ships, seconds, own_speed=10):
-        built = scenario.build({
-            'duration_s': seconds, 'own_ship': {'course_deg': 0, 'speed_kn': own_speed},
-            'radar': {'max_range_nm': 6, 'range_sigma_m': 10, 'bearing_sigma_deg': 0.3,
-                      'pd_near': 1, 'pd_far': 1},
-            'targets': [{'start': {'range_nm': away, 'bearing_deg': bearing}, 'speed_kn': speed,
-                         'course_deg': course} for away, bearing, course, speed in ships]}, 'sea')
+        built = scenario.build(
+            {
+                'duration_s': seconds,
+                'own_ship': {'course_deg': 0, 'speed_kn': own_speed},
+                'radar': {
+                    'max_range_nm': 6,
+                    'range_sigma_m': 10,
+                    'bearing_sigma_deg': 0.3,
+                    'pd_near': 1,
+                    'pd_far': 1,
+                },
+                'targets': [
+                    {
+                        'start': {'range_nm': away, 'bearing_deg': bearing},
+                        'speed_kn': speed,
+                        'course_deg': course,
+                    }
+                    for away, bearing, course, speed in ships
+                ],
+            },
+            'sea',
+        )
         scans, truths = zip(*radar.simulate(built, 1))
         return scans, from_mapping(TrackerParameters, built.tracker_parameters()), truths
+
     return make
 
 
@@ -280,16 +333,23 @@ def bridge(graph, node_helpers):
 @pytest.fixture
 def core():
     """core(scans, heading, node): the pure core's picture after each scan that a node has had."""
+
     def run(scans, heading, node):
-        base = (node._base_ns - EPOCH_NS) * 1e-9            # the node's times begin there
-        tracker, arpa = Tracker(node._tracker.parameters), Arpa(
-            node._desk.arpa.parameters, node._tracker.parameters)
+        base = (node._base_ns - EPOCH_NS) * 1e-9  # the node's times begin there
+        tracker, arpa = (
+            Tracker(node._tracker.parameters),
+            Arpa(node._desk.arpa.parameters, node._tracker.parameters),
+        )
         memory, known = tracker.start(), arpa.start()
         for scan in scans:
-            scan = Scan(scan.start - base, scan.end - base,
-                        scan.plots._replace(time=scan.plots.time - base),
-                        scan.own_ship._replace(time=scan.own_ship.time - base))
+            scan = Scan(
+                scan.start - base,
+                scan.end - base,
+                scan.plots._replace(time=scan.plots.time - base),
+                scan.own_ship._replace(time=scan.own_ship.time - base),
+            )
             memory, report = tracker.step(memory, scan)
             known, picture = arpa.step(known, scan, report, heading)
             yield picture
+
     return run

@@ -11,8 +11,12 @@ from nav_msgs.msg import Odometry
 
 from marine_tracker.nodes import convert, topics
 
-ACTIVE, SEEN, RECTIFIED, NORMAL = ('active unacknowledged', 'active acknowledged',
-                                   'rectified unacknowledged', 'normal')
+ACTIVE, SEEN, RECTIFIED, NORMAL = (
+    'active unacknowledged',
+    'active acknowledged',
+    'rectified unacknowledged',
+    'normal',
+)
 MEETING, BESIDE, LEAVING = (3, 4, 180, 10), (2, 90, 0, 10), (2, 180, 180, 5)
 RING = '[{name: ring, kind: guard, range_nm: [2.5, 2.8], bearing_deg: [315, 045]}]'
 
@@ -26,7 +30,7 @@ def sea(simulated):
 def test_a_danger_is_raised_acknowledged_and_over(bridge, sea):
     here = bridge(sea)
     here.sail(3)
-    assert here.told_of('danger') == {}                 # a guess yet
+    assert here.told_of('danger') == {}  # a guess yet
     scans = 3 + here.sail_on(lambda: here.told_of('danger'))
     assert scans * 60 / 22 < 40
     name = here.name_of(1)
@@ -35,10 +39,15 @@ def test_a_danger_is_raised_acknowledged_and_over(bridge, sea):
     entry, target = here.alarm(danger), here.rows()[name]
     assert entry.level == target['level'] == DiagnosticStatus.ERROR
     assert {row['level'] for other, row in here.rows().items() if other != name} == {
-        DiagnosticStatus.OK}
+        DiagnosticStatus.OK
+    }
     about = here.about(entry)
     assert (about['kind'], about['priority'], about['target'], about['in_state_s']) == (
-        'danger', 'alarm', name, '0')
+        'danger',
+        'alarm',
+        name,
+        '0',
+    )
     assert np.hypot(*(here.place(1) - [float(about['east_m']), float(about['north_m'])])) < 100
     assert entry.message.startswith(f'{name} dangerous: CPA 0.')
     assert convert.nanoseconds(here.alarms[-1].header.stamp) == here.stamp(here.last.end)
@@ -78,8 +87,9 @@ def test_a_danger_is_raised_acknowledged_and_over(bridge, sea):
     here.awaits(danger, RECTIFIED)
     assert here.ask(topics.ACKNOWLEDGE) == '1 alerts acknowledged'
     here.awaits(danger, NORMAL)
-    assert here.told_of('danger') == {danger: [
-        ACTIVE, SEEN, NORMAL, ACTIVE, SEEN, NORMAL, ACTIVE, RECTIFIED, NORMAL]}
+    assert here.told_of('danger') == {
+        danger: [ACTIVE, SEEN, NORMAL, ACTIVE, SEEN, NORMAL, ACTIVE, RECTIFIED, NORMAL]
+    }
     assert not here.tracker.failures.counts and not here.refused()
 
 
@@ -89,7 +99,7 @@ def test_what_cannot_be_acknowledged_is_refused(bridge, sea):
     here.acknowledge_target(77)
     here.wait(lambda: here.refused() == 1)
     here.sail_on(lambda: here.told_of('danger'))
-    here.acknowledge_target(int(here.name_of(2)[2:]))       # a target, but without an alarm
+    here.acknowledge_target(int(here.name_of(2)[2:]))  # a target, but without an alarm
     here.wait(lambda: here.refused() == 2)
     assert here.ask(topics.ACKNOWLEDGE) == '1 alerts acknowledged'
     assert here.ask(topics.ACKNOWLEDGE) == '0 alerts acknowledged'
@@ -105,11 +115,12 @@ def test_a_lost_target_is_told_with_its_last_position(bridge, sea):
     entry = here.alarm(lost)
     about = here.about(entry)
     assert about['priority'] == 'warning' and entry.level == DiagnosticStatus.WARN
-    told = [row for message in here.targets.messages for row in message.status
-            if row.message == 'LOST']
+    told = [
+        row for message in here.targets.messages for row in message.status if row.message == 'LOST'
+    ]
     assert [row.name for row in told] == [name] and here.about(told[0])['reason'] != ''
     place = [float(about['east_m']), float(about['north_m'])]
-    assert np.hypot(*(here.place(2) - place)) < 150         # it went on as before
+    assert np.hypot(*(here.place(2) - place)) < 150  # it went on as before
     # A loss is over when it is acknowledged, not by itself.
     here.without(2, 20)
     assert here.standing() == {lost: ACTIVE}
@@ -134,19 +145,21 @@ def test_a_guard_zone_tells_who_enters_and_who_was_there_and_may_change(bridge, 
 
     # A wrong text is refused with its reason, and nothing changes.
     for text, reason in (('[{name: x, kind: gard}]', 'kind'), ('{', 'YAML'), ('7', 'list')):
-        answer, = here.set(zones=text)
+        (answer,) = here.set(zones=text)
         assert not answer.successful and reason in answer.reason
         assert here.tracker.get_parameter('zones').value == RING
     here.sail(1)
     assert here.standing() == {meeting: SEEN}
 
     # A new zone around a target that is there already speaks at the next scan.
-    assert here.set(zones=RING[:-1] + ', {name: beam, kind: guard, range_nm: [1.8, 2.2], '
-                    'bearing_deg: [45, 135]}]')[0].successful
+    assert here.set(
+        zones=RING[:-1] + ', {name: beam, kind: guard, range_nm: [1.8, 2.2], '
+        'bearing_deg: [45, 135]}]'
+    )[0].successful
     here.sail(1)
     beam = f'{ships[1]}: new target in beam'
     here.awaits(beam, ACTIVE)
-    here.sail(30)                                           # the other has left the ring by now
+    here.sail(30)  # the other has left the ring by now
     assert here.told_of('new target') == {meeting: [ACTIVE, SEEN, NORMAL], beam: [ACTIVE]}
     # Without the zone there is no cause.
     assert here.set(zones='')[0].successful
@@ -158,11 +171,12 @@ def test_nothing_in_an_exclusion_zone_is_a_target(bridge, sea):
     here = bridge(sea, cpa_limit_nm=0.01)
     here.sail(6)
     assert len(here.rows()) == 3
-    assert here.set(zones='[{name: beam, kind: exclusion, range_nm: [1.5, 2.5], '
-                          'bearing_deg: [60, 120]}]')[0].successful
+    assert here.set(
+        zones='[{name: beam, kind: exclusion, range_nm: [1.5, 2.5], bearing_deg: [60, 120]}]'
+    )[0].successful
     here.sail(1)
     assert here.name_of(2) is None and len(here.rows()) == 2
-    here.without(2, 10)                                 # nor does its loss raise an alarm
+    here.without(2, 10)  # nor does its loss raise an alarm
     assert not len(here.alarms)
 
 
@@ -171,11 +185,12 @@ def test_when_there_are_as_many_targets_as_may_be_that_is_told(bridge, sea):
     here.sail(8)
     assert here.standing() == {'capacity': ACTIVE, 'near capacity': SEEN}
     assert here.alarm('capacity').message == (
-        '3 targets, as many as may be; 0 more are not acquired')
+        '3 targets, as many as may be; 0 more are not acquired'
+    )
     name = here.name_of(3)
     assert here.set(max_targets=2)[0].successful
     here.sail(1)
-    assert len(here.rows()) == 2 and name not in here.rows()    # who leaves gives way
+    assert len(here.rows()) == 2 and name not in here.rows()  # who leaves gives way
     assert here.set(max_targets=200)[0].successful
     here.sail(8)
     assert len(here.rows()) == 3
@@ -198,7 +213,7 @@ def test_silent_sensors_are_told_one_by_one(bridge, sea):
     heading, position, plots = missing
     blind = Odometry()
     blind.pose.pose.orientation.w = 0.0
-    pause = 0.05            # the sensors are looked at every second, and the scene has 250 scans
+    pause = 0.05  # the sensors are looked at every second, and the scene has 250 scans
 
     def without_heading():
         time.sleep(pause)
@@ -206,18 +221,26 @@ def test_silent_sensors_are_told_one_by_one(bridge, sea):
         here.own_ship.publish(blind)
         here.send([here.last])
         return {name: here.standing().get(name) for name in missing} == {
-            heading: SEEN, position: NORMAL, plots: NORMAL}
+            heading: SEEN,
+            position: NORMAL,
+            plots: NORMAL,
+        }
+
     here.wait(without_heading)
 
     def with_everything():
         time.sleep(pause)
         here.sail(1)
         return here.standing().get(heading) == NORMAL
+
     here.wait(with_everything)
     # Silence again; the stamp goes on with the wall, or the age would be below 0.
     here.wait(lambda: here.standing().get(plots) == ACTIVE)
-    ages = [float(here.about(entry)['in_state_s'])
-            for message in here.alarms.messages for entry in message.status]
+    ages = [
+        float(here.about(entry)['in_state_s'])
+        for message in here.alarms.messages
+        for entry in message.status
+    ]
     assert min(ages) >= 0
 
 
@@ -225,9 +248,9 @@ def test_an_antenna_slower_than_the_timeout_is_not_missed(bridge, sea):
     here = bridge(sea, sensor_timeout_s=0.5, scan_period_s=1.2)
     for _ in range(3):
         here.sail(1)
-        time.sleep(1.2)                     # the sensors are looked at every second
+        time.sleep(1.2)  # the sensors are looked at every second
     assert here.told_of('plots missing') == {}
-    here.awaits('plots missing', ACTIVE)    # three revolutions later
+    here.awaits('plots missing', ACTIVE)  # three revolutions later
 
 
 def test_who_may_be_taken_for_another_is_told_while_it_lasts(bridge, simulated):
@@ -235,17 +258,16 @@ def test_who_may_be_taken_for_another_is_told_while_it_lasts(bridge, simulated):
     here.sail(12)
     risks = {f'{here.name_of(ship, 100)}: swap risk' for ship in (1, 2)}
     assert len(risks) == 2 and here.told_of('swap risk') == {}
-    here.sail_on(lambda: set(here.standing()) == risks)     # they come as near as 95 m
+    here.sail_on(lambda: set(here.standing()) == risks)  # they come as near as 95 m
     assert {row['swap_risk'] for row in here.rows().values()} == {'yes'}
     assert {entry.level for entry in here.alarms[-1].status} == {DiagnosticStatus.WARN}
     here.sail_on(lambda: set(here.standing().values()) == {NORMAL})
     assert {row['swap_risk'] for row in here.rows().values()} == {''}
-    assert here.told_of('swap risk') == dict.fromkeys(risks, [SEEN, NORMAL])    # a caution
+    assert here.told_of('swap risk') == dict.fromkeys(risks, [SEEN, NORMAL])  # a caution
 
 
 def test_who_lies_at_anchor_is_not_nagged_of_those_who_do_too(bridge, simulated):
-    here = bridge(simulated([(0.2, 30, 0, 0), (0.4, 200, 0, 0), (1.5, 90, 0, 0)], 400,
-                            own_speed=0))
+    here = bridge(simulated([(0.2, 30, 0, 0), (0.4, 200, 0, 0), (1.5, 90, 0, 0)], 400, own_speed=0))
     here.sail(140)
     assert [row['motion'] for row in here.rows().values()] == ['at rest'] * 3
     assert {row['speed_kn'] for row in here.rows().values()} == {'0.0'}
@@ -256,8 +278,10 @@ def test_who_comes_late_gets_targets_and_alarms(bridge, sea, node_helpers):
     here = bridge(sea)
     here.sail_on(lambda: here.told_of('danger'))
     _, listener = node_helpers
-    late = {topic: listener(here.other, DiagnosticArray, topic, topics.latched())
-            for topic in (topics.TARGETS, topics.ALARMS)}
+    late = {
+        topic: listener(here.other, DiagnosticArray, topic, topics.latched())
+        for topic in (topics.TARGETS, topics.ALARMS)
+    }
     here.wait(lambda: all(len(ears) for ears in late.values()))
     assert late[topics.TARGETS][-1] == here.targets[-1]
     assert late[topics.ALARMS][-1] == here.alarms[-1]
@@ -270,10 +294,14 @@ def test_a_failure_in_a_scan_costs_no_target_and_no_alarm(bridge, sea, monkeypat
 
     def fail(*_):
         raise RuntimeError('on purpose')
+
     with monkeypatch.context() as patch:
         patch.setattr(here.tracker._desk.arpa, 'step', fail)
-        here.radar.publish(convert.plots_to_cloud(
-            here.scans[here._played], here.stamp(here.scans[here._played].start)))
+        here.radar.publish(
+            convert.plots_to_cloud(
+                here.scans[here._played], here.stamp(here.scans[here._played].start)
+            )
+        )
         here.wait(lambda: here.tracker.failures.counts.total() == 1)
     here._played += 1
     here.sail(5)

@@ -48,7 +48,7 @@ def test_points_are_acquired_in_both_frames_and_from_both_topics(bridge, sea):
 def test_what_cannot_be_acquired_is_refused_and_counted(bridge, sea):
     here = bridge(sea, acquisition='nowhere', click_wait_s=5.0)
     diagnostics = here.listen(DiagnosticArray, topics.DIAGNOSTICS)
-    here.click(1000.0, 0.0, frame='base_link')          # own ship was not heard yet
+    here.click(1000.0, 0.0, frame='base_link')  # own ship was not heard yet
     here.click(0.0, 0.0, frame='odom')
     here.click(np.nan, 0.0)
     here.sail(8)
@@ -64,9 +64,13 @@ def test_what_cannot_be_acquired_is_refused_and_counted(bridge, sea):
     assert here.refused() == 4 + MAX_CLICKS
     assert here.rows() == {} and not here.tracker.failures.counts
 
-    here.wait(lambda: any(
-        here.about(entry).get(REFUSED) == str(4 + MAX_CLICKS)
-        for message in diagnostics.messages for entry in message.status))
+    here.wait(
+        lambda: any(
+            here.about(entry).get(REFUSED) == str(4 + MAX_CLICKS)
+            for message in diagnostics.messages
+            for entry in message.status
+        )
+    )
 
 
 def test_a_click_before_the_first_echo_is_answered_when_it_comes(bridge, sea):
@@ -74,30 +78,34 @@ def test_a_click_before_the_first_echo_is_answered_when_it_comes(bridge, sea):
     here.sail(1)
     here.click(*here.place(2))
     here.sail(1)
-    (name, row), = here.rows().items()
+    ((name, row),) = here.rows().items()
     assert name.startswith('Q') and row['acquired'] == 'M'
     assert (row['status'], row['level']) == ('ACQUIRING', DiagnosticStatus.OK)
     here.sail_on(lambda: name not in here.rows())
-    (name, row), = here.rows().items()
+    ((name, row),) = here.rows().items()
     assert name == here.name_of(2) and name.startswith('TT')
     assert (row['status'], row['acquired']) == ('TRACKING', 'M')
 
 
 def test_only_guard_zones_acquire_when_told_so(bridge, sea):
-    here = bridge(sea, acquisition='zones', cpa_limit_nm=0.01,
-                  zones='[{name: ring, kind: guard, range_nm: [2.4, 2.8]}]')
+    here = bridge(
+        sea,
+        acquisition='zones',
+        cpa_limit_nm=0.01,
+        zones='[{name: ring, kind: guard, range_nm: [2.4, 2.8]}]',
+    )
     here.sail(8)
     assert here.rows() == {}
-    here.sail(8)                            # after 36 s the first is nearer than 2.8 NM
-    (name, row), = here.rows().items()
+    here.sail(8)  # after 36 s the first is nearer than 2.8 NM
+    ((name, row),) = here.rows().items()
     assert name == here.name_of(1) and row['acquired'] == 'A'
     here.set(acquisition='everywhere')
     here.sail(1)
     assert len(here.rows()) == 3
     here.set(acquisition='nowhere')
     here.sail(1)
-    assert len(here.rows()) == 3            # who is a target stays one
-    answer, = here.set(acquisition='sometimes')
+    assert len(here.rows()) == 3  # who is a target stays one
+    (answer,) = here.set(acquisition='sometimes')
     assert not answer.successful and 'everywhere, zones, nowhere' in answer.reason
 
 
@@ -107,7 +115,7 @@ def test_targets_are_cancelled_and_come_back_by_a_click(bridge, sea):
     name = here.name_of(1)
     others = set(here.rows()) - {name}
     here.cancel(int(name[2:]))
-    here.awaits(f'{name}: danger', 'normal')            # at once, and for good
+    here.awaits(f'{name}: danger', 'normal')  # at once, and for good
     here.sail(10)
     assert set(here.rows()) == others and not here.refused()
     assert set(here.standing().values()) == {'normal'}
@@ -119,7 +127,7 @@ def test_targets_are_cancelled_and_come_back_by_a_click(bridge, sea):
     assert here.rows() == {} and here.ask(topics.CANCEL_ALL) == '0 targets cancelled'
     here.click(*here.place(1))
     here.sail(3)
-    assert acquired(here) == {name: 'M'}                # the number it had
+    assert acquired(here) == {name: 'M'}  # the number it had
     assert here.standing() == {f'{name}: danger': 'active unacknowledged'}
     assert not here.tracker.failures.counts
 
@@ -132,8 +140,10 @@ def test_nothing_is_lost_by_another_estimator(bridge, sea):
     here.sail(1)
     here.ask(topics.ACKNOWLEDGE)
     here.awaits(danger, 'active acknowledged')
-    before, ships = acquired(here), {name: here.name_of(ship) for ship, name in enumerate(
-        ('meets', 'beside', 'leaves'), 1)}
+    before, ships = (
+        acquired(here),
+        {name: here.name_of(ship) for ship, name in enumerate(('meets', 'beside', 'leaves'), 1)},
+    )
     assert before == {ships['meets']: 'A', ships['beside']: 'M', ships['leaves']: 'A'}
     for name in ESTIMATORS:
         assert here.set(estimator=name, vessel_class='ship')[0].successful

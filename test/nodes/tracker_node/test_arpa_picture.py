@@ -15,8 +15,13 @@ from marine_tracker.nodes.tracker_node import TrackerNode
 
 SHIPS = [(3, 4, 180, 10), (2, 90, 0, 10), (2, 300, 0, 0)]
 SCAN_S = 60 / 22
-TRIAL = {'trial_course_deg': 60.0, 'trial_speed_kn': 12.0, 'trial_delay_min': 1.0,
-         'trial_turn_rate_deg_min': 60.0, 'trial_acceleration_mps2': 0.02}
+TRIAL = {
+    'trial_course_deg': 60.0,
+    'trial_speed_kn': 12.0,
+    'trial_delay_min': 1.0,
+    'trial_turn_rate_deg_min': 60.0,
+    'trial_acceleration_mps2': 0.02,
+}
 
 
 @pytest.fixture(scope='module')
@@ -43,8 +48,12 @@ def test_a_trial_shows_what_would_come_of_it_and_changes_nothing(bridge, sea, co
     assert float(told['countdown_min']) == pytest.approx(left / 60, abs=0.051)
     trial = TrialManoeuvre(np.radians(60), 12 * KNOT, left, np.radians(1.0), 0.02)
     safe = safe_courses(picture.motion, picture.own, trial, 0.5 * NAUTICAL_MILE, 720.0)
-    sectors = np.array([[float(end) for end in sector.split('-')]
-                        for sector in told['safe_courses_deg'].split(', ')])
+    sectors = np.array(
+        [
+            [float(end) for end in sector.split('-')]
+            for sector in told['safe_courses_deg'].split(', ')
+        ]
+    )
     assert sectors == pytest.approx(np.degrees(safe.sectors), abs=0.5) and len(sectors)
     found = trial_approach(picture.motion, picture.own, trial, 0.5 * NAUTICAL_MILE, 720.0)
     assert [row.name for row in entries] == list(here.rows())
@@ -55,7 +64,8 @@ def test_a_trial_shows_what_would_come_of_it_and_changes_nothing(bridge, sea, co
         assert float(values['tcpa_min']) == pytest.approx(tcpa / 60, abs=0.06)
         assert float(values['danger_probability']) == pytest.approx(danger, abs=0.02)
         assert (row.level == DiagnosticStatus.ERROR) == (
-            cpa < 0.5 * NAUTICAL_MILE and 0 <= tcpa < 720 or danger >= 0.5)
+            cpa < 0.5 * NAUTICAL_MILE and 0 <= tcpa < 720 or danger >= 0.5
+        )
 
     # The real picture is the core's, which knows of no trial.
     for row, cpa, tcpa in zip(here.rows().values(), picture.approach.cpa, picture.approach.tcpa):
@@ -63,7 +73,7 @@ def test_a_trial_shows_what_would_come_of_it_and_changes_nothing(bridge, sea, co
         assert row['tcpa_min'] == '' or float(row['tcpa_min']) == pytest.approx(tcpa / 60, abs=0.06)
     assert here.standing() == {f'{here.name_of(1)}: danger': 'active unacknowledged'}
     meeting = next(row for row in entries if row.name == here.name_of(1))
-    assert meeting.level == DiagnosticStatus.OK         # that course clears it
+    assert meeting.level == DiagnosticStatus.OK  # that course clears it
 
     # Live: another course; due, it counts down no further; off, the topic is empty.
     assert here.set(trial_course_deg=0.0)[0].successful
@@ -87,17 +97,19 @@ def test_a_trial_may_be_on_before_the_first_scan_and_without_own_ship(bridge, se
     here.trial(True)
     here.send(here.scans[:1])
     here.wait(lambda: len(trial) == 1)
-    entry, = trial[0].status                            # own ship was never heard
+    (entry,) = trial[0].status  # own ship was never heard
     assert entry.level == DiagnosticStatus.WARN and 'heading unknown' in entry.message
     trial.messages.clear()
     here._played = 1
     here.sail(8)
     here.wait(lambda: len(trial) == 8)
     assert len(trial[-1].status) == 1 + len(here.rows()) == 4
-    countdown = [float(here.about(message.status[0])['countdown_min'])
-                 for message in trial.messages]
+    countdown = [
+        float(here.about(message.status[0])['countdown_min']) for message in trial.messages
+    ]
     assert countdown == sorted(countdown, reverse=True) and countdown[-1] == pytest.approx(
-        1 - 9 * SCAN_S / 60, abs=0.06)
+        1 - 9 * SCAN_S / 60, abs=0.06
+    )
     assert not here.tracker.failures.counts
 
 
@@ -136,22 +148,29 @@ def test_vectors_are_true_or_relative_and_zones_are_drawn(bridge, sea):
     true = np.array([-north, north, [0, 0]])[order]
     vectors = ends(markers, 'vectors')
     assert vectors[:, 0] == pytest.approx(
-        np.array([here.place(ship) for ship in (1, 2, 3)])[order], abs=40)
+        np.array([here.place(ship) for ship in (1, 2, 3)])[order], abs=40
+    )
     assert np.diff(vectors, axis=1)[:, 0] == pytest.approx(360 * true, abs=200)
     assert not len(ends(markers, 'guard_zones')) and not len(ends(markers, 'exclusion_zones'))
 
-    here.set(vectors='relative', vector_time_min=3.0, zones='[{name: ring, kind: guard, '
-             'range_m: [900, 1000]}, {name: quay, kind: exclusion, fixed_to: ground, '
-             'corners_m: [[9000, 0], [9100, 0], [9100, 100]]}]')
+    here.set(
+        vectors='relative',
+        vector_time_min=3.0,
+        zones='[{name: ring, kind: guard, '
+        'range_m: [900, 1000]}, {name: quay, kind: exclusion, fixed_to: ground, '
+        'corners_m: [[9000, 0], [9100, 0], [9100, 100]]}]',
+    )
     here.sail(1)
     here.wait(lambda: len(markers) == 26)
     assert np.diff(ends(markers, 'vectors'), axis=1)[:, 0] == pytest.approx(
-        180 * (true - north), abs=100)
+        180 * (true - north), abs=100
+    )
     own = np.array([0, 10 * KNOT * here.last.end])
     away = np.hypot(*(ends(markers, 'guard_zones') - own).reshape(-1, 2).T)
     assert set(np.round(away, -1)) == {900, 1000}
-    corners = {tuple(corner) for side in ends(markers, 'exclusion_zones').tolist()
-               for corner in side}
+    corners = {
+        tuple(corner) for side in ends(markers, 'exclusion_zones').tolist() for corner in side
+    }
     assert corners == {(9000, 0), (9100, 0), (9100, 100)}
     assert not here.tracker.failures.counts
 
@@ -163,7 +182,8 @@ def test_two_radars_have_their_own_targets_alarms_and_commands(bridge, sea):
     danger = f'{bow.name_of(1)}: danger'
     assert bow.standing() == {danger: 'active unacknowledged'} and not len(stern.alarms)
     assert {entry.hardware_id for entry in (*bow.targets[-1].status, *bow.alarms[-1].status)} == {
-        'bow/radar'}
+        'bow/radar'
+    }
     assert stern.ask(topics.CANCEL_ALL) == '3 targets cancelled'
     for here, count in ((bow, 3), (stern, 0)):
         here.sail(1)

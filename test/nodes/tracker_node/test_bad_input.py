@@ -17,16 +17,26 @@ EPOCH_NS = 1_700_000_000 * 1_000_000_000
 
 
 def bad_plots(scan, **columns):
-    plots = scan.plots._replace(**{
-        name: np.where(np.arange(len(scan.plots.range)) == 0, value, getattr(scan.plots, name))
-        for name, value in columns.items()})
+    plots = scan.plots._replace(
+        **{
+            name: np.where(np.arange(len(scan.plots.range)) == 0, value, getattr(scan.plots, name))
+            for name, value in columns.items()
+        }
+    )
     return scan._replace(plots=plots)
 
 
-@pytest.mark.parametrize('columns, reason', [
-    ({'range': np.nan}, intake.NOT_FINITE), ({'range': np.inf}, intake.NOT_FINITE),
-    ({'range': -50.0}, intake.BAD_RANGE), ({'bearing': 7.0}, intake.BAD_BEARING),
-    ({'bearing': -np.inf}, intake.NOT_FINITE), ({'time': np.nan}, intake.NOT_FINITE)])
+@pytest.mark.parametrize(
+    'columns, reason',
+    [
+        ({'range': np.nan}, intake.NOT_FINITE),
+        ({'range': np.inf}, intake.NOT_FINITE),
+        ({'range': -50.0}, intake.BAD_RANGE),
+        ({'bearing': 7.0}, intake.BAD_BEARING),
+        ({'bearing': -np.inf}, intake.NOT_FINITE),
+        ({'time': np.nan}, intake.NOT_FINITE),
+    ],
+)
 @pytest.mark.filterwarnings('ignore:invalid value')
 def test_bad_plots_are_counted_and_the_tracks_live_on(rig, clean, columns, reason):
     here = rig()
@@ -42,8 +52,11 @@ def test_scans_out_of_time_are_counted_and_the_tracks_live_on(rig, clean):
     scans, here = clean[0], rig()
     here.play(scans[:8])
     before = here.names()
-    for wrong, reason in ((0.0, intake.REPEATED), (-30.0, intake.WENT_BACK),
-                          (3600.0, intake.JUMPED_AHEAD)):
+    for wrong, reason in (
+        (0.0, intake.REPEATED),
+        (-30.0, intake.WENT_BACK),
+        (3600.0, intake.JUMPED_AHEAD),
+    ):
         scan = scans[7]
         here.radar.publish(convert.plots_to_cloud(scan, here.stamp(scan.start + wrong)))
         here.wait(lambda reason=reason: here.told(reason) == 1)
@@ -61,10 +74,11 @@ def test_missed_revolutions_are_counted(rig, clean):
 
 def broken_clouds(scan):
     def cloud(**changes):
-        message = convert.plots_to_cloud(scan, EPOCH_NS + 10 ** 15)
+        message = convert.plots_to_cloud(scan, EPOCH_NS + 10**15)
         for name, value in changes.items():
             setattr(message, name, value)
         return message
+
     fields = cloud().fields
     mistyped = cloud()
     mistyped.fields[3].datatype = PointField.UINT16
@@ -75,7 +89,7 @@ def broken_clouds(scan):
         (cloud(data=cloud().data[:-9]), convert.TRUNCATED),
         (cloud(data=array.array('B')), convert.TRUNCATED),
         (cloud(row_step=3), convert.BAD_LAYOUT),
-        (cloud(width=2 ** 31), convert.BAD_LAYOUT),
+        (cloud(width=2**31), convert.BAD_LAYOUT),
     ]
 
 
@@ -100,10 +114,11 @@ def test_random_bytes_do_not_stop_the_node(rig, clean):
     counts = here.tracker.inputs[0].bad.counts
     for _ in range(150):
         message = convert.plots_to_cloud(clean[0][8], here.stamp(clean[0][7].start))
-        message.data = array.array('B', rng.bytes(
-            len(message.data) - int(rng.choice([0, 0, 1, 28]))))
-        message.header.stamp.sec = int(rng.integers(-2 ** 31, 2 ** 31))
-        message.header.stamp.nanosec = int(rng.integers(0, 2 ** 32))
+        message.data = array.array(
+            'B', rng.bytes(len(message.data) - int(rng.choice([0, 0, 1, 28])))
+        )
+        message.header.stamp.sec = int(rng.integers(-(2**31), 2**31))
+        message.header.stamp.nanosec = int(rng.integers(0, 2**32))
         seen = counts.total()
         here.radar.publish(message)
         here.wait(lambda seen=seen: counts.total() > seen)
@@ -122,9 +137,15 @@ def test_a_hundred_thousand_plots_in_one_message_are_cut_to_the_strongest(rig, c
     here = rig(max_plots=500)
     here.play(clean[0][:8])
     before = here.names()
-    flood = append(scan.plots._replace(amplitude=scan.plots.amplitude + 200), PolarPlots(
-        rng.uniform(scan.start, scan.end, count), rng.uniform(50, 14e3, count),
-        rng.uniform(0, 2 * np.pi, count), rng.uniform(0, 30, count)))
+    flood = append(
+        scan.plots._replace(amplitude=scan.plots.amplitude + 200),
+        PolarPlots(
+            rng.uniform(scan.start, scan.end, count),
+            rng.uniform(50, 14e3, count),
+            rng.uniform(0, 2 * np.pi, count),
+            rng.uniform(0, 30, count),
+        ),
+    )
     here.play([scan._replace(plots=flood), clean[0][9]])
     assert here.told(intake.TOO_MANY) == count + len(scan.plots.time) - 500
     assert len(before) == 6 and set(before) <= set(here.names())
@@ -137,10 +158,10 @@ def test_an_exception_in_a_callback_is_counted_not_thrown(rig, clean, monkeypatc
 
     def fail(*_):
         raise RuntimeError('on purpose')
+
     with monkeypatch.context() as patch:
         patch.setattr(here.tracker._tracker, 'step', fail)
-        here.radar.publish(convert.plots_to_cloud(
-            clean[0][8], here.stamp(clean[0][8].start)))
+        here.radar.publish(convert.plots_to_cloud(clean[0][8], here.stamp(clean[0][8].start)))
         here.wait(lambda: here.tracker.failures.counts.total() == 1)
     here.play(clean[0][9:11])
     assert len(before) == 6 and here.names() == before
@@ -153,8 +174,9 @@ def with_speeds(scan, first):
     return scan._replace(plots=scan.plots._replace(radial_speed=speed))
 
 
-@pytest.mark.parametrize('speed, reason', [
-    (np.nan, intake.SPEED_NOT_FINITE), (1e6, intake.SPEED_TOO_HIGH)])
+@pytest.mark.parametrize(
+    'speed, reason', [(np.nan, intake.SPEED_NOT_FINITE), (1e6, intake.SPEED_TOO_HIGH)]
+)
 def test_bad_radial_speeds_are_counted_and_their_plots_kept(rig, clean, speed, reason):
     here = rig()
     here.play(clean[0][:3])

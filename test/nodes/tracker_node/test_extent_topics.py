@@ -11,8 +11,16 @@ from marine_tracker.nodes.targets_message import COLUMNS
 from marine_tracker.parameters import TrackerParameters, from_mapping
 from marine_tracker.simulation import radar, scenario
 
-TOLD = ('length_m', 'length_sd_m', 'beam_max_m', 'heading_deg', 'heading_sd_deg', 'heading_from',
-        'hull_clearance_nm', 'extent_method')
+TOLD = (
+    'length_m',
+    'length_sd_m',
+    'beam_max_m',
+    'heading_deg',
+    'heading_sd_deg',
+    'heading_from',
+    'hull_clearance_nm',
+    'extent_method',
+)
 
 
 def first_scans(name, count, seed=1):
@@ -27,9 +35,20 @@ def hulls():
 
 
 def given(parameters, **more):
-    return {**{name: getattr(parameters, name) for name in (
-        'range_sigma_m', 'bearing_sigma_deg', 'max_range_m', 'range_resolution_m',
-        'beam_width_deg', 'glint_sigma_m')}, **more}
+    return {
+        **{
+            name: getattr(parameters, name)
+            for name in (
+                'range_sigma_m',
+                'bearing_sigma_deg',
+                'max_range_m',
+                'range_resolution_m',
+                'beam_width_deg',
+                'glint_sigma_m',
+            )
+        },
+        **more,
+    }
 
 
 def polygons(message):
@@ -55,7 +74,7 @@ def test_targets_and_markers_show_hulls(rig, hulls):
     own = chosen.own_ship_at(end)
     lengths = {}
     for row in rows.values():
-        assert tuple(row)[-len(TOLD):] == TOLD
+        assert tuple(row)[-len(TOLD) :] == TOLD
         offset = truth.position - own.position[0]
         bearing = np.degrees(np.arctan2(*offset.T)) % 360
         ship = int(np.abs((bearing - float(row['bearing_deg']) + 180) % 360 - 180).argmin())

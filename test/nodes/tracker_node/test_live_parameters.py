@@ -19,12 +19,19 @@ def test_a_live_change_keeps_every_track(rig, clean):
     here.play(clean[0][:12])
     before, ids = here.names(), here.tracker._memory.tracks.id.tolist()
     assert len(before) == 6
-    for k, (name, value) in enumerate((
-            ('estimator', 'cs_kalman'), ('vessel_class', 'small_craft'), ('estimator', 'imm'),
-            ('gate_probability', 0.99), ('confirm_hits', 5), ('max_target_speed_mps', 30.0))):
+    for k, (name, value) in enumerate(
+        (
+            ('estimator', 'cs_kalman'),
+            ('vessel_class', 'small_craft'),
+            ('estimator', 'imm'),
+            ('gate_probability', 0.99),
+            ('confirm_hits', 5),
+            ('max_target_speed_mps', 30.0),
+        )
+    ):
         assert here.tracker.set_parameters([Parameter(name, value=value)])[0].successful
         assert getattr(here.tracker._tracker.parameters, name) == value
-        here.play(clean[0][12 + k:13 + k])
+        here.play(clean[0][12 + k : 13 + k])
         assert here.names() == before
         assert all(entry.message == 'TRACKING' for entry in here.targets[-1].status)
     assert here.tracker._memory.tracks.id.tolist()[:6] == ids[:6]
@@ -35,7 +42,7 @@ def test_a_live_change_keeps_every_track(rig, clean):
 
 def test_diagnostics_come_each_second_with_names_and_hardware_ids(rig, clean):
     here = rig()
-    here.shift_ns = time.time_ns()          # else the plots come late, which would be told
+    here.shift_ns = time.time_ns()  # else the plots come late, which would be told
     diagnostics = here.listen(DiagnosticArray, topics.DIAGNOSTICS)
     here.wait(lambda: len(diagnostics) >= 1)
     first = {entry.name: entry for entry in diagnostics[0].status}
@@ -51,8 +58,13 @@ def test_diagnostics_come_each_second_with_names_and_hardware_ids(rig, clean):
     assert values['scans taken'] == '8' and values['samples'] == '8'
     assert values['confirmed'] == '6'
     assert float(values['processing_p99_ms']) > 0
-    for reason in (*convert.CLOUD_REASONS, *intake.PLOT_REASONS, *intake.SCAN_REASONS,
-                   *intake.OWN_REASONS, MISSED):
+    for reason in (
+        *convert.CLOUD_REASONS,
+        *intake.PLOT_REASONS,
+        *intake.SCAN_REASONS,
+        *intake.OWN_REASONS,
+        MISSED,
+    ):
         assert values[reason] == '0'
     here.radar.publish(convert.plots_to_cloud(clean[0][7], here.stamp(clean[0][7].start)))
     here.wait(lambda: diagnostics[-1].status[0].level == DiagnosticStatus.WARN)
@@ -60,14 +72,16 @@ def test_diagnostics_come_each_second_with_names_and_hardware_ids(rig, clean):
 
 
 def test_a_radar_that_publishes_best_effort_is_heard(rig, clean, graph):
-    here = rig()            # its subscriptions asked for reliable, for everyone was
+    here = rig()  # its subscriptions asked for reliable, for everyone was
     driver = here.other.create_publisher(PointCloud2, topics.PLOTS, topics.best_effort())
     here.other.destroy_publisher(here.radar)
-    scans = iter(range(10 ** 6))
+    scans = iter(range(10**6))
 
     def heard():
         k = next(scans)
-        driver.publish(convert.plots_to_cloud(
-            clean[0][0], here.stamp(clean[0][0].start + 0.02 * k)))
+        driver.publish(
+            convert.plots_to_cloud(clean[0][0], here.stamp(clean[0][0].start + 0.02 * k))
+        )
         return here.tracker.inputs[0].taken > 0
+
     here.wait(heard)

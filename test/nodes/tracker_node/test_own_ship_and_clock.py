@@ -31,15 +31,19 @@ def test_tracks_live_through_a_clock_that_was_set(rig, clean, jump_s):
     assert stamp == pytest.approx(here.stamp(scans[19].end), abs=2e6)
 
 
-def test_own_ship_that_was_never_heard_is_at_the_origin_and_that_is_said(
-        rig, clean):
+def test_own_ship_that_was_never_heard_is_at_the_origin_and_that_is_said(rig, clean):
     here = rig()
     diagnostics = here.listen(DiagnosticArray, topics.DIAGNOSTICS)
     here.send(clean[0][:8])
     assert len(here.names()) == 6
-    said = here.wait(lambda: [
-        entry for message in diagnostics.messages for entry in message.status
-        if entry.name == 'tracker: own ship' and entry.message == intake.OWN_NEVER_HEARD])
+    said = here.wait(
+        lambda: [
+            entry
+            for message in diagnostics.messages
+            for entry in message.status
+            if entry.name == 'tracker: own ship' and entry.message == intake.OWN_NEVER_HEARD
+        ]
+    )
     assert said[0].level == DiagnosticStatus.WARN
 
 
@@ -48,10 +52,14 @@ def test_own_ship_gone_silent_stands_where_it_was_and_that_is_said(rig, clean):
     diagnostics = here.listen(DiagnosticArray, topics.DIAGNOSTICS)
     here.play(clean[0][:4])
     here.send(clean[0][4:10])
-    here.wait(lambda: any(
-        entry.message == intake.OWN_SILENT and entry.level == DiagnosticStatus.WARN
-        for message in diagnostics.messages for entry in message.status
-        if entry.name == 'tracker: own ship'))
+    here.wait(
+        lambda: any(
+            entry.message == intake.OWN_SILENT and entry.level == DiagnosticStatus.WARN
+            for message in diagnostics.messages
+            for entry in message.status
+            if entry.name == 'tracker: own ship'
+        )
+    )
     here.play(clean[0][10:12])
     here.wait(lambda: diagnostics[-1].status[2].level == DiagnosticStatus.OK)
 
@@ -71,9 +79,15 @@ def test_own_ship_that_teleports_is_not_believed(rig, clean):
 
 def test_a_recording_whose_plots_share_one_time_has_no_sweep(rig, clean):
     here = rig()
-    scans = [Scan(scan.end, scan.end,
-                  scan.plots._replace(time=np.full(len(scan.plots.time), scan.end)),
-                  scan.own_ship) for scan in clean[0][:10]]
+    scans = [
+        Scan(
+            scan.end,
+            scan.end,
+            scan.plots._replace(time=np.full(len(scan.plots.time), scan.end)),
+            scan.own_ship,
+        )
+        for scan in clean[0][:10]
+    ]
     here.play(scans)
     assert len(here.names()) == 6
     stamps = {convert.nanoseconds(here.targets[-1].header.stamp)}
@@ -83,8 +97,12 @@ def test_a_recording_whose_plots_share_one_time_has_no_sweep(rig, clean):
 def test_a_ship_at_anchor_seen_from_a_moving_own_ship_stands_still(rig, clean):
     here = rig()
     here.play(clean[0][:25])
-    slowest = min(float(pair.value) for entry in here.targets[-1].status
-                  for pair in entry.values if pair.key == 'speed_kn')
+    slowest = min(
+        float(pair.value)
+        for entry in here.targets[-1].status
+        for pair in entry.values
+        if pair.key == 'speed_kn'
+    )
     assert slowest < 1.5
 
 
@@ -92,6 +110,11 @@ def test_use_sim_time_without_a_clock_is_said(graph, node_helpers):
     wait, listener = node_helpers
     node = graph.make(TrackerNode, use_sim_time=True)
     ears = listener(graph.bystander(), DiagnosticArray, topics.DIAGNOSTICS)
-    wait(lambda: any('/clock is silent' in entry.message
-                     for message in ears.messages for entry in message.status))
+    wait(
+        lambda: any(
+            '/clock is silent' in entry.message
+            for message in ears.messages
+            for entry in message.status
+        )
+    )
     assert not node.failures.counts

@@ -41,11 +41,14 @@ def test_what_is_published_is_what_the_core_says(rig, clean):
         later = core.extrapolate(report.tracks, report.time + parameters.scan_period_s)
         expected += [(report.tracks.number[k], estimate, k) for k in chosen]
         further += [(report.tracks.number[k], later, k) for k in chosen]
-        rows += [(report.tracks.id[k], report.tracks.status[k], estimate, k)
-                 for k in range(len(report.tracks.id))]
+        rows += [
+            (report.tracks.id[k], report.tracks.status[k], estimate, k)
+            for k in range(len(report.tracks.id))
+        ]
     here.play(scans[:15])
-    here.wait(lambda: len(tracks) >= len(expected) and len(ahead) >= len(expected)
-              and len(cloud) >= 15)
+    here.wait(
+        lambda: len(tracks) >= len(expected) and len(ahead) >= len(expected) and len(cloud) >= 15
+    )
     assert len(expected) > 50
     for got, wanted in ((tracks, expected), (ahead, further)):
         assert len(got) == len(wanted)
@@ -58,9 +61,11 @@ def test_what_is_published_is_what_the_core_says(rig, clean):
             assert position == pytest.approx(estimate.position[k], abs=0.05)
             assert velocity == pytest.approx(estimate.velocity[k], abs=0.01)
             assert message.pose.covariance.reshape(6, 6)[:2, :2] == pytest.approx(
-                estimate.covariance[k, :2, :2], rel=1e-3, abs=1e-2)
-    got = np.concatenate([np.frombuffer(message.data, convert.TRACK_TYPE)
-                          for message in cloud.messages])
+                estimate.covariance[k, :2, :2], rel=1e-3, abs=1e-2
+            )
+    got = np.concatenate(
+        [np.frombuffer(message.data, convert.TRACK_TYPE) for message in cloud.messages]
+    )
     assert got['id'].tolist() == [id_ for id_, *_ in rows]
     assert got['status'].tolist() == [status for _, status, *_ in rows]
     assert {TENTATIVE, CONFIRMED} <= set(got['status'].tolist())
@@ -68,12 +73,13 @@ def test_what_is_published_is_what_the_core_says(rig, clean):
         assert [row['x'], row['y']] == pytest.approx(estimate.position[k], abs=0.05)
         assert [row['vx'], row['vy']] == pytest.approx(estimate.velocity[k], abs=0.01)
         assert [row['xx'], row['xvx'], row['vyvy']] == pytest.approx(
-            estimate.covariance[k][[0, 0, 3], [0, 2, 3]], rel=1e-3, abs=1e-2)
+            estimate.covariance[k][[0, 0, 3], [0, 2, 3]], rel=1e-3, abs=1e-2
+        )
 
 
 def printed(value, unit, digits):
     """A printed figure may be off by half its last digit, and what the wire's float32 leaves."""
-    return pytest.approx(value, abs=0.51 * 10.0 ** -digits + 1e-4, nan_ok=True)
+    return pytest.approx(value, abs=0.51 * 10.0**-digits + 1e-4, nan_ok=True)
 
 
 def in_danger(picture):
@@ -89,18 +95,23 @@ def test_targets_read_like_a_table_of_what_the_core_says(rig, clean, core):
     message = here.targets[-1]
     assert [entry.name for entry in message.status] == [f'TT{n:02d}' for n in range(1, 7)]
     assert convert.nanoseconds(message.header.stamp) == pytest.approx(
-        here.stamp(scans[-1].end), abs=1e6)
+        here.stamp(scans[-1].end), abs=1e6
+    )
     *_, picture = core(scans, np.radians(20), here.tracker)
     assert picture.targets.number.tolist() == [1, 2, 3, 4, 5, 6]
     compared, danger = 0, in_danger(picture)
     assert 1 <= danger.sum() < 6
     for k, (entry, values) in enumerate(zip(message.status, here.rows().values())):
         assert (values['status'], values['level']) == (
-            'TRACKING', DiagnosticStatus.ERROR if danger[k] else DiagnosticStatus.OK)
+            'TRACKING',
+            DiagnosticStatus.ERROR if danger[k] else DiagnosticStatus.OK,
+        )
         assert entry.hardware_id == 'radar'
         for key, unit, field, size, digits in MEASURED:
-            for name, value in ((f'{key}_{unit}', getattr(picture.approach, field)),
-                                (f'{key}_sd_{unit}', getattr(picture.approach, f'{field}_sigma'))):
+            for name, value in (
+                (f'{key}_{unit}', getattr(picture.approach, field)),
+                (f'{key}_sd_{unit}', getattr(picture.approach, f'{field}_sigma')),
+            ):
                 text, number = values[name], value[k] / size
                 assert (text == '') == bool(np.isnan(number)), name
                 if text:
@@ -108,12 +119,17 @@ def test_targets_read_like_a_table_of_what_the_core_says(rig, clean, core):
                     assert float(text) == printed(number, unit, digits), name
                     compared += 1
         assert float(values['danger_probability']) == printed(
-            picture.approach.danger_probability[k], '', 2)
+            picture.approach.danger_probability[k], '', 2
+        )
         assert values['motion'] == MEMORY_NAMES[picture.motion.memory[k]]
         assert float(values['motion_since_min']) == printed(
-            (picture.time - picture.motion.since[k]) / 60, 'min', 1)
+            (picture.time - picture.motion.since[k]) / 60, 'min', 1
+        )
         assert (values['acquired'], values['swap_risk'], values['stabilised']) == (
-            'A', '', 'ground')
+            'A',
+            '',
+            'ground',
+        )
         assert values['estimator'] == 'gwnn' and int(values['hits_in_10']) >= 9
     assert compared >= 6 * 16
     assert len(re.fullmatch(r'\d+\.(\d+)', values['range_nm'])[1]) == 3
@@ -124,8 +140,11 @@ def test_a_target_that_vanishes_coasts_and_is_told_lost_once(rig, clean):
     markers = here.listen(MarkerArray, topics.MARKERS, 50)
     here.play(clean[0][:15])
     here.wait(lambda: len(markers) >= len(here.targets))
-    labels = {marker.id for marker in markers[-1].markers
-              if marker.ns == 'labels' and marker.action == Marker.ADD}
+    labels = {
+        marker.id
+        for marker in markers[-1].markers
+        if marker.ns == 'labels' and marker.action == Marker.ADD
+    }
     assert labels == {1, 2, 3, 4, 5, 6}
     empty = PolarPlots(*(np.empty(0) for _ in range(4)))
     here.play([scan._replace(plots=empty) for scan in clean[0][15:]])
@@ -139,8 +158,12 @@ def test_a_target_that_vanishes_coasts_and_is_told_lost_once(rig, clean):
         assert ('COASTING', DiagnosticStatus.WARN) in seen[name]
         assert seen[name][-1] == ('LOST', DiagnosticStatus.STALE)
     here.wait(lambda: len(markers) >= len(here.targets))
-    deleted = [marker.id for message in markers.messages for marker in message.markers
-               if marker.action == Marker.DELETE]
+    deleted = [
+        marker.id
+        for message in markers.messages
+        for marker in message.markers
+        if marker.action == Marker.DELETE
+    ]
     assert sorted(deleted) == [1, 2, 3, 4, 5, 6]
     assert {len(marker.points) for marker in markers[-1].markers} == {0}
 
@@ -165,14 +188,16 @@ def test_markers_show_symbols_vectors_ellipses_and_past_positions(rig, clean, co
     ellipses = kinds['ellipses'].reshape(6, -1, 2)
     for corner, middle, covariance in zip(ellipses, motion.position, motion.covariance):
         offset = corner - middle
-        assert np.einsum('ci,ij,cj->c', offset, np.linalg.inv(covariance[:2, :2]),
-                         offset) == pytest.approx(4.0, rel=0.02)
+        assert np.einsum(
+            'ci,ij,cj->c', offset, np.linalg.inv(covariance[:2, :2]), offset
+        ) == pytest.approx(4.0, rel=0.02)
     past = picture.past.position[np.isin(picture.past.id, picture.targets.id)].reshape(-1, 2)
     past = past[np.isfinite(past[:, 0])]
-    assert len(past) == 6 * 3                           # 109 s, one each 30 s
+    assert len(past) == 6 * 3  # 109 s, one each 30 s
     assert np.sort(kinds['past_positions'], 0) == pytest.approx(np.sort(past, 0), abs=0.5)
     assert {marker.text for marker in markers[-1].markers if marker.ns == 'labels'} == {
-        f'TT{n:02d}' for n in range(1, 7)}
+        f'TT{n:02d}' for n in range(1, 7)
+    }
 
 
 def points(marker):
@@ -205,8 +230,14 @@ def test_the_hf_radars_ships_are_targets_after_some_minutes(rig):
     here.play(scans)
     truth = loaded.truth_at(scans[-1].end)
     rows = here.rows().values()
-    place = np.array([float(row['range_nm']) * NAUTICAL_MILE * unit_vector(
-        np.radians(float(row['bearing_deg']))) for row in rows])
+    place = np.array(
+        [
+            float(row['range_nm'])
+            * NAUTICAL_MILE
+            * unit_vector(np.radians(float(row['bearing_deg'])))
+            for row in rows
+        ]
+    )
     apart = np.linalg.norm(place[:, None] - truth.position, axis=-1)
     assert (apart.min(0) < 6000).sum() >= 4 and len(place) <= 8
     assert not here.tracker.failures.counts
