@@ -1,4 +1,4 @@
-"""config/*.yaml and doc/parameters.md, written from the dataclasses of parameters.py.
+"""config/*.yaml and doc/parameters.md, written from the dataclasses of parameters/.
 
 `python -m marine_tracker.parameter_files` writes them into the source tree.
 """

@@ -1,4 +1,4 @@
-"""ROS parameters from the dataclasses of parameters.py, and back."""
+"""ROS parameters from the dataclasses of parameters/, and back."""
 
 import dataclasses
 from collections.abc import Callable

@@ -1,0 +1,37 @@
+"""Every parameter of every node, described once: default, unit, limits, meaning.
+
+ROS descriptors, the YAML files in config/, doc/parameters.md and the checks of the command line
+all derive from the frozen dataclasses here. A wrong value raises ValueError at construction and
+names the parameter, the value and the limit.
+"""
+
+from .arpa import ArpaParameters
+from .description import from_mapping, from_mappings, read_yaml_mapping
+from .sources_and_outputs import (
+    NmeaOutputParameters,
+    RadarSimulatorParameters,
+    RecordingPlayerParameters,
+)
+from .tracker import EXTENTS, GLINT_SIGMA, VESSEL_CLASSES, TrackerParameters
+
+NODES: dict[str, tuple[type, ...]] = {
+    'tracker': (TrackerParameters, ArpaParameters),
+    'radar_simulator': (RadarSimulatorParameters,),
+    'recording_player': (RecordingPlayerParameters,),
+    'nmea_output': (NmeaOutputParameters,),
+}
+
+__all__ = [
+    'EXTENTS',
+    'GLINT_SIGMA',
+    'NODES',
+    'VESSEL_CLASSES',
+    'ArpaParameters',
+    'NmeaOutputParameters',
+    'RadarSimulatorParameters',
+    'RecordingPlayerParameters',
+    'TrackerParameters',
+    'from_mapping',
+    'from_mappings',
+    'read_yaml_mapping',
+]

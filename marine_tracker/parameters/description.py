@@ -1,0 +1,95 @@
+"""How a parameter is described and checked, and how parameters are read from mappings."""
+
+import dataclasses
+import difflib
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeVar
+
+import yaml
+
+
+def parameter(default, text, *, unit='', low=None, high=None, choices=(), live=False):
+    """A dataclass field with its description.
+
+    low, high  inclusive limits of a number; choices  the values a string may take;
+    live       may be changed while the node runs.
+    """
+    return dataclasses.field(
+        default=default,
+        metadata={
+            'text': text,
+            'unit': unit,
+            'low': low,
+            'high': high,
+            'choices': choices,
+            'live': live,
+        },
+    )
+
+
+def check(parameters) -> None:
+    """Raise ValueError for the first field with a wrong type, or outside its limits or choices."""
+    for field in dataclasses.fields(parameters):
+        kind: Any = field.type
+        value, about = getattr(parameters, field.name), field.metadata
+        if kind is float and type(value) is int:
+            value = float(value)
+            object.__setattr__(parameters, field.name, value)
+        if value is False and 'off' in about['choices']:  # how YAML reads it
+            value = 'off'
+            object.__setattr__(parameters, field.name, value)
+        if type(value) is not kind:
+            raise ValueError(
+                f'parameter {field.name} is {value!r}, a {type(value).__name__}; '
+                f'it must be a {kind.__name__}'
+            )
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ValueError(f'parameter {field.name} is {value}; it must be finite')
+        low, high = about['low'], about['high']
+        if (low is not None and value < low) or (high is not None and value > high):
+            raise ValueError(
+                f'parameter {field.name} is {value:g} {about["unit"]}'.rstrip()
+                + f'; it must be between {low:g} and {high:g}'
+            )
+        if about['choices'] and value not in about['choices']:
+            raise ValueError(
+                f'parameter {field.name} is {value!r}; '
+                f'it must be one of {", ".join(about["choices"])}'
+            )
+
+
+P = TypeVar('P')
+
+
+def from_mapping(kind: type[P], values: Mapping[str, Any]) -> P:
+    """A parameter object from a mapping; an unknown key is an error that names its neighbours."""
+    return from_mappings((kind,), values)[0]
+
+
+def from_mappings(kinds: Sequence[type], values: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Parameter objects of several kinds, whose names all differ, from one mapping."""
+    known = {field.name: kind for kind in kinds for field in dataclasses.fields(kind)}
+    for name in values:
+        if name not in known:
+            near = difflib.get_close_matches(str(name), known, 1)
+            hint = f'; did you mean {near[0]}?' if near else ''
+            raise ValueError(f'unknown parameter {name}{hint}')
+    return tuple(
+        kind(**{name: value for name, value in values.items() if known[name] is kind})
+        for kind in kinds
+    )
+
+
+def read_yaml_mapping(path) -> dict[str, Any]:
+    """A YAML file that holds one mapping (empty counts as none); errors name the file."""
+    with open(path) as file:
+        try:
+            values = yaml.safe_load(file)
+        except yaml.YAMLError as error:
+            raise ValueError(f'{path} is not YAML: {error}') from error
+    if values is None:
+        return {}
+    if not isinstance(values, dict):
+        raise ValueError(f'{path} holds a {type(values).__name__}; it must hold a mapping')
+    return values

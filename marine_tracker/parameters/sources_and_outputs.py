@@ -1,0 +1,92 @@
+"""The parameters of the nodes beside the tracker: simulator, player, NMEA output."""
+
+from dataclasses import dataclass
+
+from .description import check, parameter
+
+
+@dataclass(frozen=True)
+class RadarSimulatorParameters:
+    """The radar simulator node's parameters; what the radar is stands in the scenario file."""
+
+    scenario: str = parameter('paper_track', 'A shipped scenario by name, or a scenario file.')
+    rate: float = parameter(
+        1.0,
+        'Simulated seconds in a second; other than 1 needs use_sim_time in the other nodes.',
+        low=0.01,
+        high=1000.0,
+    )
+    seed: int = parameter(
+        1, 'Seed of every random number: same seed, same plots.', low=0, high=2**31 - 1
+    )
+    begin_at_s: float = parameter(
+        0.0,
+        'Stamp at which the scenario begins: two radars of one scene have the same, and one '
+        'that starts later leaves out what is past. 0: when the node starts.',
+        unit='s',
+        low=0.0,
+        high=1e10,
+    )
+    loop: bool = parameter(False, 'Begin again when the scenario has ended.')
+
+    def __post_init__(self):
+        check(self)
+
+
+@dataclass(frozen=True)
+class RecordingPlayerParameters:
+    """The recording player node's parameters."""
+
+    folder: str = parameter('', 'Folder of a recording: plots.csv, own_ship.csv, truth.csv.')
+    rate: float = parameter(
+        1.0,
+        'Recorded seconds in a second; other than 1 needs use_sim_time in the other nodes.',
+        low=0.01,
+        high=1000.0,
+    )
+    loop: bool = parameter(False, 'Begin again when the recording has ended.')
+
+    def __post_init__(self):
+        check(self)
+
+
+@dataclass(frozen=True)
+class NmeaOutputParameters:
+    """The NMEA output node's parameters."""
+
+    sentences: str = parameter(
+        'RMC HDT OSD TTM',
+        'Sentences to send, of RMC, HDT, OSD, RSD, TTM, TLL. OpenCPN wants no '
+        'TLL beside TTM: it would reckon course and speed anew from it.',
+    )
+    udp: str = parameter(
+        '127.0.0.1:10110',
+        'Where each sentence is sent as a datagram: host:port, several '
+        'separated by blanks, broadcast addresses too. Empty: nowhere.',
+    )
+    tcp: str = parameter(
+        '', 'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks. Empty: no server.'
+    )
+    signalk_udp: str = parameter(
+        '', 'Where Signal K deltas are sent as datagrams, as for udp. Empty: nowhere.'
+    )
+    talker: str = parameter('RA', 'Talker of OSD, RSD, TTM and TLL.')
+    own_ship_talker: str = parameter('II', 'Talker of RMC and HDT.')
+    own_ship_period_s: float = parameter(
+        1.0,
+        'RMC and HDT come with every scan, and at least this often.',
+        unit='s',
+        low=0.1,
+        high=60.0,
+    )
+    range_scale_nm: float = parameter(
+        6.0, 'Range scale that RSD tells.', unit='NM', low=0.125, high=120.0
+    )
+    origin: str = parameter(
+        '',
+        'Latitude and longitude in degrees of the origin of `map`, as "54.1 10.9". Empty: own '
+        'ship is where own_ship/fix says.',
+    )
+
+    def __post_init__(self):
+        check(self)
