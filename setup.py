@@ -36,6 +36,7 @@ setup(
         'PyWavelets>=1.4',
         'PyYAML>=6.0',
         'pynmea2>=1.19',
+        'pyproj>=3.4',
         'rich>=13.3',
         'scipy>=1.11.4',
     ],

@@ -114,8 +114,7 @@ class NmeaOutputNode(RunnableNode):
         if 'TTM' in self._wanted:
             lines += nmea.ttm(now.targets, seconds, p.talker)
         latitude, longitude = self._own.place(
-            self._own.position(time_ns)
-            + now.targets.range[:, None] * unit_vector(now.targets.bearing)
+            time_ns, now.targets.range[:, None] * unit_vector(now.targets.bearing)
         )
         if 'TLL' in self._wanted:
             lines += nmea.tll(now.targets, latitude, longitude, seconds, p.talker)
