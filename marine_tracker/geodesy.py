@@ -80,9 +80,9 @@ class LocalFrame:
 
 
 def _each(solve, *values: ArrayLike) -> list[Array]:
-    """What solve gives for the values, broadcast; arrays even for plain numbers."""
+    """What solve gives for the values, broadcast; numpy's numbers for plain ones."""
     return [
-        np.asarray(one)
+        np.asarray(one)[()]
         for one in solve(*(np.array(value, float) for value in np.broadcast_arrays(*values)))
     ]
 
