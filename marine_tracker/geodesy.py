@@ -25,10 +25,9 @@ def _earth():
 
 
 def wrap_longitude(longitude):
-    """The same longitude [...] in [-180, 180) deg, to the last digit; nan for what is infinite."""
-    with np.errstate(invalid='ignore'):
-        turned = np.fmod(longitude, 360.0)
-    return turned - 360.0 * (turned >= 180.0) + 360.0 * (turned < -180.0)
+    """The same longitude [...] in [-180, 180) deg."""
+    turned = longitude % 360.0
+    return turned - 360.0 * (turned >= 180.0)
 
 
 @dataclass(frozen=True)

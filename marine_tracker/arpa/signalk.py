@@ -50,7 +50,7 @@ def deltas(
         targets.status.tolist(),
         targets.name.tolist(),
         np.asarray(latitude).tolist(),
-        wrap_longitude(longitude).tolist(),
+        wrap_longitude(np.asarray(longitude)).tolist(),
         *(column.tolist() for column in targets[-4:]),
     ):
         speed, course, cpa, tcpa = figures
