@@ -144,12 +144,12 @@ class OwnShipInput:
         if self.time_ns is None:
             return OwnShipData()
         speed, course = to_range_bearing(self._velocity)
-        latitude, longitude = self.place(time_ns)
+        latitude, longitude = self._place(time_ns)
         return OwnShipData(
             float(latitude), float(longitude), float(speed), float(course), self._heading
         )
 
-    def place(self, time_ns: int, offset=(0.0, 0.0)) -> tuple[Array, Array]:
+    def target_places(self, time_ns: int, offset) -> tuple[Array, Array]:
         """Latitude and longitude [...] deg at offsets [..., 2] m from own ship; nan if not known.
 
         The offset is laid off from own ship over the Earth, with y true north there, and not in
@@ -158,12 +158,14 @@ class OwnShipInput:
         far own ship is from the origin. At the origin both ways are the same; a target 10 NM off
         own ship, who is 22 NM east of the origin at 54 N, would stand 160 m aside in `map`.
         """
-        own = (
-            (np.nan, np.nan)
-            if self.anchor is None
-            else self.anchor.frame.to_geodetic(self.position(time_ns) - self.anchor.position)
-        )
+        own = self._place(time_ns)
         if not np.isfinite(own).all():
             nowhere = np.full(np.shape(offset)[:-1], np.nan)
             return nowhere, nowhere
         return LocalFrame(*own).to_geodetic(offset)
+
+    def _place(self, time_ns: int) -> tuple[Array, Array]:
+        """Own ship's latitude and longitude, deg; nan if not known."""
+        if self.anchor is None:
+            return np.array(np.nan), np.array(np.nan)
+        return self.anchor.frame.to_geodetic(self.position(time_ns) - self.anchor.position)

@@ -113,7 +113,7 @@ class NmeaOutputNode(RunnableNode):
             lines.append(nmea.rsd(p.range_scale_nm * NAUTICAL_MILE, talker=p.talker))
         if 'TTM' in self._wanted:
             lines += nmea.ttm(now.targets, seconds, p.talker)
-        latitude, longitude = self._own.place(
+        latitude, longitude = self._own.target_places(
             time_ns, now.targets.range[:, None] * unit_vector(now.targets.bearing)
         )
         if 'TLL' in self._wanted:
