@@ -226,17 +226,20 @@ class Bridge(Rig):
         self.wait(lambda: self.heard_clicks() > before)
 
     def heard_clicks(self):
-        desk = self.tracker._desk
-        return len(desk._memory.acquisition.clicks.since) + desk.refused.counts.total()
+        operator = self.tracker._operator
+        return len(operator.memory.arpa.acquisition.clicks.since) + operator.refused.counts.total()
 
     def cancel(self, number):
-        desk = self.tracker._desk
-        before, refused = len(desk._memory.acquisition.targets.id), desk.refused.counts.total()
+        operator = self.tracker._operator
+        before, refused = (
+            len(operator.memory.arpa.acquisition.targets.id),
+            operator.refused.counts.total(),
+        )
         self.say(UInt32, topics.CANCEL, UInt32(data=number))
         self.wait(
             lambda: (
-                len(desk._memory.acquisition.targets.id) < before
-                or desk.refused.counts.total() > refused
+                len(operator.memory.arpa.acquisition.targets.id) < before
+                or operator.refused.counts.total() > refused
             )
         )
 
@@ -255,7 +258,7 @@ class Bridge(Rig):
         return answer.message
 
     def refused(self):
-        return self.tracker._desk.refused.counts.total()
+        return self.tracker._operator.refused.counts.total()
 
     def standing(self):
         """The alarms of the last message as state by name."""
