@@ -76,7 +76,7 @@ class Seen(NamedTuple):
 
 
 class Extents:
-    """The pure core: parameters in, no state of its own. With extent off, plots pass untouched."""
+    """The pure core: parameters in, no state of its own. With extent none, plots pass untouched."""
 
     def __init__(self, parameters: TrackerParameters):
         self.parameters = parameters
@@ -103,9 +103,9 @@ class Extents:
         """One antenna revolution: a step of a `tracking.tracker.Tracker` and of this.
 
         Returns the tracker's memory and this one's, the tracker's report, the scan that it refers
-        to, and the shapes of all tracks in it, None with extent off.
+        to, and the shapes of all tracks in it, None with extent none.
         """
-        if self.parameters.extent == 'off':
+        if self.parameters.extent == 'none':
             tracks, report = tracker.step(tracks, scan)
             return (tracks, known), report, scan, None
         sure = take(tracks.tracks, tracks.tracks.number > 0)
