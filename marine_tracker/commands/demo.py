@@ -75,7 +75,10 @@ def add_arguments(parser) -> None:
     )
     parser.add_argument('--estimator', choices=sorted(ESTIMATORS), help='filter of the tracker')
     parser.add_argument(
-        '--extent', choices=EXTENTS, help='whether the tracker takes cells that touch as one target'
+        '--extent',
+        choices=(*EXTENTS, 'off'),
+        metavar='{' + ','.join(EXTENTS) + '}',
+        help='whether the tracker takes cells that touch as one target',
     )
     parser.add_argument('--seed', type=int, default=1, help='seed of the simulator (default: 1)')
     parser.add_argument('--duration', type=float, metavar='S', help='end after so many seconds')

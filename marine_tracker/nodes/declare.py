@@ -38,11 +38,13 @@ def declare(node: Node, *kinds: type) -> tuple[Any, ...]:
     }
     for name, value in given.items():
         if name in fields:
-            _check_type(name, value, fields[name].type)
+            _check_type(name, value, fields[name])
     parameters = from_mappings(kinds, given)
     for kind, values in zip(kinds, parameters):
         for field in dataclasses.fields(kind):
-            node.declare_parameter(field.name, getattr(values, field.name), descriptor(field))
+            node.declare_parameter(
+                field.name, getattr(values, field.name), descriptor(field), ignore_override=True
+            )
     return parameters
 
 
@@ -100,7 +102,10 @@ def follow(
     node.add_post_set_parameters_callback(changed)
 
 
-def _check_type(name: str, value: Any, wanted: Any) -> None:
+def _check_type(name: str, value: Any, field: dataclasses.Field) -> None:
+    wanted: Any = field.type
+    if isinstance(value, (str, bool)) and value in field.metadata['old']:
+        return
     if value is None:
         raise ValueError(
             f'parameter {name} has no value (an empty entry or list); it must be {WORDS[wanted]}'

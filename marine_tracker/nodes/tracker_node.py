@@ -225,7 +225,7 @@ class TrackerNode(RunnableNode):
             'confirmed': confirmed,
             'coasting': self._status_count[COASTING],
             'tentative': self._status_count[TENTATIVE],
-            **({} if parameters.extent == 'off' else {'clusters of land': memory.extents.shores}),
+            **({} if parameters.extent == 'none' else {'clusters of land': memory.extents.shores}),
             'at max_tracks': len(memory.tracker.tracks.id) >= parameters.max_tracks,
             'processing_p50_ms': f'{1e3 * self._processing.percentile(50):.1f}',
             'processing_p99_ms': f'{1e3 * slow:.1f}',
