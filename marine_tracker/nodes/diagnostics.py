@@ -63,7 +63,7 @@ def one_line(text: object, longest: int = LONGEST) -> str:
     half = longest // 2
     if len(line) > longest:
         line = f'{line[:half]} ... ({len(line)} characters) ... {line[-half:]}'
-    return ''.join(c if c.isprintable() else ' ' for c in ' '.join(line.split()))
+    return ' '.join(''.join(c if c.isprintable() else ' ' for c in line).split())
 
 
 class Durations:

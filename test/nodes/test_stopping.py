@@ -42,14 +42,23 @@ def sleep():
 
 
 class HoldingNode(RunnableNode):
+    over = False
+
     def __init__(self):
         super().__init__('holding')
         self.create_timer(0.1, self.tick)
+
+    @property
+    def done(self):
+        return self.over
 
     def tick(self):
         print('up', flush=True)
         if when == 'callback':
             hold()
+        if when == 'fail':
+            self.over = True
+            raise RuntimeError('the recording has a hole')
 
     def close(self):
         if when == 'close':
@@ -136,6 +145,11 @@ def test_a_node_that_cannot_close_says_so_and_its_exit_code_is_1(domain):
     assert process.stdout.readline() == 'up\n'
     stop = stopped(process, signal.SIGINT)
     assert stop.code == 1 and 'RuntimeError: the port does not close' in stop.said
+
+
+def test_a_node_that_ends_by_itself_after_a_failure_has_the_exit_code_1(domain):
+    said, _ = (process := start('-c', HOLDING, 'fail')).communicate(timeout=60)
+    assert process.returncode == 1 and 'RuntimeError in tick: the recording has a hole' in said
 
 
 @pytest.fixture(scope='module')
