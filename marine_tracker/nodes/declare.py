@@ -15,6 +15,7 @@ from rclpy.parameter import Parameter
 
 from ..parameter_files import limits
 from ..parameters import from_mappings
+from .diagnostics import one_line
 
 P = TypeVar('P')
 M = TypeVar('M')
@@ -91,7 +92,7 @@ def follow(
             try:
                 made[:] = [make(*from_mappings(kinds, values(changed)))]
             except ValueError as error:
-                return SetParametersResult(successful=False, reason=str(error))
+                return SetParametersResult(successful=False, reason=_named(error, changed))
         return SetParametersResult(successful=True)
 
     def changed(changed: list[Parameter]) -> None:
@@ -100,6 +101,14 @@ def follow(
 
     node.add_on_set_parameters_callback(validate)
     node.add_post_set_parameters_callback(changed)
+
+
+def _named(error: ValueError, changed: list[Parameter]) -> str:
+    """Why a change is refused, in one line that names a parameter of it."""
+    names = [parameter.name for parameter in changed]
+    if any(name in str(error) for name in names):
+        return one_line(error)
+    return one_line(f'parameter {", ".join(names)}: {error}')
 
 
 def _check_type(name: str, value: Any, field: dataclasses.Field) -> None:
