@@ -236,10 +236,10 @@ def test_a_receiver_of_three_digits_is_told_each_target_by_its_own_number(rig):
     said = here.scan(entry('TT08'), entry('TT108'), entry('TT499'), entry('TT3000'))
     parsed = [pynmea2.parse(line, check=True) for line in said]
     assert [(one.target_number, one.name) for one in parsed] == [
-        ('08', 'TT08'),
-        ('108', 'TT108'),
-        ('499', 'TT499'),
-        ('01', 'TT3000'),
+        (8, 'TT08'),
+        (108, 'TT108'),
+        (499, 'TT499'),
+        (1, 'TT3000'),
     ]
 
 
