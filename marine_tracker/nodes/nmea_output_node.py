@@ -107,7 +107,7 @@ class NmeaOutputNode(RunnableNode):
             return
         self._last_ns = time_ns
         self._heard[topics.TARGETS] = time.monotonic()
-        self._told, now = word(self._told, read_targets(message))
+        self._told, now = word(self._told, read_targets(message), self._settings.target_numbers)
         self._count['targets'] = len(self._told.numbers)
         self._count['targets waiting for a number'] = now.waiting
         p, seconds = self._settings, time_ns * 1e-9
@@ -200,7 +200,10 @@ class NmeaOutputNode(RunnableNode):
             worries.append(f'nothing on {topics.FIX} and no parameter origin: RMC void, no TLL')
         worries += [f'lately: {reason}' for reason in self._bad.fresh(wall)]
         if self._count['targets waiting for a number']:
-            worries.append('more than 99 targets: some are not told')
+            worries.append(
+                f'more than {self._settings.target_numbers} targets: some are not told '
+                '(parameter target_numbers)'
+            )
         values = {
             **self._count,
             'datagrams': self._udp.sent,

@@ -230,6 +230,18 @@ def test_what_targets_does_not_tell_is_left_empty_and_what_is_no_target_passed_o
     ]
 
 
+def test_a_receiver_of_three_digits_is_told_each_target_by_its_own_number(rig):
+    here = rig(sentences='TTM', target_numbers=500)
+    said = here.scan(entry('TT08'), entry('TT108'), entry('TT499'), entry('TT3000'))
+    parsed = [pynmea2.parse(line, check=True) for line in said]
+    assert [(one.target_number, one.name) for one in parsed] == [
+        (8, 'TT08'),
+        (108, 'TT108'),
+        (499, 'TT499'),
+        (1, 'TT3000'),
+    ]
+
+
 def test_the_same_message_twice_is_one_scan(rig):
     here = rig(sentences='TTM')
     assert len(here.scan(entry('TT01'), seconds=5.0)) == 1
