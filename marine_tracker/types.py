@@ -13,6 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+CodeArray = NDArray[np.int8]  # one of a few named numbers, such as Tracks.status
 HISTORY = 20  # scans of hits and misses that a track remembers, bits of Tracks.history
 
 

@@ -19,7 +19,7 @@ from ..arpa.nmea import (
     Targets,
     as_acquired,
 )
-from ..geometry import KNOT, NAUTICAL_MILE, geodetic_from_local, to_range_bearing, wrap_bearing
+from ..geometry import KNOT, NAUTICAL_MILE, bearing_from_yaw, geodetic_from_local, to_range_bearing
 from ..types import Array
 from .convert import nanoseconds, odometry_to_own_ship, yaw_of
 
@@ -123,7 +123,7 @@ class OwnShipInput:
             return False
         self.time_ns = nanoseconds(message.header.stamp)
         self._position, self._velocity = position, velocity
-        self._heading = float(wrap_bearing(np.pi / 2 - yaw_of(message.pose.pose.orientation)))
+        self._heading = float(bearing_from_yaw(yaw_of(message.pose.pose.orientation)))
         return True
 
     def hear_fix(self, message: NavSatFix) -> bool:

@@ -19,7 +19,7 @@ from marine_tracker.tracking import intake
 def test_a_live_change_keeps_every_track(rig, clean):
     here = rig()
     here.play(clean[0][:12])
-    before, ids = here.names(), here.tracker._memory.tracks.id.tolist()
+    before, ids = here.names(), here.tracker._operator.memory.tracker.tracks.id.tolist()
     assert len(before) == 6
     for k, (name, value) in enumerate(
         (
@@ -32,11 +32,11 @@ def test_a_live_change_keeps_every_track(rig, clean):
         )
     ):
         assert here.tracker.set_parameters([Parameter(name, value=value)])[0].successful
-        assert getattr(here.tracker._tracker.parameters, name) == value
+        assert getattr(here.tracker._operator.service.tracker.parameters, name) == value
         here.play(clean[0][12 + k : 13 + k])
         assert here.names() == before
         assert all(entry.message == 'TRACKING' for entry in here.targets[-1].status)
-    assert here.tracker._memory.tracks.id.tolist()[:6] == ids[:6]
+    assert here.tracker._operator.memory.tracker.tracks.id.tolist()[:6] == ids[:6]
     used = {pair.value for pair in here.targets[12].status[0].values if pair.key == 'estimator'}
     assert used == {'cs_kalman'}
     assert not here.tracker.failures.counts
