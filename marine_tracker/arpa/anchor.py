@@ -1,9 +1,9 @@
 """Own ship at anchor: when she is, and who may be a danger to her there.
 
 She counts as anchored where she surely makes no way: slower than AT_REST, or, swinging to her
-anchor, slower than SWINGING all the time and than AT_REST on the whole. The parameter `own_ship_status`
-may say so as well, as where wind and stream swing her for minutes; it does not hold once she makes
-more than SWINGING, for then the anchor does not hold either.
+anchor, slower than SWINGING all the time and than AT_REST on the whole. The parameter
+`own_ship_status` may say so as well, as where wind and stream swing her for minutes; it does not
+hold once she makes more than SWINGING, for then the anchor does not hold either.
 """
 
 import numpy as np

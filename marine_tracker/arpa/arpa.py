@@ -89,7 +89,7 @@ class Arpa:
         self.acquisition = acquisition.AcquisitionSettings(
             p.acquisition, p.max_targets, p.click_radius_m, p.click_wait_s
         )
-        self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s)
+        self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s, limits=self.limits)
         self.motion = motion.PRESETS[tracker.vessel_class]._replace(
             speed_sigma=0.5 * tracker.max_target_speed_mps
         )
@@ -149,7 +149,14 @@ class Arpa:
         moving, own = sea_stabilised(moving, own, self.current)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
-            tracks, report.reason, moving.position, passing, harmless_there, self.zones, own, self.limits
+            tracks,
+            report.reason,
+            moving.position,
+            passing,
+            harmless_there,
+            self.zones,
+            own,
+            self.limits,
         )
 
         # acquisition: which of them are targets

@@ -35,6 +35,7 @@ class Situation(NamedTuple):
     danger              [N]     SAFE, NEARLY or DANGEROUS
     inside              [N, Z]  in which zones it lies
     guarded, excluded   [N]     lies in a guard zone, in an exclusion zone; in both is excluded
+    harmless            [N]     as `look` was told
     """
 
     id: NDArray[np.int64]
@@ -52,6 +53,7 @@ class Situation(NamedTuple):
     inside: NDArray[np.bool_]
     guarded: NDArray[np.bool_]
     excluded: NDArray[np.bool_]
+    harmless: NDArray[np.bool_]
 
 
 def look(
@@ -87,6 +89,7 @@ def look(
         mask,
         np.any(mask & zones.guard, axis=1) & ~excluded,
         excluded,
+        harmless,
     )
 
 

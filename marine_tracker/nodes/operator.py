@@ -208,7 +208,12 @@ class ArpaDesk:
             self._refuse(str(error))
 
     def _acknowledge(self, number: int | None = None) -> int:
-        found, changed = alarms.acknowledge(self._memory.alerts, self._now(), number=number)
+        found, changed = alarms.acknowledge(
+            self._memory.alerts,
+            self._now(),
+            number=number,
+            duration=60 * self.arpa.parameters.acknowledge_for_min,
+        )
         self._memory = self._memory._replace(alerts=found)
         self._publish_alarms(changed)
         return len(changed.kind)

@@ -432,6 +432,8 @@ def test_every_kind_has_words_a_priority_and_a_rule():
         0.0 * kinds,
         np.zeros((count, 2)),
         np.full((count, alerts.VALUES), 1.0),
+        np.full(count, np.nan),
+        np.full((count, 2), np.nan),
     )
     assert len(set(text(every, zones.parse('')))) == count
     unknown = every._replace(values=np.full((count, alerts.VALUES), np.inf))
