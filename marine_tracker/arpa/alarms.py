@@ -132,7 +132,7 @@ def step(
     target = how_acquired(acquisition, situation.id) >= 0
     numbered = (target & (situation.number > 0)).nonzero()[0]
     confirmed = int((target & (situation.status == CONFIRMED)).sum())
-    alerts = encounters.marked(alerts, alerts.kind == DANGER, situation, now)
+    alerts = encounters.marked(alerts, alerts.kind == DANGER, situation, settings.limits, now)
     danger = np.minimum(situation.danger, np.where(situation.status == CONFIRMED, ON, KEEP))
     danger = encounters.level(
         danger, alerts, alerts.kind == DANGER, situation, settings.limits, now

@@ -47,7 +47,7 @@ class Alerts(NamedTuple):
     until     [A]     s, until when it is acknowledged; inf: until its cause has ended; nan: it is
                       not, or needs no acknowledgement. In state NORMAL: the cause that comes back
                       is acknowledged already
-    mark      [A, 2]  what was acknowledged, see encounters.py; nan: not looked at yet
+    mark      [A, 2]  what would be clearly worse, see encounters.py; nan: not looked at yet
     """
 
     kind: NDArray[np.int8]

@@ -143,20 +143,13 @@ class Arpa:
 
         # cpa: how the tracks pass own ship
         anchored = at_anchor(samples, own, now, self.parameters.own_ship_status)
-        harmless_there = anchored & harmless(moving, own)
+        no_danger = anchored & harmless(moving, own)
         if anchored:
             own = own._replace(velocity=np.zeros(2))
         moving, own = sea_stabilised(moving, own, self.current)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
-            tracks,
-            report.reason,
-            moving.position,
-            passing,
-            harmless_there,
-            self.zones,
-            own,
-            self.limits,
+            tracks, report.reason, moving.position, passing, no_danger, self.zones, own, self.limits
         )
 
         # acquisition: which of them are targets
@@ -190,7 +183,7 @@ class Arpa:
             take(moving, row),
             take(passing, row),
             past,
-            harmless_there[row],
+            no_danger[row],
             seen.danger[row],
             overlap[row],
             events,

@@ -2,9 +2,13 @@
 
 It has clearly ended once, for alerts.Rule.forget_after, the closest approach is past, or CPA or
 TCPA are ENDED times beyond their limit with a probability of danger below REMOTE, or own ship lies
-at anchor and the target does not come nearer. It has clearly become worse when for worse_after it
-is a danger and the CPA is below what was acknowledged by NEARER of the CPA limit, or the closest
-approach comes sooner by SOONER of the TCPA limit. Between the two the operator knows of it already.
+at anchor and the target does not come nearer.
+
+It has clearly become worse when for alerts.Rule.worse_after it is a danger and the CPA is below
+what was acknowledged by NEARER of the CPA limit, or the closest approach comes sooner than was
+acknowledged by SOONER of the TCPA limit; in both by SURELY of their deviations then, too, for what
+was a guess when it was acknowledged may come out as anything. Between the two the operator knows of
+it already.
 """
 
 import numpy as np
@@ -15,18 +19,22 @@ from .alerts import CLEAR, OFF, ON, WORSE, Alerts
 from .situation import SAFE, Limits, Situation
 
 ENDED, REMOTE = 1.5, 0.1
-NEARER, SOONER = 0.5, 0.25
+NEARER, SOONER, SURELY = 0.5, 0.25, 2.0
 
 
-def marked(alerts: Alerts, dangers: NDArray[np.bool_], situation: Situation, now: float) -> Alerts:
-    """The alerts, the dangers [A] acknowledged since the last scan with what the operator saw.
+def marked(
+    alerts: Alerts, dangers: NDArray[np.bool_], situation: Situation, limits: Limits, now: float
+) -> Alerts:
+    """The alerts; the dangers [A] acknowledged since the last scan marked with what were worse.
 
-    That is CPA, m, and the time of the closest approach, s, as they are at `now`.
+    That is a CPA, m, and a time of the closest approach, s.
     """
     row = row_of(situation.id, alerts.id)
     new = dangers & ~np.isnan(alerts.until) & np.isnan(alerts.mark[:, 0]) & (row >= 0)
+    nearer = np.maximum(NEARER * limits.cpa, SURELY * situation.cpa_sigma)
+    sooner = np.maximum(SOONER * limits.tcpa, SURELY * situation.tcpa_sigma)
     mark = alerts.mark.copy()
-    mark[new] = np.stack([situation.cpa, now + situation.tcpa], 1)[row[new]]
+    mark[new] = np.stack([situation.cpa - nearer, now + situation.tcpa - sooner], 1)[row[new]]
     return alerts._replace(mark=mark)
 
 
@@ -55,9 +63,7 @@ def level(
         & (situation.tcpa < ENDED * limits.tcpa)
     ) | (situation.probability >= REMOTE)
     clear = (situation.danger == SAFE) & (~within | situation.harmless)
-    worse = (situation.cpa < mark[:, 0] - NEARER * limits.cpa) | (
-        now + situation.tcpa < mark[:, 1] - SOONER * limits.tcpa
-    )
+    worse = (situation.cpa < mark[:, 0]) | (now + situation.tcpa < mark[:, 1])
     return np.select(
         [acknowledged & (danger == OFF) & clear, acknowledged & (danger == ON) & worse],
         [CLEAR, WORSE],

@@ -20,10 +20,10 @@ def lately(before: OwnShip, now: OwnShip, end: float) -> OwnShip:
 def own_motion(samples: OwnShip, time: float, heading: float, window: float = WINDOW) -> OwnMotion:
     """Own ship over ground at `time`, s, from the samples of the `window` s before.
 
-    Where she goes on as before, velocity is what she makes good, yaw left out (see `yaw`). Where she
-    manoeuvres it is a straight-line fit in time, so a steady turn does not lag; its covariance is
-    that of the fit to the samples' scatter. The position is that from which plots are placed, hence
-    without error of its own. heading rad, true. ValueError where there is no sample.
+    Where she goes on as before, velocity is what she makes good without her yaw (see `yaw`). Where
+    she manoeuvres it is a straight-line fit in time, so a steady turn does not lag; its covariance
+    is that of the fit to the samples' scatter. The position is that from which plots are placed,
+    hence without error of its own. heading rad, true. ValueError where there is no sample.
     """
     if not len(samples.time):
         raise ValueError('own ship has no sample; at least one is needed')

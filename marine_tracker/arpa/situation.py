@@ -36,6 +36,7 @@ class Situation(NamedTuple):
     inside              [N, Z]  in which zones it lies
     guarded, excluded   [N]     lies in a guard zone, in an exclusion zone; in both is excluded
     harmless            [N]     as `look` was told
+    cpa_sigma, tcpa_sigma  [N]  m, s, deviations of CPA and TCPA
     """
 
     id: NDArray[np.int64]
@@ -54,6 +55,8 @@ class Situation(NamedTuple):
     guarded: NDArray[np.bool_]
     excluded: NDArray[np.bool_]
     harmless: NDArray[np.bool_]
+    cpa_sigma: Array
+    tcpa_sigma: Array
 
 
 def look(
@@ -90,6 +93,8 @@ def look(
         np.any(mask & zones.guard, axis=1) & ~excluded,
         excluded,
         harmless,
+        approach.cpa_sigma,
+        approach.tcpa_sigma,
     )
 
 

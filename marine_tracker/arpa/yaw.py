@@ -57,10 +57,10 @@ def mean_velocity(samples: OwnShip, time: float) -> tuple[Array, Array] | None:
     last = int(fit.nonzero()[0][-1])
     number = int(count[last])
     weight = np.square(np.sin(np.pi * (np.arange(number) + 0.5) / number))
-    spread = off[last, :number]
+    spread: Array = off[last, :number] / number
     return (
         weight @ velocity[:number] / weight.sum(),
-        1.5 * spread.T @ spread / number**2,  # as of independent means, with these weights
+        1.5 * (spread.T @ spread),  # as of independent means, with these weights
     )
 
 
@@ -77,4 +77,6 @@ def _means(samples: OwnShip, time: float) -> tuple[Array, Array]:
     total = np.stack([np.bincount(step, column) for column in samples.velocity[counts].T], 1)
     gap = (np.diff(there, prepend=0) > GAP).nonzero()[0]
     there = there[: gap[0]] if len(gap) else there
-    return total[there] / number[there, None], STEP * (there + 0.5)
+    means: Array = total[there] / number[there, None]
+    age: Array = STEP * (there + 0.5)
+    return total[there] / number[there, None], age
