@@ -100,7 +100,8 @@ def requirements(distribution):
 def test_version_is_the_same_everywhere(distribution):
     version = MANIFEST.findtext('version')
     latest = re.search(r'^(\d+\.\d+\.\d+) \(', (ROOT / 'CHANGELOG.rst').read_text(), re.M)
-    assert distribution.version == version == latest.group(1)
+    cited = yaml.safe_load((ROOT / 'CITATION.cff').read_text())['version']
+    assert distribution.version == version == latest.group(1) == cited
 
 
 def test_requirements_of_setup_py_and_package_xml_agree(requirements):
