@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
-import yaml
+from ruamel.yaml import YAML
 
 ROOT = Path(__file__).resolve().parents[1]
 GITHUB = ROOT / '.github'
@@ -12,10 +12,14 @@ if not GITHUB.is_dir():
     pytest.skip('no .github beside these tests', allow_module_level=True)
 
 
+def read_yaml(file):
+    return YAML(typ='safe', pure=True).load(file.read_text())
+
+
 def workflow(name):
-    """A workflow's jobs; YAML 1.1 reads its key `on` as True."""
-    read = yaml.safe_load((GITHUB / 'workflows' / f'{name}.yaml').read_text())
-    assert set(read[True]) == {'push', 'pull_request'}
+    """A workflow's only job."""
+    read = read_yaml(GITHUB / 'workflows' / f'{name}.yaml')
+    assert set(read['on']) == {'push', 'pull_request'}
     assert read['permissions'] == {'contents': 'read'}
     (job,) = read['jobs'].values()
     assert job['timeout-minutes'] and 'checkout' in job['steps'][0]['uses']
@@ -53,7 +57,7 @@ def test_forms_have_a_name_and_ask_for_something():
     forms = sorted((GITHUB / 'ISSUE_TEMPLATE').iterdir())
     assert [form.name for form in forms] == ['bug.yaml', 'idea.yaml']
     for form in forms:
-        read = yaml.safe_load(form.read_text())
+        read = read_yaml(form)
         assert read['name'] and read['description']
         names = [field['id'] for field in read['body']]
         assert len(names) == len(set(names))

@@ -4,6 +4,7 @@ Docstrings are plain text. A paragraph with columns (arrays with shapes and unit
 is shown as it stands, any other one as prose. A warning is an error.
 """
 
+import importlib
 import re
 import sys
 import warnings
@@ -31,6 +32,9 @@ def _paragraph(text: str) -> Markup:
 
 def build(folder: Path) -> None:
     """Write the pages of all modules into the folder."""
+    package = importlib.import_module('marine_tracker')
+    for name in getattr(package, '__all__', ()):  # imported when asked for: pdoc does not ask
+        setattr(package, name, getattr(package, name))
     pdoc.render.env.filters['plain_text'] = plain_text
     pdoc.render.configure(template_directory=Path(__file__).parent, search=True)
     pdoc.pdoc('marine_tracker', output_directory=folder)
