@@ -52,9 +52,11 @@ setup(
             'setuptools>=64',
         ],
         'parallel': ['pytest-xdist>=3.3'],
+        # Parts of experiments on other machines: --scheduler.
+        'cluster': ['distributed>=2024.1', 'threadpoolctl>=3.1'],
         'bench': ['stonesoup>=1.4'],
         'plot': ['matplotlib>=3.6'],
-        'dev': ['mypy>=1.8', 'pre-commit>=3.0', 'ruff>=0.4'],
+        'dev': ['mypy>=1.8', 'pdoc>=14.5', 'pre-commit>=3.0', 'ruff>=0.4'],
     },
     entry_points={
         'console_scripts': [

@@ -36,6 +36,10 @@ ROSDEP_KEY = {
 }
 
 
+def read_yaml(name):
+    return YAML(typ='safe', pure=True).load((ROOT / name).read_text())
+
+
 def manifest(tag):
     return {element.text for element in MANIFEST.findall(tag)}
 
@@ -101,7 +105,8 @@ def requirements(distribution):
 def test_version_is_the_same_everywhere(distribution):
     version = MANIFEST.findtext('version')
     latest = re.search(r'^(\d+\.\d+\.\d+) \(', (ROOT / 'CHANGELOG.rst').read_text(), re.M)
-    assert distribution.version == version == latest.group(1)
+    cited = read_yaml('CITATION.cff')['version']
+    assert distribution.version == version == latest.group(1) == cited
 
 
 def test_requirements_of_setup_py_and_package_xml_agree(requirements):
@@ -137,7 +142,7 @@ def test_every_ros_package_imported_is_in_package_xml():
 
 
 def test_every_rosdep_key_of_our_own_has_a_rule_for_debian_and_ubuntu():
-    rules = YAML(typ='safe', pure=True).load((ROOT / 'rosdep.yaml').read_text())
+    rules = read_yaml('rosdep.yaml')
     assert set(rules) == {'python3-pywavelets'} <= manifest('exec_depend')
     assert all({'debian', 'ubuntu'} <= set(rule) for rule in rules.values())
 
