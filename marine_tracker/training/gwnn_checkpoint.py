@@ -28,7 +28,9 @@ def _arrays(training: Training) -> dict[str, Array]:
 
 
 def save(path: Path, settings: dict[str, Any], training: Training) -> None:
-    """Write a checkpoint; whoever stops the process meanwhile leaves the last one whole."""
+    """Writes a checkpoint. If the process is stopped while writing, the previous file stays
+    complete.
+    """
     fresh = path.with_name(path.name + '.new')
     with open(fresh, 'wb') as file:
         np.savez(
@@ -41,9 +43,9 @@ def save(path: Path, settings: dict[str, Any], training: Training) -> None:
 
 
 def resume(path: Path, settings: dict[str, Any], layout: net.Layout) -> Training | None:
-    """The training that a checkpoint holds; None where there is no such file.
+    """The training in a checkpoint; None if there is no such file.
 
-    Raises ValueError where it is of another training, naming what differs, or is damaged.
+    Raises ValueError if it is damaged, or if it belongs to another training, naming the difference.
     """
     if not path.exists():
         return None
