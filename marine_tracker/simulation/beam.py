@@ -106,7 +106,7 @@ def _solve(scenario, numbers):
 
 
 def _is_first(number, target):
-    """The rows, sorted by revolution and target, that are the first of their revolution and target."""
+    """The first rows of each revolution and target; rows are sorted by both."""
     return (np.diff(number, prepend=-1) != 0) | (np.diff(target, prepend=0) != 0)
 
 

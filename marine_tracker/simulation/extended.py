@@ -67,7 +67,7 @@ def plots(
 
 
 def _passed(scenario, start, offset):
-    """Times [S] s when the beam passes offsets [S, 2] m in the revolution that begins at `start`."""
+    """Times [S] s when the beam passes offsets [S, 2] m in the revolution from `start` on."""
     return start + to_range_bearing(offset)[1] * (scenario.radar.scan_period / (2 * np.pi))
 
 

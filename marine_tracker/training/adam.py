@@ -10,7 +10,7 @@ FIRST, SECOND, TINY = 0.9, 0.999, 1e-9
 
 
 class Moments(NamedTuple):
-    """Running means of the gradients and of their squares, shaped as the parameters; steps taken."""
+    """Running means of the gradients and of their squares, shaped as the parameters; steps."""
 
     mean: list[Array]
     square: list[Array]
