@@ -1,5 +1,4 @@
-"""Runs simulator (or recorded radar) and tracker as two processes over ROS 2; shows a table of
-targets.
+"""Runs simulator (or recorded radar) and tracker over ROS 2, as two processes, and shows a table.
 
 Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
 """
