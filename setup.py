@@ -35,6 +35,7 @@ setup(
         'numpy>=1.26.4',
         'PyWavelets>=1.4',
         'pynmea2>=1.19',
+        'pyproj>=3.4',
         'rich>=13.3',
         'ruamel.yaml>=0.17.21',
         'scipy>=1.11.4',

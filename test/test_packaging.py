@@ -24,6 +24,7 @@ ROSDEP_KEY = {
     'numpy': 'python3-numpy',
     'psutil': 'python3-psutil',
     'pynmea2': 'python3-pynmea2',
+    'pyproj': 'python3-pyproj',
     'pytest': 'python3-pytest',
     'pytest-timeout': 'python3-pytest-timeout',
     'PyWavelets': 'python3-pywavelets',
