@@ -66,8 +66,8 @@ class NmeaOutputParameters:
     )
     tcp: str = parameter(
         '',
-        'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks, [::]:10110 for those of '
-        'IPv6 as well. Empty: no server.',
+        'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks, [::]:10110 for those '
+        'of IPv6 as well. Empty: no server.',
     )
     signalk_udp: str = parameter(
         '', 'Where Signal K deltas are sent as datagrams, as for udp. Empty: nowhere.'
