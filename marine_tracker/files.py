@@ -22,6 +22,12 @@ def shown(value: Any) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + '...'
 
 
+def shortened(text: Any) -> str:
+    """A name or path as a message tells it: in one line, long ones cut."""
+    line = ' '.join(str(text).split())
+    return line if len(line) <= 200 else line[:197] + '...'
+
+
 def regular(path) -> Path:
     """The path, if it is that of a regular file; else ValueError (OSError where there is none).
 
