@@ -37,9 +37,9 @@ def to_range_bearing(offset):
     return np.hypot(east, north), wrap_bearing(np.arctan2(east, north))
 
 
-def yaw_from_bearing(bearing):
-    """ROS yaw (counter-clockwise from east, rad in [-pi, pi)) of a bearing."""
-    return wrap_angle(np.pi / 2 - bearing)
+def bearing_from_yaw(yaw):
+    """Bearing, rad in [0, 2 pi), of a ROS yaw (counter-clockwise from east), and nan of nan."""
+    return wrap_bearing(np.pi / 2 - yaw)
 
 
 def polar_to_position(range_, bearing, range_sigma, bearing_sigma):

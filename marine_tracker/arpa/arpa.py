@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..gaussian.linear import invert_2x2, squared_distance
-from ..geometry import KNOT, NAUTICAL_MILE, locate, polar_to_position, unit_vector
+from ..geometry import KNOT, NAUTICAL_MILE, polar_to_position, unit_vector
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
+from ..tracking.noise import noise_of
 from ..tracking.radars import radars_of
 from ..tracking.tracker import Report
 from ..types import Array, OwnShip, Scan, Tracks, append, row_of, take
@@ -132,24 +133,14 @@ class Arpa:
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
-        bearing_sigma = np.radians(radar.bearing_sigma_deg)
         samples = lately(memory.own, scan.own_ship, now)
         own = own_motion(samples, now, heading)
 
         # motion: course and speed from a memory of their own
-        plots = locate(scan.plots, scan.own_ship, radar.range_sigma_m, bearing_sigma)
+        plots = noise_of(radar, scan).locate(scan)
         remembered = motion.step(memory.motion, report, plots, self.motion, scan.radar)
         moving = motion.at(remembered, now)
-        past = past_positions.step(
-            memory.past,
-            tracks.id,
-            tracks.first_time,
-            moving.position,
-            moving.velocity,
-            own.position,
-            own.velocity,
-            now,
-        )
+        past = past_positions.step(memory.past, tracks.id, tracks.first_time, moving, own, now)
 
         # cpa: how the tracks pass own ship
         at_rest = ~makes_way(moving) & (np.hypot(*own.velocity) < OWN_AT_REST)
@@ -160,42 +151,23 @@ class Arpa:
         )
 
         # acquisition: which of them are targets
-        before = memory.acquisition.targets
         acquired, events = acquisition.step(memory.acquisition, self.acquisition, seen, now)
+        targets = _shown(acquired, memory.acquisition, tracks)
+        row = row_of(tracks.id, targets.id)
 
-        # alarms
+        # alarms: those after the scan, and those that changed
         overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        target = acquisition.how_acquired(acquired, tracks.id) >= 0
-        fallen = int(np.sum(fallen & target & (tracks.status == CONFIRMED)))
-        alive, changed = alarms.step(
-            memory.alerts,
-            self.alarms,
-            seen,
-            acquired,
-            events,
-            self.zones,
-            alarms.Tracking(self.acquisition.capacity, fallen, overlap, other),
-            now,
+        fallen = _fallen(fallen, acquired, tracks)
+        tracking = alarms.Tracking(self.acquisition.capacity, fallen, overlap, other)
+        alarm = alarms.step(
+            memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
 
-        lost = tracks.id[tracks.status == LOST]
-        targets = append(acquired.targets, take(before, np.isin(before.id, lost)))
-        targets = take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
-        row = row_of(tracks.id, targets.id)
-        return ArpaMemory(samples, remembered, acquired, alive, past), Picture(
-            now,
-            own,
-            row,
-            targets,
-            take(moving, row),
-            take(passing, row),
-            past,
-            at_rest[row],
-            seen.danger[row],
-            overlap[row],
-            events,
-            alive,
-            changed,
+        # the picture: the rows of the targets
+        moving, passing, at_rest = take((moving, passing, at_rest), row)
+        danger, overlap = seen.danger[row], overlap[row]
+        return ArpaMemory(samples, remembered, acquired, alarm[0], past), Picture(
+            now, own, row, targets, moving, passing, past, at_rest, danger, overlap, events, *alarm
         )
 
     def _approach(
@@ -232,3 +204,16 @@ class Arpa:
         )
         other[rows] = np.where(found >= 0, np.append(rows, -1)[found], -1)
         return overlap, other
+
+
+def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Targets:
+    """The targets, those that were lost in this scan among them, in the order of their numbers."""
+    lost = np.isin(before.targets.id, tracks.id[tracks.status == LOST])
+    targets = append(acquired.targets, take(before.targets, lost))
+    return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+
+
+def _fallen(fallen, acquired: Acquisition, tracks: Tracks) -> int:
+    """How many confirmed targets have fallen back, of the tracks `fallen` [N], or all or none."""
+    target = acquisition.how_acquired(acquired, tracks.id) >= 0
+    return int(np.sum(fallen & target & (tracks.status == CONFIRMED)))

@@ -99,14 +99,15 @@ def test_relative_motion_is_within_half_the_limits_in_eight_runs(number):
 
 def test_a_target_dead_ahead_of_a_moving_own_ship_keeps_its_track():
     """The beam's revolution begins where it lies: it is met early or late in the revolution."""
-    from marine_tracker.conformance.target_data import Service
+    from marine_tracker.service import service_for
     from marine_tracker.simulation import radar, scenario
 
     loaded = scenario.load('imazu_01')
-    service, memory, missed = Service(loaded, 'imm'), None, 0
+    service, missed = service_for(loaded.tracker_parameters(), estimator='imm'), 0
+    memory = service.start()
     for count, (scan, _) in enumerate(radar.simulate(loaded, 1)):
-        memory = service.step(memory, scan)
-        missed += count > 5 and (memory.report.plot < 0).sum()
+        memory, output = service.step(memory, scan)
+        missed += count > 5 and (output.report.plot < 0).sum()
         if count == 100:
             break
     assert len(memory.tracker.tracks.id) == 1 and memory.tracker.next_number == 2

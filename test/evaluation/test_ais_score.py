@@ -5,15 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from marine_tracker.commands.replay import write_tracks
 from marine_tracker.evaluation import ais_score
+from marine_tracker.evaluation.replay import write_tracks
 from marine_tracker.geometry import geodetic_from_local
-from marine_tracker.parameters import TrackerParameters
 from marine_tracker.recording import csv_folder, track_file
 from marine_tracker.recording.csv_folder import Recording
 from marine_tracker.recording.track_file import TrackRows
+from marine_tracker.service import service_for
 from marine_tracker.simulation import radar, scenario
-from marine_tracker.tracking.tracker import Tracker
 from marine_tracker.types import OwnShip, PolarPlots, Scan, Truth
 
 ORIGIN = (55.0, 7.0)
@@ -268,7 +267,7 @@ def scene(tmp_path_factory):
     recording = csv_folder.read(folder / 'made')
     with open(folder / 'tracks.csv', 'w') as file:
         write_tracks(
-            Tracker(TrackerParameters(**recording.tracker_parameters)),
+            service_for(recording.tracker_parameters),
             zip(recording.numbers.tolist(), recording.scans),
             file,
         )

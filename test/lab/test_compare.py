@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators import ESTIMATORS
-from marine_tracker.evaluation import scored_tracks
+from marine_tracker.evaluation import replay
 from marine_tracker.evaluation.result import draw
 from marine_tracker.lab import marine_table
 from marine_tracker.lab.compare import compare, pictures
@@ -48,7 +48,7 @@ def test_every_estimator_follows_ships_that_turn_hard(name):
 
 def test_a_scenario_is_scored_as_a_recording():
     chosen = scenario.load('clean')
-    found = scored_tracks.figures(scored_tracks.simulated(chosen, 3), 'imm')
+    found = replay.figures(replay.simulated(chosen, 3), 'imm')
     assert found['held'] > 0.95 and found['false_tracks'] == 0
 
 

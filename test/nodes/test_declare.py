@@ -108,7 +108,7 @@ def test_descriptors_tell_text_unit_and_limits(start):
 def test_a_live_change_is_applied_after_it_was_accepted(start):
     node, applied = start(), []
     declare(node, TrackerParameters)
-    follow(node, TrackerParameters, lambda made: made, applied.append)
+    follow(node, (TrackerParameters,), lambda made: made, applied.append)
     results = node.set_parameters([Parameter('estimator', value='cs_kalman')])
     assert results[0].successful
     assert applied == [TrackerParameters(estimator='cs_kalman')]
@@ -128,7 +128,7 @@ def test_a_live_change_is_applied_after_it_was_accepted(start):
 def test_a_live_change_that_is_wrong_is_refused_and_nothing_is_applied(start, name, value, said):
     node, applied = start(), []
     declare(node, TrackerParameters)
-    follow(node, TrackerParameters, lambda made: made, applied.append)
+    follow(node, (TrackerParameters,), lambda made: made, applied.append)
     result = node.set_parameters([Parameter(name, value=value)])[0]
     assert not result.successful and said in result.reason
     assert applied == []
@@ -138,7 +138,7 @@ def test_a_live_change_that_is_wrong_is_refused_and_nothing_is_applied(start, na
 def test_several_changes_at_once_are_judged_together(start):
     node, applied = start(), []
     declare(node, TrackerParameters)
-    follow(node, TrackerParameters, lambda made: made, applied.append)
+    follow(node, (TrackerParameters,), lambda made: made, applied.append)
     result = node.set_parameters_atomically(
         [Parameter('confirm_hits', value=15), Parameter('confirm_scans', value=16)]
     )
@@ -151,7 +151,7 @@ def test_a_change_another_callback_refuses_is_not_applied(start):
 
     node, applied = start(), []
     declare(node, TrackerParameters)
-    follow(node, TrackerParameters, lambda made: made, applied.append)
+    follow(node, (TrackerParameters,), lambda made: made, applied.append)
     node.add_on_set_parameters_callback(
         lambda _: SetParametersResult(successful=False, reason='not now')
     )
@@ -162,7 +162,7 @@ def test_a_change_another_callback_refuses_is_not_applied(start):
 def test_use_sim_time_may_change_and_is_none_of_ours(start):
     node, applied = start(), []
     declare(node, TrackerParameters)
-    follow(node, TrackerParameters, lambda made: made, applied.append)
+    follow(node, (TrackerParameters,), lambda made: made, applied.append)
     assert node.set_parameters([Parameter('use_sim_time', value=True)])[0].successful
     assert applied == []
 
@@ -172,8 +172,7 @@ def test_a_dump_of_the_nodes_own_parameters_is_loaded(start, tmp_path, node, kin
     """In the form in which `ros2 param dump` writes them and `ros2 param load` sets them."""
     here = start()
     values = declare(here, *kinds)
-    for kind in kinds:
-        follow(here, kind, lambda made: made, lambda made: None)
+    follow(here, kinds, lambda *made: made, lambda made: None)
     names = [field.name for kind in kinds for field in dataclasses.fields(kind)]
     dump = {'/tracker': {'ros__parameters': {n: here.get_parameter(n).value for n in names}}}
     file = tmp_path / 'dump.yaml'

@@ -23,7 +23,7 @@ import numpy as np
 from ...conformance import encounters
 from ...conformance.encounters import WARNED_BEFORE
 from ...estimators import ESTIMATORS, Estimator
-from ...evaluation import parallel, report, scored_tracks
+from ...evaluation import parallel, replay, report
 from ...evaluation.result import Progress, Result, silent
 from ...parameters import TrackerParameters
 from ...recording import csv_folder
@@ -171,14 +171,12 @@ def in_traffic(name: str, scene: str, runs: int, seed: int) -> Errors:
     else:
         chosen = scenario.load(scene)
     seeds = np.random.SeedSequence([seed, 8]).generate_state(runs).tolist()
-    return _scored(
-        [scored_tracks.figures(scored_tracks.simulated(chosen, one), name) for one in seeds]
-    )
+    return _scored([replay.figures(replay.simulated(chosen, one), name) for one in seeds])
 
 
 def on_recording(name: str, folder: str) -> Errors:
     """A recording through the whole tracker."""
-    return _scored([scored_tracks.figures(csv_folder.read(folder), name)])
+    return _scored([replay.figures(csv_folder.read(folder), name)])
 
 
 def _scored(runs: list[dict[str, Any]]) -> Errors:
