@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ..evaluation import ais_score, metrics, report
 from ..recording import csv_folder, track_file
-from ..simulation import ais
+from ..simulation import ais_file
 
 HELP = 'tell how good a track file is on a recording'
 
@@ -46,7 +46,8 @@ def add_arguments(parser) -> None:
         '--ais',
         metavar='FILE',
         type=Path,
-        help='score against the AIS reports in this CSV file: columns ' + ', '.join(ais.COLUMNS),
+        help='score against the AIS reports in this CSV file: columns '
+        + ', '.join(ais_file.COLUMNS),
     )
     parser.add_argument(
         '--ais-start-s',

@@ -26,10 +26,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import yaml_file
+from .. import tables, yaml_file
 from ..geometry import own_ship_at, wrap_bearing
 from ..types import Array, OwnShip, PolarPlots, Scan, Truth, take
-from . import tables
 
 PLOTS = ('scan', 'time_s', 'range_m', 'bearing_deg')
 OWN_SHIP = ('scan', 'time_s', 'north_m', 'east_m')
