@@ -71,9 +71,8 @@ class Table(NamedTuple):
         wrong = values != np.rint(values)
         if wrong.any():
             row = int(wrong.argmax())
-            raise ValueError(
-                f'{self.where(row)}: {name} is {shortened(self.columns[name][row])}; it must be a whole number'
-            )
+            cell = shortened(self.columns[name][row])
+            raise ValueError(f'{self.where(row)}: {name} is {cell}; it must be a whole number')
         return values.astype(np.int64)
 
 

@@ -16,6 +16,7 @@ from importlib.util import find_spec
 from typing import NamedTuple
 
 from .. import config
+from ..files import write_text
 
 HELP = 'say what is installed, what is missing and what to do'
 
@@ -107,8 +108,7 @@ def run(args) -> int:
         if args.json == '-':
             print(text, end='')
         else:
-            with open(args.json, 'w') as file:
-                file.write(text)
+            write_text(args.json, text)
     return 1 if any(check.required and not check.ok for check in checks) else 0
 
 

@@ -91,8 +91,8 @@ class NmeaOutputParameters:
     )
     origin: str = parameter(
         '',
-        'Latitude and longitude in degrees of the origin of `map`, as "54.1 10.9". Empty: own '
-        'ship is where own_ship/fix says.',
+        'Latitude and longitude in degrees of the origin of `map`, as "54.1 -10.9": south and west '
+        'negative, no longitude beyond 180. Empty: own ship is where own_ship/fix says.',
     )
 
     def __post_init__(self):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import PPoly, make_smoothing_spline
 
-from ..geometry import local_from_geodetic
+from ..geodesy import LocalFrame
 from ..types import Array
 from .motion import Piece
 
@@ -21,7 +21,7 @@ class Reports(NamedTuple):
 
     time       [R]  s, from the scenario's start, strictly increasing
     latitude   [R]  deg
-    longitude  [R]  deg; without a jump where the way crosses 180
+    longitude  [R]  deg
     length     m, nan where unknown
     max_gap    s; between reports farther apart than this the vessel is not there
     """
@@ -33,9 +33,9 @@ class Reports(NamedTuple):
     max_gap: float
 
 
-def way(reports: Reports, origin: tuple[float, float]) -> list[Piece]:
-    """The vessel's way in the frame of `origin` (degrees): a spline over each run without gaps."""
-    position = local_from_geodetic(reports.latitude, reports.longitude, *origin)
+def way(reports: Reports, frame: LocalFrame) -> list[Piece]:
+    """The vessel's way in the frame: a spline over each run without gaps."""
+    position = frame.to_local(reports.latitude, reports.longitude)
     ends = np.flatnonzero(np.diff(reports.time) > reports.max_gap) + 1
     pieces = [Piece(min(0.0, reports.time[0]) - 1.0, tuple(position[0]), exists=False)]
     for time, place in zip(np.split(reports.time, ends), np.split(position, ends), strict=True):

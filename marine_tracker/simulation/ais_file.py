@@ -30,7 +30,8 @@ from numpy.typing import NDArray
 
 from .. import tables
 from ..files import shortened
-from ..geometry import EARTH_RADIUS, KNOT
+from ..geodesy import LocalFrame, wrap_longitude
+from ..geometry import KNOT
 from ..types import Array
 from .ais import Reports
 
@@ -204,11 +205,11 @@ def _reports(
     order = order[_agreeing(time[order], latitude[order], longitude[order])]
     if len(order) < len(time):
         skipped[JUMP] += len(time) - len(order)
-    longitude = np.unwrap(longitude[order], period=360.0)  # across 180 degrees it goes on
+    longitude = np.unwrap(longitude[order], period=360.0)  # 180 E and 180 W are near each other
     time, which = np.unique(time[order] - start, return_inverse=True)
     count = np.bincount(which)
     latitude = np.bincount(which, latitude[order]) / count
-    longitude = np.bincount(which, longitude) / count
+    longitude = wrap_longitude(np.bincount(which, longitude) / count)
     useful = (time >= -max_gap) & (time <= duration + max_gap)
     time, latitude, longitude = time[useful], latitude[useful], longitude[useful]
     if len(time) < 2 or time[-1] <= 0 or time[0] >= duration:
@@ -243,12 +244,7 @@ def _reach(step):
     return MAX_SPEED * (step + CLOCK_ERROR)
 
 
-def _distance(latitude, longitude, from_latitude, from_longitude):
-    """m, on a sphere, between places in degrees."""
-    north, east = (
-        np.radians(there - here) / 2
-        for there, here in ((latitude, from_latitude), (longitude, from_longitude))
-    )
-    scale = np.cos(np.radians(latitude)) * np.cos(np.radians(from_latitude))
-    chord = np.sin(north) ** 2 + scale * np.sin(east) ** 2
-    return 2 * EARTH_RADIUS * np.arcsin(np.sqrt(np.minimum(chord, 1.0)))
+def _distance(latitude, longitude, from_latitude, from_longitude) -> Array:
+    """m between places in degrees."""
+    frame = LocalFrame(from_latitude, from_longitude)
+    return np.hypot(*frame.to_local(latitude, longitude).T)
