@@ -65,7 +65,9 @@ class NmeaOutputParameters:
         'separated by blanks, broadcast addresses too. Empty: nowhere.',
     )
     tcp: str = parameter(
-        '', 'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks. Empty: no server.'
+        '',
+        'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks, [::]:10110 for those '
+        'of IPv6 as well. Empty: no server.',
     )
     signalk_udp: str = parameter(
         '', 'Where Signal K deltas are sent as datagrams, as for udp. Empty: nowhere.'

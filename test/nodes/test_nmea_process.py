@@ -1,4 +1,4 @@
-"""The NMEA output as a process, among many clients and with names without end."""
+"""The NMEA output as a process: many clients, names without end, hosts of one family."""
 
 import contextlib
 import re
@@ -15,7 +15,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.nmea_output_links import CLIENTS
-from marine_tracker.nodes.nmea_output_node import NO_ROOM
+from marine_tracker.nodes.nmea_output_node import NO_ROOM, NOT_SENT, REFUSED
 
 LOOPBACK = '127.0.0.1'
 GROWTH_MB = 100.0
@@ -41,10 +41,11 @@ def target(number, **values):
 class Output:
     """The node, and who publishes `targets` and listens to /diagnostics."""
 
-    def __init__(self, launch, graph, node_helpers, **parameters):
+    def __init__(self, launch, graph, node_helpers, prefix=(), **parameters):
         self.wait, listener = node_helpers
-        given = [w for key, value in parameters.items() for w in ('-p', f'{key}:={value}')]
-        self.process = launch('nodes.run nmea_output', '--ros-args', '-p', 'udp:=""', *given)
+        given = {'udp': '""', **parameters}
+        words = [word for key, value in given.items() for word in ('-p', f'{key}:={value}')]
+        self.process = launch('nodes.run nmea_output', '--ros-args', *words, prefix=prefix)
         assert self.process.says('TTM'), self.process.said
         self.other = graph.bystander()
         self._targets = self.other.create_publisher(
@@ -72,7 +73,7 @@ class Output:
 
 @pytest.fixture
 def output(launch, graph, node_helpers):
-    return lambda **parameters: Output(launch, graph, node_helpers, **parameters)
+    return lambda **given: Output(launch, graph, node_helpers, **given)
 
 
 @pytest.fixture
@@ -80,6 +81,26 @@ def free_port():
     with socket.socket() as one:
         one.bind((LOOPBACK, 0))
         return one.getsockname()[1]
+
+
+def test_who_listens_on_ipv4_is_reached_where_localhost_is_ipv6_alone(output, private_hosts):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ear:
+        ear.bind((LOOPBACK, 0))
+        ear.settimeout(20)
+        here = output(
+            prefix=private_hosts('::1 localhost'),
+            udp=f'localhost:{ear.getsockname()[1]}',
+            sentences='TTM',
+        )
+        here.scan([target(number) for number in range(41, 45)])
+        heard = [ear.recv(200)[:9] for _ in range(4)]
+    assert heard == [b'$RATTM,%d' % number for number in range(41, 45)]
+    here.wait(lambda: here.values()['datagrams'] == '4')
+    assert here.values()[REFUSED] == here.values()[NOT_SENT] == '0'
+    here.scan([target(number) for number in range(41, 45)])  # nobody listens any more
+    here.wait(lambda: here.values()[REFUSED] == '4')
+    assert here.values()['datagrams'] == '4'
+    here.process.stop()
 
 
 def test_one_name_without_end_does_not_cost_memory_for_every_target(output):
