@@ -240,7 +240,9 @@ def _graph(listen: float, namespace: str) -> Iterator[Check]:
             'ROS middleware',
             False,
             f'does not start: {why}',
-            f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
+            'set ROS_LOG_DIR to a folder that can be written'
+            if 'logging' in why
+            else f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
             f'({os.environ.get("RMW_IMPLEMENTATION") or "not set"}) and ROS_DOMAIN_ID',
         )
         return
