@@ -20,6 +20,7 @@ import sys
 import threading
 
 from ..processes import closing, end_in_time, keep_freed_memory
+from . import arguments, log_folder
 
 NODES = {
     'tracker': 'TrackerNode',
@@ -44,10 +45,14 @@ def run(name: str) -> int:
 
     Returns the exit code, 0 or 1; see the module.
     """
+    code = arguments.answer(name, sys.argv[1:])
+    if code is not None:
+        return code
     on_signals(lambda *_: os._exit(0))  # nothing is open yet; imports take long on a busy machine
     end_in_time()
     # ament looks packages up by this; a virtual environment is a prefix like any other.
     os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
+    log_folder.provide()
     import rclpy
     from rclpy.exceptions import NameValidationException, ParameterException
     from rclpy.executors import SingleThreadedExecutor

@@ -23,7 +23,8 @@ speed as `_mps` or `_kn`. Only `duration_s` and one target are needed:
           - speed: {to_kn: 8, duration_s: 60}         # or acceleration_mps2
 
 Ships can be driven by AIS reports instead, or besides (the file is looked for beside the
-scenario's; its form stands in ais.py); own ship is then one of the vessels, or lies at a place:
+scenario's; its form stands in ais_file.py); own ship is then one of the vessels, or lies at a
+place:
 
     ais: {file: traffic.csv, start_s: 600, vessels: [3, 17]}      # all vessels, if none are named
     own_ship: {vessel: 1}                                         # or {start: {lat_deg:, lon_deg:}}
