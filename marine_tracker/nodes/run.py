@@ -10,7 +10,8 @@ Exit codes, in doc/nodes.md for users:
 0   stopped as asked, or nothing left to do; closed in order
 1   could not start, with one line on stderr; or failed, with a traceback or a warning on stderr
 14  not closed in time; stderr shows where each thread stood
-The signal itself (-2, -15; 130, 143 in a shell) where it came before Python ran the first line.
+The signal itself (-2, -15; 130, 143 in a shell), or 1 of SIGINT, where it came while Python itself
+was starting, before the first line here.
 """
 
 import importlib
