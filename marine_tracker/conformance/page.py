@@ -1,4 +1,4 @@
-"""The IMO report as a page of HTML with its pictures beside it."""
+"""Writes the IMO report as an HTML page with its pictures."""
 
 from collections.abc import Sequence
 from html import escape
@@ -24,7 +24,7 @@ demanded."""
 
 
 def write(folder, results: Results, title: str, seed: int) -> Path:
-    """Write index.html and pictures into the folder, which is made; the page's path."""
+    """Writes index.html and pictures into the folder, which is created; returns the page's path."""
     drawn = draw(folder, pictures(results, seed))
     parts = [
         f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>',

@@ -44,8 +44,9 @@ class Source(NamedTuple):
 
 
 class Summary(NamedTuple):
-    """scans done, tracks ever confirmed, the service's mean CPU time a scan in ms, and whether any
-    plots told radial speeds."""
+    """Number of scans; number of tracks ever confirmed; the service's mean CPU time a scan in ms;
+    whether any plots had radial speeds.
+    """
 
     scans: int
     confirmed: int
@@ -54,9 +55,9 @@ class Summary(NamedTuple):
 
 
 def open_source(name: str, seed: int = 1) -> Source:
-    """A recording where `name` is a folder, else a scenario run with `seed`.
+    """A recording if `name` is a folder, else a scenario run with `seed`.
 
-    ValueError where it is neither, or is not in order.
+    ValueError if it is neither, or has an error.
     """
     if Path(name).is_dir():
         recording, remarks = screened.read(name)
@@ -70,9 +71,11 @@ def open_source(name: str, seed: int = 1) -> Source:
 
 
 def fuse(names: Sequence[str], seed: int = 1) -> Source:
-    """The sources of one scene as one, each of them a radar of its own; a single one as it is.
+    """The sources of one scene combined, each as a radar of its own. A single source is returned as
+    it is.
 
-    Scans are numbered as they end. Of scenarios each has noise of its own, from `seed` on.
+    Scans are numbered in the order of their ends. Each scenario has its own noise: seeds count up
+    from `seed`.
     """
     sources = [open_source(name, seed + k) for k, name in enumerate(names)]
     if len(sources) == 1:
@@ -88,7 +91,7 @@ def fuse(names: Sequence[str], seed: int = 1) -> Source:
 
 
 def run(service: Service, scans: Iterable[Scan]) -> Iterator[Output]:
-    """What each scan comes to; own ship heads as she goes."""
+    """The output of each scan. Own ship's heading is its course."""
     memory = service.start()
     for scan in scans:
         memory, output = service.step(memory, scan)
@@ -101,8 +104,10 @@ def write_tracks(
     file: IO[str],
     alarm_file: IO[str] | None = None,
 ) -> Summary:
-    """Run the service over numbered scans and write what it tells after each of them: one row a
-    track, and one in `alarm_file` for each alert that changes."""
+    """Runs the service over numbered scans and writes the results after each scan.
+
+    One row a track; in `alarm_file` one row for each alert that changes.
+    """
     confirmed: set[int] = set()
     count, cpu, doppler = 0, 0.0, False
     memory = service.start()
@@ -135,7 +140,7 @@ def write_tracks(
 
 
 def target_columns(output: Output) -> TargetColumns:
-    """What a track file tells of the targets among the N tracks, and of the tracks' sizes."""
+    """The target columns of a track file for N tracks: target data and sizes."""
     picture, count = output.picture, len(output.report.tracks.id)
 
     def of_targets(values):
@@ -189,13 +194,13 @@ def _write_alarms(file: IO[str], service: Service, output: Output) -> None:
 
 
 def figures(recording: Recording, estimator: str) -> dict[str, Any]:
-    """`metrics.score` of the tracks with the recording's own parameters and this estimator."""
+    """`metrics.score` of the tracks, with the recording's own parameters and this estimator."""
     service = service_for(recording.tracker_parameters, estimator=estimator)
     return metrics.score(recording, follow(service, recording)).figures
 
 
 def follow(service: Service, recording: Recording) -> TrackRows:
-    """The rows that `write_tracks` would write, as far as scores need them."""
+    """The rows that `write_tracks` would write, with the columns that scores need."""
     rows = []
     for number, output in zip(recording.numbers.tolist(), run(service, recording.scans)):
         tracks, now = output.report.tracks, output.estimate

@@ -1,4 +1,4 @@
-"""What an experiment comes to: figures, claims and pictures."""
+"""The result of an experiment: figures, claims and pictures."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -9,11 +9,11 @@ from .report import Claim, Figure
 
 BORNE_OUT, NOT_BORNE_OUT, IN_PART = 'borne out', 'not borne out', 'borne out in part'
 
-Progress = Callable[[int, int], None]  # parts done, and of how many
+Progress = Callable[[int, int], None]  # parts done, and number of parts
 
 
 class Picture(NamedTuple):
-    """name of its file, size in inches, and what paints it on a figure of matplotlib."""
+    """File name, size in inches, and the function that paints it on a matplotlib figure."""
 
     name: str
     size: tuple[float, float]
@@ -21,7 +21,7 @@ class Picture(NamedTuple):
 
 
 class Result(NamedTuple):
-    """figures; claims, published ones and our own, with verdicts; pictures not yet drawn."""
+    """figures; claims (published ones and our own) with verdicts; pictures, not drawn yet."""
 
     figures: list[Figure]
     claims: Sequence[Claim] = ()
@@ -29,16 +29,18 @@ class Result(NamedTuple):
 
 
 def verdict(holds, otherwise: str = NOT_BORNE_OUT) -> str:
-    """In words."""
+    """The verdict as text."""
     return BORNE_OUT if holds else otherwise
 
 
 def silent(done: int, whole: int) -> None:
-    """Progress that nobody sees."""
+    """Progress that shows nothing."""
 
 
 def draw(folder, pictures: Sequence[Picture]) -> list[Path]:
-    """Draw all as PNG into the folder, which is made; the files. ValueError without matplotlib."""
+    """Draws all as PNG into the folder, which is created; returns the files. ValueError without
+    matplotlib.
+    """
     try:
         from matplotlib.figure import Figure as Canvas
     except ModuleNotFoundError as error:

@@ -1,4 +1,4 @@
-"""The trained weights of `gwnn`: one file that says what it is and notices when it is damaged."""
+"""The trained weights of `gwnn`: one file that describes itself and detects damage."""
 
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,10 +16,10 @@ NETWORKS = ('fusion', 'spread')
 
 
 class Weights(NamedTuple):
-    """fusion: weighs and corrects the experts; spread: says how sure that is.
+    """fusion: weights and corrects the experts; spread: the uncertainty of the result.
 
-    manifest: how they came about; made known to people, not used. All arrays are float32: half
-    the time, for a micrometre or so.
+    manifest: how the weights were made, for people; not used. All arrays are float32: half the
+    time, at a cost of about a micrometre.
     """
 
     fusion: Network
@@ -41,7 +41,7 @@ def _arrays(weights: Weights) -> dict[str, np.ndarray]:
 
 
 def save(path, weights: Weights) -> dict[str, Any]:
-    """Write the file; returns its manifest, with format, layouts and checksum filled in."""
+    """Writes the file; returns its manifest with format, layouts and checksum."""
     arrays = _arrays(weights)
     manifest = {
         **weights.manifest,
@@ -54,9 +54,10 @@ def save(path, weights: Weights) -> dict[str, Any]:
 
 
 def load(path, inputs: int, outputs: dict[str, int]) -> Weights:
-    """Read a file of weights for networks of so many inputs, and outputs by network.
+    """Reads a file of weights for networks with `inputs` inputs, and with the number of outputs by
+    network.
 
-    Raises ValueError for a file that cannot be read, is damaged, or belongs to other networks.
+    Raises ValueError if the file cannot be read, is damaged, or belongs to other networks.
     """
     what = f'GWNN weights {shortened(path)}'
     names = [f'{name}_{array}' for name in NETWORKS for array in ARRAYS]

@@ -13,10 +13,10 @@ from ..types import Array
 from . import ais, ais_file, motion
 from .fields import Section
 
-MAX_SPEED = 100 * KNOT  # m/s: the fastest relative speed an ARPA has to know
+MAX_SPEED = 100 * KNOT  # m/s; the highest relative speed that an ARPA must handle
 MAX_LENGTH = 200 * NAUTICAL_MILE  # m
 MAX_DURATION = 7 * 86400.0  # s
-SHIP_LENGTH = 100.0  # m, where it is not stated
+SHIP_LENGTH = 100.0  # m, if not stated
 HULL_SNR_DB = 25.0  # likewise
 NO_HULL = (math.nan,) * 3
 
@@ -36,7 +36,7 @@ class Hulls(NamedTuple):
 
     beam     [T]  m
     heading  [T]  rad; nan: along the course over ground, at rest north
-    snr_db   [T]  mean power over noise of one of a hull's scatterers, dB
+    snr_db   [T]  mean power over noise of one scatterer of the hull, dB
     """
 
     beam: Array
@@ -47,10 +47,10 @@ class Hulls(NamedTuple):
 class Fleet(NamedTuple):
     """Own ship and T targets.
 
-    origin     the frame of all positions; None: nobody says where on Earth it is
+    origin     the frame of all positions; None: the place on Earth is unknown
     paths      of own ship, ship 0, and the targets by their numbers, from 1
     names      T texts
-    pd         [T]  probability of detection at every range, nan where the radar's curve holds
+    pd         [T]  probability of detection at every range, nan where the radar's curve is used
     pd_factor  [T]  of the radar's curve
     length     [T]  m
     hulls      T rows
@@ -68,7 +68,7 @@ class Fleet(NamedTuple):
 
 
 def read(top: Section, folder: Path, duration: float) -> Fleet:
-    """The ships of the file whose mapping is `top`; AIS files are looked for from its `folder`."""
+    """The ships of the file whose mapping is `top`. AIS files are relative to its `folder`."""
     traffic, options = None, top.section('ais', AIS_KEYS)
     remarks: tuple[str, ...] = ()
     if 'ais' in top:
@@ -120,7 +120,9 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
 
 
 def _origin(top, own, traffic, own_vessel):
-    """Where the frame's [0, 0] is: as stated, else where own ship or the first vessel starts."""
+    """The place of the frame's [0, 0]: as stated, else the start of own ship or of the first
+    vessel.
+    """
     if 'origin' in top:
         return LocalFrame(*_geodetic(top.section('origin', 'lat_deg lon_deg')))
     start = own.values.get('start')
@@ -178,7 +180,7 @@ def _vessel(value, traffic) -> str:
 
 
 def _chance(section):
-    """Stated probability of detection (nan: the radar's curve) and the curve's factor."""
+    """Stated probability of detection (nan: use the radar's curve) and the curve's factor."""
     if 'pd' in section and 'pd_factor' in section:
         raise ValueError(f'{section.where} has both pd and pd_factor; give one')
     pd = section.number('pd', 0.0, 1.0) if 'pd' in section else math.nan
@@ -186,7 +188,7 @@ def _chance(section):
 
 
 def _hull(section, length):
-    """Beam, heading and power of a target's hull; nan where it has none."""
+    """Beam, heading and power of a target's hull; nan if it has none."""
     if 'hull' not in section:
         return NO_HULL
     for key in ('pd', 'pd_factor'):
@@ -211,7 +213,7 @@ def _hull(section, length):
 
 
 def _way(section, origin, own_start):
-    """The way of a target, or of own ship itself, which has no `own_start` and may lie at rest."""
+    """The path of a target, or of own ship, which has no `own_start` and may be at rest."""
     if own_start is not None and 'start' not in section:
         raise ValueError(f'{section.where} has no start')
     position = _start(section, origin, own_start) if 'start' in section else np.zeros(2)

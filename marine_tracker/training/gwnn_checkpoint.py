@@ -40,9 +40,9 @@ def save(path: Path, settings: dict[str, Any], training: Training) -> None:
 
 
 def resume(path: Path, settings: dict[str, Any], layout: net.Layout) -> Training | None:
-    """The training that a checkpoint holds; None where there is no such file.
+    """The training in a checkpoint; None if there is no such file.
 
-    Raises ValueError where it is of another training, naming what differs, or is damaged.
+    Raises ValueError if it is damaged, or if it belongs to another training, naming the difference.
     """
     if not path.exists():
         return None
