@@ -6,7 +6,7 @@ import os
 import sys
 from importlib import metadata
 
-from .processes import one_thread
+from .processes import one_thread, stop_on_sigterm
 
 COMMANDS = (
     'demo',
@@ -41,6 +41,8 @@ def main(arguments: list[str] | None = None) -> int:
     """
     argv = sys.argv[1:] if arguments is None else arguments
     one_thread()
+    if arguments is None:
+        stop_on_sigterm()
     try:
         args = _parser(argv).parse_args(argv)
         return args.run(args)

@@ -50,6 +50,15 @@ def end_in_time() -> None:
     signal.set_wakeup_fd(write, warn_on_full_buffer=False)
 
 
+def stop_on_sigterm() -> None:
+    """From now on SIGTERM raises SystemExit, so that what was begun is put in order."""
+
+    def stop(*_):
+        raise SystemExit(128 + signal.SIGTERM)
+
+    signal.signal(signal.SIGTERM, stop)
+
+
 def closing() -> None:
     """To be called once the process is about to end, by a signal or by itself.
 

@@ -23,7 +23,7 @@ A scenario is a YAML file. Keys end in their unit: a length is `_m` or `_nm`, a 
           - speed: {to_kn: 8, duration_s: 60}         # or acceleration_mps2
 
 Ships can also be driven by AIS reports. The file is relative to the scenario's folder; its form is
-described in ais.py. Own ship is then one of the vessels, or lies at a place:
+described in ais_file.py. Own ship is then one of the vessels, or lies at a place:
 
     ais: {file: traffic.csv, start_s: 600, vessels: [3, 17]}      # all vessels, if none are named
     own_ship: {vessel: 1}                                         # or {start: {lat_deg:, lon_deg:}}

@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..files import shown
 from ..geodesy import LocalFrame
 from ..geometry import KNOT, NAUTICAL_MILE, unit_vector
 from ..types import Array
-from . import ais, motion
+from . import ais, ais_file, motion
 from .fields import Section
 
 MAX_SPEED = 100 * KNOT  # m/s; the highest relative speed that an ARPA must handle
@@ -53,6 +54,7 @@ class Fleet(NamedTuple):
     pd_factor  [T]  of the radar's curve
     length     [T]  m
     hulls      T rows
+    remarks    what people should know of the files that were read
     """
 
     origin: LocalFrame | None
@@ -62,20 +64,22 @@ class Fleet(NamedTuple):
     pd_factor: Array
     length: Array
     hulls: Hulls
+    remarks: tuple[str, ...] = ()
 
 
 def read(top: Section, folder: Path, duration: float) -> Fleet:
     """The ships of the file whose mapping is `top`. AIS files are relative to its `folder`."""
     traffic, options = None, top.section('ais', AIS_KEYS)
+    remarks: tuple[str, ...] = ()
     if 'ais' in top:
-        traffic = ais.read(
-            folder / options.text('file'),
-            options.number('start_s', 0.0, 1e9, 0.0),
-            duration,
-            options.number('max_gap_s', 1.0, 3600.0, 120.0),
-        )
+        file = folder / options.text('file')
+        start = options.number('start_s', 0.0, 1e11) if 'start_s' in options else None
+        read = ais_file.read(file, start, duration, options.number('max_gap_s', 1.0, 3600.0, 120.0))
+        traffic, remark = read.vessels, ais_file.told(read.skipped)
+        if remark:
+            remarks = (f'AIS file {file}{remark}',)
     own = top.section('own_ship', SHIP_KEYS + ' vessel')
-    own_vessel = str(own.values['vessel']) if 'vessel' in own else None
+    own_vessel = _vessel(own.values['vessel'], traffic) if 'vessel' in own else None
     origin = _origin(top, own, traffic, own_vessel)
     own_way = (
         _way(own, origin, None)
@@ -111,6 +115,7 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
         pd_factor,
         np.array(lengths),
         Hulls(*np.array(hulls).T),
+        remarks,
     )
 
 
@@ -155,7 +160,7 @@ def _driven_own_ship(own, origin, traffic, vessel, duration):
 
 
 def _chosen_vessels(options, traffic, own_vessel):
-    asked = [str(vessel) for vessel in options.items('vessels')]
+    asked = [_vessel(vessel, traffic) for vessel in options.items('vessels')]
     for vessel in asked:
         if vessel not in traffic:
             raise ValueError(
@@ -163,6 +168,15 @@ def _chosen_vessels(options, traffic, own_vessel):
                 'time of the scenario'
             )
     return [vessel for vessel in asked or traffic if vessel != own_vessel]
+
+
+def _vessel(value, traffic) -> str:
+    """The vessel's name in the AIS file; a number is also found with noughts before it."""
+    name = value if isinstance(value, str) else shown(value)
+    if traffic and name not in traffic and type(value) is int:
+        same = [one for one in traffic if one.isdecimal() and int(one) == value]
+        return same[0] if len(same) == 1 else name
+    return name
 
 
 def _chance(section):

@@ -25,6 +25,7 @@ from ...conformance.encounters import WARNED_BEFORE
 from ...estimators import ESTIMATORS, Estimator
 from ...evaluation import parallel, replay, report
 from ...evaluation.result import Progress, Result, silent
+from ...files import write_text
 from ...parameters import TrackerParameters
 from ...recording import csv_folder
 from ...simulation import scenario
@@ -231,7 +232,7 @@ def write_table(page: str, found: dict[str, dict[str, Errors]]) -> None:
         row = [errors[scene] for errors in found.values()]
         best = [np.nanmin([one[k] for one in row] + [np.inf]) for k in (0, 1)]
         lines.append(f'| {scene} | ' + ' | '.join(_cell(one, best) for one in row) + ' |')
-    Path(page).write_text('\n'.join([head + begin, *lines, end + tail]))
+    write_text(page, '\n'.join([head + begin, *lines, end + tail]))
 
 
 def _cell(errors: Errors, best) -> str:

@@ -11,7 +11,7 @@ from scipy.interpolate import make_smoothing_spline
 
 from ...geodesy import LocalFrame
 from ...geometry import unit_vector
-from ...simulation import ais, motion
+from ...simulation import ais, ais_file, motion
 from ...training.ship_tracks import Ships
 
 TURN_SCAN, TURN_RADIUS, TURN_ANGLE = 100, 200.0, float(np.radians(50))  # paper 000, 5.2
@@ -103,7 +103,7 @@ def real_ships(file: Path, steps, rng) -> Ships:
     Each is turned, mirrored and moved at random. Raises ValueError if no vessel reports long enough
     without a gap.
     """
-    vessels = ais.read(file, 0.0, HOUR, LONGEST_GAP)
+    vessels = ais_file.read(file, 0.0, HOUR, LONGEST_GAP).vessels
     first = next(iter(vessels.values()))
     frame = LocalFrame(first.latitude[0], first.longitude[0])
     ways = [ais.way(reports, frame) for reports in vessels.values()]
