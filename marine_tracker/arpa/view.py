@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..estimators import ACCOUNTS, Account
+from ..estimators import Account, Estimator
 from ..extent.hull_clearance import hull_clearance
 from ..extent.hulls import Shapes
 from ..tracking import lifecycle
@@ -66,10 +66,12 @@ class HullView(NamedTuple):
     clearance: Array
 
 
-def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None = None) -> View:
+def view(
+    picture: Picture, report: Report, estimator: Estimator, shapes: Shapes | None = None
+) -> View:
     """The picture's targets with what the tracker's report tells of them.
 
-    estimator: the name of the one that the tracks' state belongs to; shapes: of all the tracks.
+    estimator: the one that the tracks' state belongs to; shapes: of all the tracks.
     """
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
@@ -91,7 +93,7 @@ def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None
         lifecycle.hits(tracks.history, lifecycle.TEN),
         lifecycle.misses_in_a_row(tracks.history),
         picture.time - tracks.first_time,
-        ACCOUNTS[estimator](tracks.state) if estimator in ACCOUNTS else no_account(len(tracks.id)),
+        estimator.account(tracks.state) if estimator.account else no_account(len(tracks.id)),
         None if shapes is None else _hulls(picture, take(shapes, picture.row)),
     )
 
@@ -121,11 +123,11 @@ class Standing(NamedTuple):
     fallen_at: NDArray[np.bool_]
 
 
-def standing(report: Report, estimator: str) -> Standing:
+def standing(report: Report, estimator: Estimator) -> Standing:
     """How the estimator fares with the confirmed tracks of a report."""
-    if estimator not in ACCOUNTS:
+    if estimator.account is None:
         return Standing({}, 0, '', np.zeros(len(report.tracks.id), bool))
-    account = ACCOUNTS[estimator](report.tracks.state)
+    account = estimator.account(report.tracks.state)
     confirmed = report.tracks.status == CONFIRMED
     states = np.bincount(account.state[confirmed], minlength=len(account.states))
     fallen = np.bincount(account.reason[confirmed], minlength=len(account.reasons))[1:]

@@ -329,7 +329,7 @@ def shapes(hulls: Hulls, noise, position) -> Shapes:
     heading_sd = np.where(by_course, course_sd, found.axis_sd)
     source = np.where(by_course, COURSE, AXIS).astype(np.int8)
     lined = (hulls.method == BY_GAUSSIAN_PROCESS).nonzero()[0]
-    if len(lined):
+    if hulls.outline is not None and len(lined):
         outline = take(hulls.outline, lined)
         of = outline_measures.measures(outline, SHIP.contour)
         points[lined] = outline_measures.of_gaussian_process(outline, SHIP.contour, _AROUND).points
