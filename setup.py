@@ -34,9 +34,9 @@ setup(
     install_requires=[
         'numpy>=1.26.4',
         'PyWavelets>=1.4',
-        'PyYAML>=6.0',
         'pynmea2>=1.19',
         'rich>=13.3',
+        'ruamel.yaml>=0.17.21',
         'scipy>=1.11.4',
     ],
     extras_require={
@@ -53,7 +53,7 @@ setup(
         'parallel': ['pytest-xdist>=3.3'],
         'bench': ['stonesoup>=1.4'],
         'plot': ['matplotlib>=3.6'],
-        'dev': ['mypy>=1.8', 'pre-commit>=3.0', 'ruff>=0.4', 'types-PyYAML'],
+        'dev': ['mypy>=1.8', 'pre-commit>=3.0', 'ruff>=0.4'],
     },
     entry_points={
         'console_scripts': [

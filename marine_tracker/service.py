@@ -39,7 +39,7 @@ class Tracking(NamedTuple):
     scan      as the tracker took it: with extents one plot a cluster
     report    of the tracker
     estimate  N rows, at the report's times
-    shapes    N rows: sizes and headings; None with extent off
+    shapes    N rows: sizes and headings; None with extent none
     """
 
     scan: Scan

@@ -10,7 +10,7 @@ import marine_tracker
 PACKAGE = Path(marine_tracker.__file__).resolve().parent
 
 # What each part of the package may import of the others: the table of doc/architecture.md.
-BASE = {'types', 'geometry', 'parameters', 'config', 'processes'}
+BASE = {'types', 'geometry', 'parameters', 'config', 'processes', 'files', 'yaml_file'}
 CORE = BASE | {'gaussian', 'networks', 'estimators', 'tracking', 'extent'}
 SOURCES = {'simulation', 'recording'}
 SERVICE = CORE | {'arpa', 'service'}
@@ -18,7 +18,9 @@ MAY_IMPORT = {
     'config': set(),
     'types': set(),
     'geometry': {'types'},
-    'parameters': set(),
+    'files': set(),
+    'yaml_file': {'files'},
+    'parameters': {'files'},
     'processes': set(),
     'parameter_files': BASE,
     'simulation': BASE,

@@ -11,7 +11,7 @@ from importlib.metadata import Distribution
 from pathlib import Path
 
 import pytest
-import yaml
+from ruamel.yaml import YAML
 
 import marine_tracker
 
@@ -27,8 +27,8 @@ ROSDEP_KEY = {
     'pytest': 'python3-pytest',
     'pytest-timeout': 'python3-pytest-timeout',
     'PyWavelets': 'python3-pywavelets',
-    'PyYAML': 'python3-yaml',
     'rich': 'python3-rich',
+    'ruamel.yaml': 'python3-ruamel.yaml',
     'ros-jazzy-domain-coordinator': 'domain_coordinator',
     'scipy': 'python3-scipy',
     'setuptools': 'python3-setuptools',
@@ -136,7 +136,7 @@ def test_every_ros_package_imported_is_in_package_xml():
 
 
 def test_every_rosdep_key_of_our_own_has_a_rule_for_debian_and_ubuntu():
-    rules = yaml.safe_load((ROOT / 'rosdep.yaml').read_text())
+    rules = YAML(typ='safe', pure=True).load((ROOT / 'rosdep.yaml').read_text())
     assert set(rules) == {'python3-pywavelets'} <= manifest('exec_depend')
     assert all({'debian', 'ubuntu'} <= set(rule) for rule in rules.values())
 

@@ -38,7 +38,7 @@ class View(NamedTuple):
     misses      [N]  scans since the last plot
     age         [N]  s since the first plot
     account     how the estimator fares with them, N rows; without words where it gives none
-    hulls       their sizes, N rows; None with extent off
+    hulls       their sizes, N rows; None with extent none
     """
 
     name: list[str]

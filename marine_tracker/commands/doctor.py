@@ -26,7 +26,7 @@ REQUIRED = {
     'numpy': 'numpy',
     'scipy': 'scipy',
     'pywt': 'PyWavelets',
-    'yaml': 'PyYAML',
+    'ruamel.yaml': 'ruamel.yaml',
     'rich': 'rich',
     'pynmea2': 'pynmea2',
 }

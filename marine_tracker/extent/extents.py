@@ -82,7 +82,7 @@ class Extents:
 
     def __init__(self, parameters: TrackerParameters):
         self.parameters = parameters
-        self.on = parameters.extent != 'off'
+        self.on = parameters.extent != 'none'
         self.beam_width = float(np.radians(parameters.beam_width_deg))
 
     def start(self) -> ExtentsMemory:

@@ -24,6 +24,7 @@ from ..types import Array
 from .convert import nanoseconds, odometry_to_own_ship, yaw_of
 
 NAMED = re.compile(r'(TT|Q)([0-9]{1,9})')
+LONGEST_NAME = 80  # characters; no sentence holds more
 STATUS = {'LOST': LOST, 'ACQUIRING': ACQUIRING}  # all others are tracked
 FIGURES = {
     'range_nm': NAUTICAL_MILE,
@@ -39,7 +40,8 @@ def read_targets(message: DiagnosticArray) -> Targets:
     """The targets of a message on `targets`, with their own numbers; nan for what it lacks.
 
     TT07 has the number 7; Q123, which is being acquired and has none yet, -123. Entries that are
-    no target are passed over.
+    no target are passed over. Names are cut to LONGEST_NAME: all rows of an array of texts take
+    the room of the longest.
     """
     rows = []
     for entry in message.status:
@@ -52,7 +54,7 @@ def read_targets(message: DiagnosticArray) -> Targets:
                 int(named[2]) * (1 if named[1] == 'TT' else -1),
                 STATUS.get(entry.message, TRACKING),
                 MANUAL if values.get('acquired') == MANUAL else AUTOMATIC,
-                values.get('name') or entry.name,
+                values.get('name', '')[:LONGEST_NAME] or entry.name,
                 *(_figure(values.get(key, ''), unit) for key, unit in FIGURES.items()),
             )
         )

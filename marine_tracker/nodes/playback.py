@@ -102,6 +102,7 @@ class Playback:
         self._start_ns: int | None = None  # stamp of the time _first
         self._anchor = (0.0, self._first)  # a moment of the wall and the time it stands for
         self._timer = node.create_timer(TICK_S, self._tick, clock=self._steady)
+        node.watch_failures(self._steady)
 
     def close(self) -> None:
         """Stop, and see that what was published arrives."""

@@ -71,6 +71,13 @@ class NmeaOutputParameters:
         '', 'Where Signal K deltas are sent as datagrams, as for udp. Empty: nowhere.'
     )
     talker: str = parameter('RA', 'Talker of OSD, RSD, TTM and TLL.')
+    target_numbers: int = parameter(
+        99,
+        'Greatest target number in TTM and TLL, so most targets at a time: 99 as the standard '
+        'has it (two digits), up to 999 where receivers read three digits, as OpenCPN does.',
+        low=99,
+        high=999,
+    )
     own_ship_talker: str = parameter('II', 'Talker of RMC and HDT.')
     own_ship_period_s: float = parameter(
         1.0,

@@ -49,9 +49,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import config
+from .. import config, yaml_file
 from ..geometry import NAUTICAL_MILE
-from ..parameters import VESSEL_CLASSES, TrackerParameters, read_yaml_mapping
+from ..parameters import VESSEL_CLASSES, TrackerParameters
 from ..types import OwnShip, Truth
 from . import land, motion, sensor_errors, ships
 from .fields import Section
@@ -228,7 +228,7 @@ def load(name_or_path) -> Scenario:
             return build(STANDARD[path.name](), path.name)
         path = config.path('scenarios', f'{path.name}.yaml')
     try:
-        return build(read_yaml_mapping(path), path.stem, path.parent)
+        return build(yaml_file.read_mapping(path), path.stem, path.parent)
     except OSError as error:
         raise ValueError(f'scenario {path} cannot be read: {error.strerror}') from error
     except ValueError as error:

@@ -114,8 +114,8 @@ def test_a_range_of_nothing_is_not_written_as_the_zero_that_means_switched_off()
 @pytest.mark.parametrize(
     ('columns', 'named'),
     [
-        ({'number': 0}, 'number of a target is 0; it must be 1 to 99'),
-        ({'number': 100}, 'number of a target is 100'),
+        ({'number': 0}, 'number of a target is 0; it must be 1 to 999'),
+        ({'number': 1000}, 'number of a target is 1000'),
         ({'status': 'X'}, "status of a target is 'X'; it must be L, Q, T"),
         ({'acquired': 'auto'}, "acquired of a target is 'auto'; it must be A, M, R"),
     ],

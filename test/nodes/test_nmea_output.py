@@ -18,7 +18,6 @@ from std_msgs.msg import String
 
 from marine_tracker.geometry import KNOT, unit_vector
 from marine_tracker.nodes import convert, topics
-from marine_tracker.nodes.nmea_output_links import PENDING, Clients, Datagrams, endpoints
 from marine_tracker.nodes.nmea_output_node import NmeaOutputNode
 
 OUTPUT = 'nodes.run nmea_output'
@@ -231,6 +230,18 @@ def test_what_targets_does_not_tell_is_left_empty_and_what_is_no_target_passed_o
     ]
 
 
+def test_a_receiver_of_three_digits_is_told_each_target_by_its_own_number(rig):
+    here = rig(sentences='TTM', target_numbers=500)
+    said = here.scan(entry('TT08'), entry('TT108'), entry('TT499'), entry('TT3000'))
+    parsed = [pynmea2.parse(line, check=True) for line in said]
+    assert [(one.target_number, one.name) for one in parsed] == [
+        (8, 'TT08'),
+        (108, 'TT108'),
+        (499, 'TT499'),
+        (1, 'TT3000'),
+    ]
+
+
 def test_the_same_message_twice_is_one_scan(rig):
     here = rig(sentences='TTM')
     assert len(here.scan(entry('TT01'), seconds=5.0)) == 1
@@ -328,100 +339,6 @@ def test_signalk_deltas_go_out_as_datagrams(rig, ears):
     here.scan(entry('TT02'), seconds=2.0)
     gone = [delta for delta in map(json.loads, ear.hear(2)) if delta['context'] == first['context']]
     assert all(one['value'] is None for one in gone[0]['updates'][0]['values'] if one['path'])
-
-
-def test_a_broadcast_reaches_who_listens_to_it(ears):
-    ear = ears(host='127.255.255.255')
-    link = Datagrams('udp', f'127.255.255.255:{ear.port} {LOOPBACK}:{ear.port}')
-    assert link.send([b'one', b'two']) == 0
-    assert ear.hear(2) == ['one', 'two'] and link.sent == 4  # the second goes nowhere, unheard
-    link.close()
-
-
-def test_a_datagram_that_cannot_be_sent_is_counted_with_its_reason():
-    link = Datagrams('udp', '127.0.0.1:9')
-    assert link.send([b'x' * 70_000, b'short']) == 1
-    assert link.error == '127.0.0.1:9: Message too long' and link.sent == 1
-    link.close()
-
-
-def connect(server, port, patience=10.0):
-    client = socket.create_connection((LOOPBACK, port), patience)
-    count, until = len(server), time.monotonic() + patience
-    while len(server) == count and time.monotonic() < until:
-        server.serve()
-    return client
-
-
-def test_a_slow_tcp_client_is_dropped_and_never_blocks_the_others(free_port):
-    server = Clients('tcp', f'{LOOPBACK}:{free_port}')
-    slow, quick = connect(server, free_port), connect(server, free_port)
-    line, count, heard = b'x' * 1022 + b'\r\n', 0, 0
-    quick.setblocking(False)
-    while not server.dropped:
-        server.send([line] * 16)
-        count += 16
-        with contextlib.suppress(BlockingIOError):
-            while True:
-                heard += len(quick.recv(1 << 20))
-        assert count < 100_000
-    assert len(server) == 1 and count * 1024 > PENDING
-    quick.settimeout(10)
-    while heard < count * 1024:
-        server.serve()
-        heard += len(quick.recv(1 << 20))
-    assert heard == count * 1024
-    slow.close()
-    quick.close()
-    server.close()
-
-
-def test_tcp_clients_come_and_go(free_port):
-    server = Clients('tcp', f'{LOOPBACK}:{free_port}')
-    server.send([b'to nobody\r\n'])
-    first, second = connect(server, free_port), connect(server, free_port)
-    server.send([b'a\r\n'])
-    assert first.recv(100) == second.recv(100) == b'a\r\n'
-    first.close()
-    until = time.monotonic() + 10
-    while len(server) == 2 and time.monotonic() < until:  # the first one only tells it
-        server.send([b'b\r\n'])
-    assert len(server) == 1
-    assert second.recv(3) == b'b\r\n'
-    server.close()
-    while second.recv(1000):  # the rest, then the end
-        pass
-    second.close()
-    Clients('tcp', f'{LOOPBACK}:{free_port}').close()  # the port is free again at once
-
-
-def test_no_server_where_none_is_asked_for():
-    server = Clients('tcp', '')
-    server.send([b'nothing'])
-    assert len(server) == 0
-    server.close()
-
-
-@pytest.mark.parametrize(
-    'text',
-    [
-        'localhost',
-        ':10110',
-        'host:',
-        '127.0.0.1:0',
-        '127.0.0.1:70000',
-        '127.0.0.1:x',
-        '127.0.0.1:10110 other',
-    ],
-)
-def test_what_is_no_host_and_port_is_refused(text):
-    with pytest.raises(ValueError, match="parameter udp has '.*'; it must be host:port"):
-        endpoints('udp', text)
-
-
-def test_addresses_of_version_6_stand_in_brackets():
-    (found,) = endpoints('udp', '[::1]:10110')
-    assert found.family == socket.AF_INET6 and found.address[:2] == ('::1', 10110)
 
 
 def p(**parameters):
