@@ -7,7 +7,7 @@ Axes: M plots, N tracks, K own-ship samples. Positions are [east, north] in metr
 ground-stabilised frame `map`; times are seconds; bearings are radians clockwise from true north.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 CodeArray = NDArray[np.int8]  # one of a few named numbers, such as Tracks.status
+Numbers = Sequence[float] | Array
 HISTORY = 20  # scans of hits and misses that a track remembers, bits of Tracks.history
 
 

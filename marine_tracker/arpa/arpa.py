@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import KNOT, NAUTICAL_MILE, polar_to_position, unit_vector
@@ -13,7 +12,18 @@ from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.noise import noise_of
 from ..tracking.radars import radars_of
 from ..tracking.tracker import Report
-from ..types import Array, OwnShip, Scan, Tracks, append, row_of, take
+from ..types import (
+    Array,
+    BoolArray,
+    CodeArray,
+    IntArray,
+    OwnShip,
+    Scan,
+    Tracks,
+    append,
+    row_of,
+    take,
+)
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
@@ -58,13 +68,13 @@ class Picture(NamedTuple):
 
     time: float
     own: OwnMotion
-    row: NDArray[np.int64]
+    row: IntArray
     targets: Targets
     motion: Motion
     approach: Approach
     past: PastPositions
-    at_rest: NDArray[np.bool_]
-    danger: NDArray[np.int8]
+    at_rest: BoolArray
+    danger: CodeArray
     overlap: Array
     events: Events
     alerts: Alerts
@@ -75,7 +85,7 @@ OWN_AT_REST = 0.25  # m/s, below which own ship makes no way
 BY_CHANCE = 11.8  # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
 
 
-def makes_way(moving: Motion) -> NDArray[np.bool_]:
+def makes_way(moving: Motion) -> BoolArray:
     """Whether [N] tracks surely move over ground; a new one at anchor shows some speed by noise."""
     inverse, _ = invert_2x2(moving.covariance[:, 2:, 2:])
     return ~moving.stationary & (squared_distance(moving.velocity, inverse) > BY_CHANCE)
@@ -125,7 +135,12 @@ class Arpa:
         )
 
     def step(
-        self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen=False
+        self,
+        memory: ArpaMemory,
+        scan: Scan,
+        report: Report,
+        heading: float,
+        fallen: bool | BoolArray = False,
     ) -> tuple[ArpaMemory, Picture]:
         """One antenna revolution; all is reckoned to its end.
 
@@ -157,8 +172,8 @@ class Arpa:
 
         # alarms: those after the scan, and those that changed
         overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        fallen = _fallen(fallen, acquired, tracks)
-        tracking = alarms.Tracking(self.acquisition.capacity, fallen, overlap, other)
+        down = _fallen(fallen, acquired, tracks)
+        tracking = alarms.Tracking(self.acquisition.capacity, down, overlap, other)
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
@@ -182,13 +197,13 @@ class Arpa:
 
     def _swap_risk(
         self,
-        tracks,
+        tracks: Tracks,
         remembered: motion.MotionMemory,
         passing: Approach,
         own: OwnMotion,
         now: float,
         radar: TrackerParameters,
-    ):
+    ) -> tuple[Array, IntArray]:
         """Overlap [N] of the gates of the radar's next scan and the rows [N] of the others."""
         overlap, other = np.full(len(tracks.id), np.inf), np.full(len(tracks.id), -1)
         rows = ((tracks.number > 0) & (tracks.status != LOST)).nonzero()[0]
@@ -213,7 +228,7 @@ def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Target
     return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
 
 
-def _fallen(fallen, acquired: Acquisition, tracks: Tracks) -> int:
+def _fallen(fallen: bool | BoolArray, acquired: Acquisition, tracks: Tracks) -> int:
     """How many confirmed targets have fallen back, of the tracks `fallen` [N], or all or none."""
     target = acquisition.how_acquired(acquired, tracks.id) >= 0
     return int(np.sum(fallen & target & (tracks.status == CONFIRMED)))

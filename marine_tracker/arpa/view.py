@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..estimators import Account, Estimator
 from ..extent.hull_clearance import hull_clearance
@@ -11,7 +10,7 @@ from ..extent.hulls import Shapes
 from ..tracking import lifecycle
 from ..tracking.lifecycle import CONFIRMED
 from ..tracking.tracker import Report
-from ..types import Array, take
+from ..types import Array, BoolArray, CodeArray, IntArray, take
 from . import alarms
 from .alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
 from .arpa import Picture
@@ -42,18 +41,18 @@ class View(NamedTuple):
     """
 
     name: list[str]
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    status: NDArray[np.int8]
-    reason: NDArray[np.int8]
-    acquired: NDArray[np.int8]
+    id: IntArray
+    number: IntArray
+    status: CodeArray
+    reason: CodeArray
+    acquired: CodeArray
     motion: Motion
     approach: Approach
-    at_rest: NDArray[np.bool_]
-    dangerous: NDArray[np.bool_]
-    swap_risk: NDArray[np.bool_]
-    hits: NDArray[np.int64]
-    misses: NDArray[np.int64]
+    at_rest: BoolArray
+    dangerous: BoolArray
+    swap_risk: BoolArray
+    hits: IntArray
+    misses: IntArray
     age: Array
     account: Account
     hulls: 'HullView | None' = None
@@ -120,7 +119,7 @@ class Standing(NamedTuple):
     states: dict[str, int]
     fallen: int
     reason: str
-    fallen_at: NDArray[np.bool_]
+    fallen_at: BoolArray
 
 
 def standing(report: Report, estimator: Estimator) -> Standing:

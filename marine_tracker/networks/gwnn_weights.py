@@ -39,7 +39,7 @@ def _arrays(weights: Weights) -> dict[str, np.ndarray]:
     }
 
 
-def save(path, weights: Weights) -> dict[str, Any]:
+def save(path: str | Path, weights: Weights) -> dict[str, Any]:
     """Write the file; returns its manifest, with format, layouts and checksum filled in."""
     arrays = _arrays(weights)
     manifest = {
@@ -52,7 +52,7 @@ def save(path, weights: Weights) -> dict[str, Any]:
     return manifest
 
 
-def load(path, inputs: int, outputs: dict[str, int]) -> Weights:
+def load(path: str | Path, inputs: int, outputs: dict[str, int]) -> Weights:
     """Read a file of weights for networks of so many inputs, and outputs by network.
 
     Raises ValueError for a file that cannot be read, is damaged, or belongs to other networks.
@@ -67,7 +67,7 @@ def load(path, inputs: int, outputs: dict[str, int]) -> Weights:
     return Weights(networks[0], networks[1], manifest)
 
 
-def _network(name, arrays, layout, inputs, outputs, what) -> Network:
+def _network(name: str, arrays, layout, inputs: int, outputs: int, what: str) -> Network:
     form = Layout(int(layout[0]), int(layout[1]), float(layout[2]), int(layout[3]), *layout[4:])
     group = group_size(form)
     shapes = {

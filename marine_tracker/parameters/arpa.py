@@ -127,5 +127,5 @@ class ArpaParameters:
         live=True,
     )
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)

@@ -20,12 +20,14 @@ from ...gaussian import linear_modes
 from ...gaussian.linear import sandwich
 from ...networks import gwnn_weights
 from ...networks.wavelet_network import forward
-from ...types import Array, Extrapolation, put, take, where
+from ...types import Array, Extrapolation, IntArray, Plots, Rows, put, take, where
 from .. import cs_kalman
-from ..contract import Account, Estimator
+from ..contract import Account, Estimator, Velocity
 from . import adaptation, inputs
 from . import bank as filters
 from . import monitor as monitors
+from .bank import BankState, Expected
+from .inputs import ResidualMemory
 from .monitor import EXPECTED, FALLBACK, GWNN, TRUST, WARM, Monitor, Trust, judge
 
 GATE, REFUSALS = 16.0, 2  # squared distance from the base; plots refused in a row, at most
@@ -73,7 +75,7 @@ class Look(NamedTuple):
     scans: Array
 
 
-def look(state: filters.BankState, frame, ahead: filters.Ahead, time) -> Look:
+def look(state: filters.BankState, frame: Array, ahead: filters.Ahead, time: Array) -> Look:
     """The filters at the times [N] s, as the network speaks of them."""
     log_weight = np.full((filters.EXPERTS, len(frame)), OTHERS)
     log_weight[:4] = np.log(ahead.weight[filters.BASE] + 1e-4)
@@ -81,7 +83,7 @@ def look(state: filters.BankState, frame, ahead: filters.Ahead, time) -> Look:
     return Look(inputs.apart(frame, ahead), log_weight, np.clip(scans, 0.0, FADE))
 
 
-def fuse(output, at: Look):
+def fuse(output: Array, at: Look) -> Array:
     """The network's correction [4, N] of the base, from its outputs [N, 19 or more]."""
     output = output.T
     weight = at.log_weight + output[LOGITS]
@@ -90,10 +92,11 @@ def fuse(output, at: Look):
     out = (at.apart * weight).sum(1)
     out[:2] += output[AT_ONCE] + at.scans * output[PER_SCAN]
     out[2:] += output[OF_VELOCITY]
-    return out
+    found: Array = out
+    return found
 
 
-def correct(state: GwnnState, at: Look):
+def correct(state: GwnnState, at: Look) -> Array:
     """The correction [4, N] of the base, in the units of `gwnn_inputs`, with what the tracks have
     learned."""
     shift = fuse(state.output, at)
@@ -101,13 +104,15 @@ def correct(state: GwnnState, at: Look):
     return shift
 
 
-def flaw(output):
+def flaw(output: Array) -> Array:
     """What is wrong with outputs [N, 27]: index into REASONS, 0 for nothing."""
     alone = np.abs(output[:, AT_ONCE.start : OF_VELOCITY.stop]).max(1)
     return np.where(~np.isfinite(output).all(1), 2.0, np.where(alone > MOST, 3.0, 0.0))
 
 
-def advance(bank: filters.Filters, state: filters.BankState, memory: inputs.ResidualMemory, plots):
+def advance(
+    bank: filters.Filters, state: filters.BankState, memory: inputs.ResidualMemory, plots: Plots
+) -> tuple[BankState, ResidualMemory, Expected]:
     """States and memories of N rows after one plot each; and what the filters had expected.
 
     A plot far off a settled track is refused by all filters alike, up to REFUSALS times in a
@@ -156,7 +161,7 @@ def gwnn(
     """
     bank = filters.BANKS[vessel_class]
 
-    def speak(state, memory):
+    def speak(state: BankState, memory: ResidualMemory) -> tuple[Array, Array]:
         """What the network says [N, 27] of rows, and the units that learn; 0 while warming up."""
         out = np.zeros((len(state.time), OUTPUTS + SPREADS))
         units = adaptation.begin(len(state.time), weights.fusion, learning).units
@@ -171,7 +176,7 @@ def gwnn(
                 units[warm] = adaptation.units_of(weights.fusion, seen, POSITION)
         return out, units
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> GwnnState:
         count = len(plots.time)
         zero = np.zeros(count)
         monitor = Monitor(
@@ -190,7 +195,7 @@ def gwnn(
             adaptation.begin(count, weights.fusion, learning),
         )
 
-    def extrapolate(state, time):
+    def extrapolate(state: GwnnState, time: Array) -> Extrapolation:
         begun, frame = state.bank.time, state.memory.frame
         near = np.clip(time, begun, begun + FADE * period)
         columns = filters.base(bank, state.bank, time)
@@ -220,17 +225,17 @@ def gwnn(
             covariance[heard] = respread(covariance[heard], ratio, frame[heard], at.scans)
         fallen = np.flatnonzero(state.monitor.status == FALLBACK)
         if len(fallen):
-            rows = take(state.bank, fallen)
+            alone = take(state.bank, fallen)
             mean[fallen], covariance[fallen] = cs_kalman.predict(
-                rows.cs_mean,
-                rows.cs_covariance,
+                alone.cs_mean,
+                alone.cs_covariance,
                 (time - begun)[fallen],
                 bank.settings.manoeuvre,
                 cs_kalman.SHOWN,
             )
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: GwnnState, plots: Plots, rows: IntArray) -> GwnnState:
         before = take(state, rows)
         frame = before.memory.frame
         after, memory, expected = advance(bank, before.bank, before.memory, plots)
@@ -258,13 +263,13 @@ def gwnn(
     return Estimator(init, extrapolate, update, account)
 
 
-def _chosen(state, rows):
+def _chosen(state: Rows, rows: IntArray) -> Rows:
     """The rows (ascending) of a state; itself where they are all."""
     whole = len(rows) == len(state[0] if isinstance(state[0], np.ndarray) else state[0].time)
     return state if whole else take(state, rows)
 
 
-def respread(covariance, ratio, frame, scans):
+def respread(covariance: Array, ratio: Array, frame: Array, scans: Array) -> Array:
     """Covariances [N, 4, 4] with variances along and across scaled, correlations kept.
 
     ratio [N, 8]: logs of the variances' ratios, at once and a scan ahead.

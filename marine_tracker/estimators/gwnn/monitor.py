@@ -92,7 +92,7 @@ def judge(
     """
     sigma = inputs.frame_of(plots)[:, 2:].T
 
-    def residual(position):
+    def residual(position: Array) -> Array:
         off = inputs.turn(memory.frame, plots.position.T - position) / sigma
         size = (off * off).sum(0)
         return np.where(size < WORST, size, WORST)  # nan counts as worst
@@ -102,7 +102,7 @@ def judge(
         [residual(ahead.mean[:2] + shift[:2]), residual(ahead.experts[:2, filters.CS])], 1
     )
 
-    def averaged(j, keep):
+    def averaged(j: Array, keep: float) -> Array:
         return np.where(speaking[:, None], keep * j + (1 - keep) * residuals, j)
 
     network, cs = averaged(np.stack([monitor.network, monitor.cs], 1), KEEP).T
