@@ -3,9 +3,7 @@
 import contextlib
 import os
 import reprlib
-import signal
 import stat
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
@@ -20,6 +18,12 @@ def shown(value: Any) -> str:
     """The value as a message tells it: as Python writes it, long ones cut."""
     text = _BRIEF.repr(value)
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + '...'
+
+
+def shortened(text: Any) -> str:
+    """A name or path as a message tells it: in one line, long ones cut."""
+    line = ' '.join(str(text).split())
+    return line if len(line) <= 200 else line[:197] + '...'
 
 
 def regular(path) -> Path:
@@ -62,6 +66,8 @@ def written(path, mode: str = 'w', **options) -> Iterator[IO[Any]]:
     mode, options  as for `open`
     """
     path = Path(os.path.realpath(path))
+    if 'b' not in mode:
+        options.setdefault('encoding', 'utf-8')
     if path.exists() and not path.is_file():
         with open(path, mode, **options) as file:
             yield file
@@ -88,13 +94,3 @@ def write_text(path, text: str) -> None:
     """Write a text file, whole or not at all."""
     with written(path) as file:
         file.write(text)
-
-
-def stop_on_sigterm() -> None:
-    """From now on SIGTERM ends the main thread as SIGINT does, so that it can clean up."""
-
-    def stop(*_):
-        raise SystemExit(128 + signal.SIGTERM)
-
-    if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, stop)

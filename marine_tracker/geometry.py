@@ -3,7 +3,7 @@
 Bearings are radians clockwise from true north; vectors are [east, north].
 """
 
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from .types import Array, OwnShip, Plots, PolarPlots
 
 NAUTICAL_MILE = 1852.0  # m
 KNOT = NAUTICAL_MILE / 3600.0  # m/s
-EARTH_RADIUS = 6371008.8  # m, mean
 Angle = TypeVar('Angle', float, Array)
 
 
@@ -109,30 +108,3 @@ def locate(polar: PolarPlots, own_ship: OwnShip, range_sigma: float, bearing_sig
         covariance,
         polar.radial_speed,
     )
-
-
-def local_from_geodetic(
-    latitude_deg: float | Array,
-    longitude_deg: float | Array,
-    origin_latitude_deg: float,
-    origin_longitude_deg: float,
-) -> Array:
-    """East and north [..., 2] m of geodetic positions near an origin, on a sphere."""
-    north = np.radians(np.subtract(latitude_deg, origin_latitude_deg)) * EARTH_RADIUS
-    east = (
-        np.radians(np.subtract(longitude_deg, origin_longitude_deg))
-        * EARTH_RADIUS
-        * np.cos(np.radians(origin_latitude_deg))
-    )
-    return np.stack([east, north], -1)
-
-
-def geodetic_from_local(
-    position: Array, origin_latitude_deg: float, origin_longitude_deg: float
-) -> tuple[Any, Any]:
-    """Latitude [...] and longitude [...] in degrees of local positions [..., 2] m."""
-    latitude = origin_latitude_deg + np.degrees(position[..., 1] / EARTH_RADIUS)
-    longitude = origin_longitude_deg + np.degrees(
-        position[..., 0] / (EARTH_RADIUS * np.cos(np.radians(origin_latitude_deg)))
-    )
-    return latitude, longitude

@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arpa.arpa import OWN_AT_REST, Arpa, ArpaMemory, Picture
+from .arpa.anchor import AT_REST
+from .arpa.arpa import Arpa, ArpaMemory, Picture
 from .arpa.view import Standing, standing
 from .estimators import Estimator
 from .extent.extents import Extents, ExtentsMemory
@@ -138,6 +139,6 @@ def course_over_ground(own_ship: OwnShip) -> float:
     """rad: own ship's course over ground in its last sample, which stands for her heading where no
     compass is heard; nan where she makes no way."""
     velocity: Array = own_ship.velocity[-1]
-    if np.hypot(*velocity) < OWN_AT_REST:
+    if np.hypot(*velocity) < AT_REST:
         return float('nan')
     return float(np.arctan2(*velocity))

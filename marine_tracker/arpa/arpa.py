@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import KNOT, NAUTICAL_MILE, polar_to_position, unit_vector
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
@@ -27,12 +26,15 @@ from ..types import (
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
+from .anchor import at_anchor, harmless
 from .cpa import Approach, OwnMotion, approach
 from .motion import Motion
 from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
 from .swap_risk import swap_risk
 from .targets import Events, Targets
+
+Mask = bool | BoolArray  # for all rows, or [N]
 
 
 class ArpaMemory(NamedTuple):
@@ -58,7 +60,7 @@ class Picture(NamedTuple):
     motion    T rows, as stabilised: course and speed through the water where a current is given
     approach  T rows
     past      past positions of all tracks
-    at_rest   [T]  neither the target, as far as is known, nor own ship makes way
+    harmless  [T]  own ship lies at anchor and the target does not surely come nearer
     danger    [T]  one of situation.SAFE, NEARLY, DANGEROUS
     overlap   [T]  of the gate with that of another track: below 1 they may be swapped
     events    what happened to targets in this scan
@@ -73,22 +75,12 @@ class Picture(NamedTuple):
     motion: Motion
     approach: Approach
     past: PastPositions
-    at_rest: BoolArray
+    harmless: BoolArray
     danger: CodeArray
     overlap: Array
     events: Events
     alerts: Alerts
     changed: Alerts
-
-
-OWN_AT_REST = 0.25  # m/s, below which own ship makes no way
-BY_CHANCE = 11.8  # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
-
-
-def makes_way(moving: Motion) -> BoolArray:
-    """Whether [N] tracks surely move over ground; a new one at anchor shows some speed by noise."""
-    inverse, _ = invert_2x2(moving.covariance[:, 2:, 2:])
-    return ~moving.stationary & (squared_distance(moving.velocity, inverse) > BY_CHANCE)
 
 
 class Arpa:
@@ -110,7 +102,7 @@ class Arpa:
         self.acquisition = acquisition.AcquisitionSettings(
             p.acquisition, p.max_targets, p.click_radius_m, p.click_wait_s
         )
-        self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s)
+        self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s, limits=self.limits)
         self.motion = motion.PRESETS[tracker.vessel_class]._replace(
             speed_sigma=0.5 * tracker.max_target_speed_mps
         )
@@ -135,12 +127,7 @@ class Arpa:
         )
 
     def step(
-        self,
-        memory: ArpaMemory,
-        scan: Scan,
-        report: Report,
-        heading: float,
-        fallen: bool | BoolArray = False,
+        self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen: Mask = False
     ) -> tuple[ArpaMemory, Picture]:
         """One antenna revolution; all is reckoned to its end.
 
@@ -158,11 +145,11 @@ class Arpa:
         past = past_positions.step(memory.past, tracks.id, tracks.first_time, moving, own, now)
 
         # cpa: how the tracks pass own ship
-        at_rest = ~makes_way(moving) & (np.hypot(*own.velocity) < OWN_AT_REST)
+        own, no_danger = self._anchored(samples, moving, own, now)
         moving, own = sea_stabilised(moving, own, self.current)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
-            tracks, report.reason, moving.position, passing, at_rest, self.zones, own, self.limits
+            tracks, report.reason, moving.position, passing, no_danger, self.zones, own, self.limits
         )
 
         # acquisition: which of them are targets
@@ -179,11 +166,20 @@ class Arpa:
         )
 
         # the picture: the rows of the targets
-        moving, passing, at_rest = take((moving, passing, at_rest), row)
-        danger, overlap = seen.danger[row], overlap[row]
-        return ArpaMemory(samples, remembered, acquired, alarm[0], past), Picture(
-            now, own, row, targets, moving, passing, past, at_rest, danger, overlap, events, *alarm
+        moving, passing = take(moving, row), take(passing, row)
+        told = no_danger[row], seen.danger[row], overlap[row], events, *alarm
+        return (
+            ArpaMemory(samples, remembered, acquired, alarm[0], past),
+            Picture(now, own, row, targets, moving, passing, past, *told),
         )
+
+    def _anchored(
+        self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float
+    ) -> tuple[OwnMotion, BoolArray]:
+        """Own ship, at rest where she lies at anchor; the tracks [N] that are no danger then."""
+        if not at_anchor(samples, own, now, self.parameters.own_ship_status):
+            return own, np.zeros(len(moving.position), bool)
+        return own._replace(velocity=np.zeros(2)), harmless(moving, own)
 
     def _approach(
         self, moving: Motion, own: OwnMotion, acquired: Acquisition, tracks: Tracks
@@ -228,7 +224,7 @@ def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Target
     return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
 
 
-def _fallen(fallen: bool | BoolArray, acquired: Acquisition, tracks: Tracks) -> int:
+def _fallen(fallen: Mask, acquired: Acquisition, tracks: Tracks) -> int:
     """How many confirmed targets have fallen back, of the tracks `fallen` [N], or all or none."""
     target = acquisition.how_acquired(acquired, tracks.id) >= 0
     return int(np.sum(fallen & target & (tracks.status == CONFIRMED)))

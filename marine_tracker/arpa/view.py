@@ -19,6 +19,13 @@ from .motion import Motion
 from .targets import label
 
 
+class HullView(NamedTuple):
+    """shapes: of N targets; clearance [N] m: how near own ship comes to their hulls."""
+
+    shapes: Shapes
+    clearance: Array
+
+
 class View(NamedTuple):
     """N targets at one moment: those with a number in its order, then those being acquired.
 
@@ -30,7 +37,7 @@ class View(NamedTuple):
     acquired    [N]  AUTOMATIC or MANUAL
     motion      N rows, at the end of the scan
     approach    N rows
-    at_rest     [N]  neither the target nor own ship makes way
+    harmless    [N]  own ship lies at anchor and the target does not surely come nearer
     dangerous   [N]  a danger alarm is active
     swap_risk   [N]  the gate overlaps that of another track
     hits        [N]  plots in the last 10 scans
@@ -48,21 +55,14 @@ class View(NamedTuple):
     acquired: CodeArray
     motion: Motion
     approach: Approach
-    at_rest: BoolArray
+    harmless: BoolArray
     dangerous: BoolArray
     swap_risk: BoolArray
     hits: IntArray
     misses: IntArray
     age: Array
     account: Account
-    hulls: 'HullView | None' = None
-
-
-class HullView(NamedTuple):
-    """shapes: of N targets; clearance [N] m: how near own ship comes to their hulls."""
-
-    shapes: Shapes
-    clearance: Array
+    hulls: HullView | None = None
 
 
 def view(
@@ -86,7 +86,7 @@ def view(
         targets.acquired,
         picture.motion,
         picture.approach,
-        picture.at_rest,
+        picture.harmless,
         np.isin(targets.id, alerts.id[active]),
         picture.overlap < 1,
         lifecycle.hits(tracks.history, lifecycle.TEN),

@@ -230,7 +230,7 @@ def _plain():
             '  '.join(f'{head:>10}' for head, _ in columns),
         ]
         lines += [
-            '  '.join([*(f'{target[key]:>10}' for _, key in columns), target['danger']])
+            '  '.join([*(f'{target.get(key, ""):>10}' for _, key in columns), target['danger']])
             for target in picture.targets
         ]
         print('\n'.join([*lines, *picture.alarms]), flush=True)
@@ -261,7 +261,7 @@ def _rich_table(picture, title: str, height: int):
         ]
     )
     table = Table(
-        title=f'{title}   {_clock(picture)}',
+        title=Text(f'{title}   {_clock(picture)}', 'table.title'),
         title_justify='left',
         caption=caption,
         caption_justify='left',
@@ -284,7 +284,7 @@ def _rich_table(picture, title: str, height: int):
     )
     for target in shown:
         table.add_row(
-            *(target[key] for _, key in columns),
+            *(Text(target.get(key, '')) for _, key in columns),
             style=DANGEROUS if target['danger'] else STYLES.get(target['status']),
         )
     if len(picture.targets) > room:

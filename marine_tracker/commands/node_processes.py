@@ -39,6 +39,8 @@ def children_of(nodes: dict[str, dict[str, Any]]) -> Iterator[list[Child]]:
             closing()
             for ask in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
                 for child in children:
+                    if ask == signal.SIGKILL and child.process.poll() is None:
+                        print(f'{child.name} does not end, and is killed', file=sys.stderr)
                     child.process.send_signal(ask)  # nothing where it has ended
                 until = time.monotonic() + STOP_S
                 for child in children:

@@ -10,7 +10,6 @@ by a gyro and a log that err as the standard has it. Own ship's place is reckone
 gyro and log, so tracks drift with it, and their motion relative to own ship does not err.
 """
 
-import os
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -196,7 +195,7 @@ def run(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> list[Outcome]:
     """Each trial `runs` times; what comes out depends on seed and runs alone."""
     work, whose = [], []
@@ -205,7 +204,7 @@ def run(
         for first in range(0, runs, CHUNK):
             work.append(parallel.Job(follow, (trial, estimators, seeds[first : first + CHUNK])))
             whose.append(number)
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     return [
         Outcome(
             judged(trial),

@@ -5,7 +5,6 @@ CPA and TCPA shown three minutes after a target was acquired, and when its dange
 by then more than six minutes must be left.
 """
 
-import os
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -47,7 +46,7 @@ def run(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> list[Encounter]:
     """Every encounter `runs` times."""
     numbers = range(1, len(IMAZU) + 1)
@@ -56,7 +55,7 @@ def run(
         for number in numbers
         for of_run in np.random.SeedSequence([seed, 2, number]).generate_state(runs)
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     return [
         Encounter(number, *np.stack(found[first : first + runs], 2))
         for number, first in zip(numbers, range(0, len(found), runs))

@@ -4,7 +4,6 @@ Each of ten scans, again and again, has five plots of the target, which ones is 
 may be missing ten times in a row. After ten minutes it vanishes.
 """
 
-import os
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -38,7 +37,7 @@ def run(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> Kept:
     """At least `runs` targets."""
     scenes = -(-runs // ring_of_ships.SHIPS)
@@ -46,7 +45,7 @@ def run(
         parallel.Job(_follow, (estimators, int(of_scene)))
         for of_scene in np.random.SeedSequence([seed, 3]).generate_state(scenes)
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     return Kept(*(np.concatenate(column, axis=1) for column in zip(*found)))
 
 

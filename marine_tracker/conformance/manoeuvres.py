@@ -5,7 +5,6 @@ Own ship turns by 45 degrees to either side in one minute, in the four scenarios
 does their course stay wrong after the turn?
 """
 
-import os
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -71,7 +70,7 @@ def target_turns(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> list[Turn]:
     """At least `runs` ships for each of TURNS."""
     scenes = -(-runs // ring_of_ships.SHIPS)
@@ -80,7 +79,7 @@ def target_turns(
         for kind, (rate, angle) in enumerate(TURNS)
         for number in np.random.SeedSequence([seed, 1, kind]).generate_state(scenes)
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     turns = []
     for kind, (rate, angle) in enumerate(TURNS):
         parts = found[kind * scenes : (kind + 1) * scenes]

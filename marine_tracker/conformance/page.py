@@ -8,6 +8,7 @@ import numpy as np
 
 from ..evaluation.report import Figure, number
 from ..evaluation.result import draw
+from ..files import write_text
 from .figures import Results, figures, lines
 from .pictures import pictures
 
@@ -36,7 +37,7 @@ def write(folder, results: Results, title: str, seed: int) -> Path:
     parts += ['<h2>All else</h2>', _table(rest)]
     parts += [f'<p><img src="{file.name}" alt="{file.stem}"></p>' for file in drawn]
     page = Path(folder) / 'index.html'
-    page.write_text('\n'.join(parts) + '\n')
+    write_text(page, '\n'.join(parts) + '\n')
     return page
 
 

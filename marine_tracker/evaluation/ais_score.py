@@ -21,10 +21,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geodesy import LocalFrame
 from ..geometry import own_ship_at, to_range_bearing, unit_vector, wrap_angle
 from ..recording.csv_folder import Recording
 from ..recording.track_file import TrackRows
-from ..simulation import ais, motion
+from ..simulation import ais, ais_file, motion
 from ..types import Array
 from .gospa import assign_sticky
 from .metrics import CUTOFF, Live, chosen, live_rows
@@ -45,6 +46,7 @@ _CLASS_NAMES = [
 FIGURES = {
     'runs': ('', 'track files'),
     'vessels': ('', f'vessels in view for {LEAST_SCANS} scans or more'),
+    'rows_left_out': ('', 'rows of the AIS file that could not be used'),
     'held': ('', 'part of their scans in view with a track, all vessels'),
     'lost_percent': ('%', f'vessels and runs without track in the last {LOST_SCANS} scans in view'),
     **{
@@ -63,10 +65,11 @@ FIGURES = {
 
 
 class _Fleet(NamedTuple):
-    """names of V vessels, and their ways."""
+    """names of V vessels, their ways, and how many rows of the file could not be used."""
 
     names: list[str]
     paths: motion.Paths
+    skipped: int
 
     def at(self, time: Array):
         """Place [R, V, 2] m, velocity m/s, and existence [R, V], each row at its own time [R]."""
@@ -131,6 +134,7 @@ def score(
         'runs': len(runs),
         'vessels': int(long.sum()),
         'held': _mean(np.concatenate(of_long)),
+        'rows_left_out': fleet.skipped,
         'lost_percent': _mean(100.0 * np.array(lost)),
         **_errors(recording, done, fleet),
         **_lengths(done),
@@ -138,7 +142,7 @@ def score(
     return {name: figures[name] for name in FIGURES}
 
 
-def _origin(recording: Recording, given: Sequence[float] | None) -> tuple[float, float]:
+def _origin(recording: Recording, given: Sequence[float] | None) -> LocalFrame:
     origin = recording.notes.get('origin') if given is None else given
     if origin is None:
         raise ValueError(
@@ -150,19 +154,22 @@ def _origin(recording: Recording, given: Sequence[float] | None) -> tuple[float,
         and len(origin) == 2
         and all(
             type(degrees) in (int, float) and abs(degrees) <= most
-            for degrees, most in zip(origin, (85, 180))
+            for degrees, most in zip(origin, (90, 180))
         )
     ):
-        raise ValueError(f'origin is {origin}; it must be latitude and longitude in degrees')
-    return float(origin[0]), float(origin[1])
+        raise ValueError(
+            f'origin is {origin}; it must be latitude and longitude in degrees, '
+            'from -90 to 90 and from -180 to 180'
+        )
+    return LocalFrame(float(origin[0]), float(origin[1]))
 
 
-def _fleet(recording, file, origin, start, max_gap) -> _Fleet:
+def _fleet(recording, file, frame, start, max_gap) -> _Fleet:
     end = float(recording.scans[-1].end)
-    vessels = ais.read(file, start, end, max_gap)
-    return _Fleet(
-        list(vessels), motion.table([ais.way(reports, origin) for reports in vessels.values()], end)
-    )
+    traffic = ais_file.read(file, start, end, max_gap)
+    vessels = traffic.vessels
+    ways = [ais.way(reports, frame) for reports in vessels.values()]
+    return _Fleet(list(vessels), motion.table(ways, end), sum(traffic.skipped.values()))
 
 
 def _in_view(recording: Recording, fleet: _Fleet) -> NDArray[np.bool_]:

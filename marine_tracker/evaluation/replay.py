@@ -22,7 +22,7 @@ from ..simulation import radar, scenario
 from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
 from ..tracking.radars import fused, merged
 from ..types import Scan
-from . import metrics
+from . import metrics, screened
 
 NAMES = np.array(STATUS_NAMES)
 ALARM_COLUMNS = ('time_s', 'alarm', 'target', 'where', 'priority', 'state', 'text')
@@ -34,11 +34,13 @@ class Source(NamedTuple):
     scans               (number, scan) in time order
     total               how many; None where it is not known
     tracker_parameters  those that belong to the radar and its waters
+    remarks             what people should know of the files that were read
     """
 
     scans: Iterable[tuple[int, Scan]]
     total: int | None
     tracker_parameters: dict[str, Any]
+    remarks: tuple[str, ...] = ()
 
 
 class Summary(NamedTuple):
@@ -57,12 +59,14 @@ def open_source(name: str, seed: int = 1) -> Source:
     ValueError where it is neither, or is not in order.
     """
     if Path(name).is_dir():
-        recording = csv_folder.read(name)
+        recording, remarks = screened.read(name)
         numbers = recording.numbers.tolist()
-        return Source(zip(numbers, recording.scans), len(numbers), recording.tracker_parameters)
+        return Source(
+            zip(numbers, recording.scans), len(numbers), recording.tracker_parameters, remarks
+        )
     chosen = scenario.load(name)
     simulated = enumerate(scan for scan, _ in radar.simulate(chosen, seed))
-    return Source(simulated, None, chosen.tracker_parameters())
+    return Source(simulated, None, chosen.tracker_parameters(), chosen.fleet.remarks)
 
 
 def fuse(names: Sequence[str], seed: int = 1) -> Source:
@@ -79,6 +83,7 @@ def fuse(names: Sequence[str], seed: int = 1) -> Source:
         enumerate(merged(*((scan for _, scan in source.scans) for source in sources))),
         sum(totals) if len(totals) == len(sources) else None,
         fused([source.tracker_parameters for source in sources], radars),
+        sum((source.remarks for source in sources), ()),
     )
 
 

@@ -7,6 +7,8 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from ..files import write_text
+
 
 class Figure(NamedTuple):
     """One measured figure.
@@ -80,8 +82,7 @@ def publish(
         if json_to == '-':
             print(text)
         else:
-            with open(json_to, 'w') as file:
-                file.write(text + '\n')
+            write_text(json_to, text + '\n')
     return 1 if any(figure.ok is False for figure in figures) else 0
 
 

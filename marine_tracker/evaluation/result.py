@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..files import written
 from .report import Claim, Figure
 
 BORNE_OUT, NOT_BORNE_OUT, IN_PART = 'borne out', 'not borne out', 'borne out in part'
@@ -49,5 +50,6 @@ def draw(folder, pictures: Sequence[Picture]) -> list[Path]:
         canvas = Canvas(figsize=picture.size, layout='constrained')
         picture.paint(canvas)
         drawn.append(folder / f'{picture.name}.png')
-        canvas.savefig(drawn[-1], dpi=110)
+        with written(drawn[-1], 'wb') as file:
+            canvas.savefig(file, format='png', dpi=110)
     return drawn

@@ -5,8 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..files import shortened, shown
 from . import weight_file
-from .wavelet_network import Layout, Network, group_size
+from .wavelet_network import Layout, Network, group_size, units
 from .weight_file import FOLDER
 
 FORMAT = 1
@@ -57,18 +58,28 @@ def load(path: str | Path, inputs: int, outputs: dict[str, int]) -> Weights:
 
     Raises ValueError for a file that cannot be read, is damaged, or belongs to other networks.
     """
-    what = f'GWNN weights {path}'
+    what = f'GWNN weights {shortened(path)}'
     names = [f'{name}_{array}' for name in NETWORKS for array in ARRAYS]
     arrays, manifest = weight_file.read(path, 'GWNN', 'marine_tracker train gwnn', FORMAT, names)
+    layouts = [_layout(manifest, name, what) for name in NETWORKS]
     networks = [
-        _network(name, arrays, manifest['layouts'][name], inputs, outputs[name], what)
-        for name in NETWORKS
+        _network(name, arrays, layout, inputs, outputs[name], what)
+        for name, layout in zip(NETWORKS, layouts)
     ]
     return Weights(networks[0], networks[1], manifest)
 
 
-def _network(name: str, arrays, layout, inputs: int, outputs: int, what: str) -> Network:
-    form = Layout(int(layout[0]), int(layout[1]), float(layout[2]), int(layout[3]), *layout[4:])
+def _layout(manifest, name: str, what: str) -> Layout:
+    layouts = manifest.get('layouts')
+    given = layouts.get(name) if isinstance(layouts, dict) else None
+    try:
+        levels, translations, q, outputs, *kind = given  # type: ignore[misc]
+        return Layout(int(levels), int(translations), float(q), int(outputs), *kind)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f'{what}: the layout of {name} is {shown(given)}: {error}') from error
+
+
+def _network(name, arrays, form, inputs, outputs, what) -> Network:
     group = group_size(form)
     shapes = {
         'centre': (inputs,),
@@ -83,4 +94,8 @@ def _network(name: str, arrays, layout, inputs: int, outputs: int, what: str) ->
         )
         for array in ARRAYS
     ]
+    try:
+        units(form)
+    except (TypeError, ValueError, ArithmeticError) as error:
+        raise ValueError(f'{what}: the layout of {name} is {shown(form)}: {error}') from error
     return Network._make([*found, form])

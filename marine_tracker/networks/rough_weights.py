@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..files import shortened
 from ..types import Array
 from . import weight_file
 from .rough_network import Network, shapes
@@ -60,7 +61,7 @@ def load(path: str | Path, kind: str) -> Weights:
 
     Raises ValueError for a file that cannot be read, is damaged, or belongs to other networks.
     """
-    what = f'rough network weights {path}'
+    what = f'rough network weights {shortened(path)}'
     arrays, manifest = weight_file.read(
         path, 'rough network', 'marine_tracker train rough_nn', FORMAT, NAMES
     )

@@ -118,9 +118,8 @@ class NmeaOutputNode(RunnableNode):
             lines.append(nmea.rsd(p.range_scale_nm * NAUTICAL_MILE, talker=p.talker))
         if 'TTM' in self._wanted:
             lines += nmea.ttm(now.targets, seconds, p.talker)
-        latitude, longitude = self._own.place(
-            self._own.position(time_ns)
-            + now.targets.range[:, None] * unit_vector(now.targets.bearing)
+        latitude, longitude = self._own.target_places(
+            time_ns, now.targets.range[:, None] * unit_vector(now.targets.bearing)
         )
         if 'TLL' in self._wanted:
             lines += nmea.tll(now.targets, latitude, longitude, seconds, p.talker)

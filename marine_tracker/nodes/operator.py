@@ -214,7 +214,12 @@ class Operator:
             self._refuse(str(error))
 
     def _acknowledge(self, number: int | None = None) -> int:
-        found, changed = alarms.acknowledge(self.memory.arpa.alerts, self._now(), number=number)
+        found, changed = alarms.acknowledge(
+            self.memory.arpa.alerts,
+            self._now(),
+            number=number,
+            duration=60 * self.arpa.parameters.acknowledge_for_min,
+        )
         self._put(alerts=found)
         self._publish_alarms(changed)
         return len(changed.kind)

@@ -20,6 +20,7 @@ import sys
 import threading
 
 from ..processes import closing, end_in_time, keep_freed_memory
+from . import arguments, log_folder
 
 NODES = {
     'tracker': 'TrackerNode',
@@ -27,7 +28,14 @@ NODES = {
     'recording_player': 'RecordingPlayerNode',
     'nmea_output': 'NmeaOutputNode',
 }
+LONGEST = 600  # characters of why a node cannot start
 ASKED = (signal.SIGINT, signal.SIGTERM)
+
+
+def on_signals(handler) -> None:
+    """From now on SIGINT and SIGTERM have this handler."""
+    for number in ASKED:
+        signal.signal(number, handler)
 
 
 def run(name: str) -> int:
@@ -37,27 +45,31 @@ def run(name: str) -> int:
 
     Returns the exit code, 0 or 1; see the module.
     """
-    stop = threading.Event()
-
-    def on_signal(*_):
-        closing()
-        stop.set()
-
-    for number in ASKED:
-        signal.signal(number, on_signal)
+    code = arguments.answer(name, sys.argv[1:])
+    if code is not None:
+        return code
+    on_signals(lambda *_: os._exit(0))  # nothing is open yet; imports take long on a busy machine
     end_in_time()
     # ament looks packages up by this; a virtual environment is a prefix like any other.
     os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
+    log_folder.provide()
     import rclpy
     from rclpy.exceptions import NameValidationException, ParameterException
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.impl.implementation_singleton import rclpy_implementation as implementation
     from rclpy.signals import SignalHandlerOptions
 
+    from .diagnostics import one_line
+
     keep_freed_memory()
     make_node = getattr(importlib.import_module(f'.{name}_node', __package__), NODES[name])
-    if stop.is_set():
-        return 0
+    stop = threading.Event()
+
+    def on_signal(*_):
+        closing()
+        stop.set()
+
+    on_signals(on_signal)
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = make_node()
@@ -70,7 +82,7 @@ def run(name: str) -> int:
         implementation.UnknownROSArgsError,
         implementation.RCLInvalidROSArgsError,
     ) as error:
-        print(f'{name}: {" ".join(str(error).split())}', file=sys.stderr, flush=True)
+        print(f'{name}: {one_line(error, LONGEST)}', file=sys.stderr, flush=True)
         rclpy.try_shutdown()
         return 1
     executor = SingleThreadedExecutor()
@@ -84,8 +96,7 @@ def run(name: str) -> int:
         executor.shutdown()
         node.destroy_node()
         rclpy.try_shutdown()
-    for number in ASKED:  # from here on no signal changes the exit code
-        signal.signal(number, signal.SIG_IGN)
+    on_signals(signal.SIG_IGN)  # none changes the exit code from here on
     return 1 if node.done and node.failures.counts else 0
 
 

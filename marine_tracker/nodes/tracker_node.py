@@ -55,12 +55,9 @@ class TrackerNode(RunnableNode):
         ]
         self.bad_own_ship = Tally(intake.OWN_REASONS, self.tell)
 
-        where = self.get_namespace().strip('/')
-        self._label = f'{where}/{self.get_name()}' if where else self.get_name()
-        self._hardware_id = f'{where}/radar' if where else 'radar'
-        self._operator = Operator(self, service, self._hardware_id)
+        self._operator = Operator(self, service, self.hardware_id)
         follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
-        self._output = TrackerOutput(self, self._hardware_id)
+        self._output = TrackerOutput(self, self.hardware_id)
         self._to_diagnostics = self.publisher(
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
@@ -240,6 +237,4 @@ class TrackerNode(RunnableNode):
         )
 
     def _status(self, task, level, message, values):
-        return diagnostics.status(
-            f'{self._label}: {task}', self._hardware_id, level, message, values
-        )
+        return diagnostics.status(f'{self.label}: {task}', self.hardware_id, level, message, values)

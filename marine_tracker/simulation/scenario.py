@@ -23,10 +23,15 @@ speed as `_mps` or `_kn`. Only `duration_s` and one target are needed:
           - speed: {to_kn: 8, duration_s: 60}         # or acceleration_mps2
 
 Ships can be driven by AIS reports instead, or besides (the file is looked for beside the
-scenario's; its form stands in ais.py); own ship is then one of the vessels, or lies at a place:
+scenario's; its form stands in ais_file.py); own ship is then one of the vessels, or lies at a
+place:
 
     ais: {file: traffic.csv, start_s: 600, vessels: [3, 17]}      # all vessels, if none are named
     own_ship: {vessel: 1}                                         # or {start: {lat_deg:, lon_deg:}}
+
+Latitudes are -90 to 90 and longitudes -180 to 180 degrees, south and west negative; ships may cross
+180. All positions count from `origin: {lat_deg:, lon_deg:}`, else from where own ship starts, else
+from where the first vessel does (geodesy.LocalFrame): north is true there.
 
 A ship may have a hull, which the radar then sees as cells in place of one plot, and there may be
 land, whose shore does so too (hull.py, land.py); both take the radar's range resolution and beam

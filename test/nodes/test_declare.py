@@ -172,8 +172,7 @@ def test_a_dump_of_the_nodes_own_parameters_is_loaded(start, tmp_path, node, kin
     """In the form in which `ros2 param dump` writes them and `ros2 param load` sets them."""
     here = start()
     values = declare(here, *kinds)
-    for kind in kinds:
-        follow(here, kind, lambda made: made, lambda made: None)
+    follow(here, kinds, lambda *made: made, lambda made: None)
     names = [field.name for kind in kinds for field in dataclasses.fields(kind)]
     dump = {'/tracker': {'ros__parameters': {n: here.get_parameter(n).value for n in names}}}
     file = tmp_path / 'dump.yaml'

@@ -72,23 +72,21 @@ def test_datagrams_that_nobody_listens_to_do_not_count_as_sent(free_port):
     link.close()
 
 
-def in_private_hosts(tmp_path, hosts, script):
-    """What a Python script prints, run where /etc/hosts is this text; skips where it cannot be."""
-    file = tmp_path / 'hosts'
-    file.write_text(hosts)
-    if subprocess.run(['unshare', '-m', 'true'], capture_output=True).returncode:
-        pytest.skip('no mount namespace of our own: unshare -m fails')
-    done = subprocess.run(
-        ['unshare', '-m', 'sh', '-c', 'mount --bind "$0" /etc/hosts && exec "$@"']
-        + [str(file), sys.executable, '-c', script],
-        cwd=CHECKOUT,
-        env={**os.environ, 'PYTHONPATH': str(CHECKOUT)},
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+@pytest.fixture
+def said_with_hosts(private_hosts):
+    """said_with_hosts(text, script): what a Python script prints where this is /etc/hosts."""
+
+    def run(hosts, script):
+        return subprocess.run(
+            [*private_hosts(hosts), sys.executable, '-c', script],
+            cwd=CHECKOUT,
+            env={**os.environ, 'PYTHONPATH': str(CHECKOUT)},
+            stdout=subprocess.PIPE,
+            text=True,
+            timeout=60,
+        ).stdout
+
+    return run
 
 
 @pytest.mark.parametrize(
@@ -101,7 +99,7 @@ def in_private_hosts(tmp_path, hosts, script):
     ],
     ids=['6', '4', '6 and 4', '4 and 6'],
 )
-def test_a_name_reaches_who_listens_in_either_family(tmp_path, hosts):
+def test_a_name_reaches_who_listens_in_either_family(said_with_hosts, hosts):
     listeners = {host: ear(host) for host in (LOOPBACK, LOOPBACK_6)}
     for host, one in listeners.items():
         if LOOPBACK_6 not in hosts and host == LOOPBACK_6:
@@ -111,21 +109,21 @@ def test_a_name_reaches_who_listens_in_either_family(tmp_path, hosts):
             f"link = Datagrams('udp', 'chartplotter:{one.getsockname()[1]}')\n"
             "print(link.send([b'x', b'y', b'z']), link.sent, link.refused)\n"
         )
-        assert in_private_hosts(tmp_path, hosts, script) == '0 3 0\n'
+        assert said_with_hosts(hosts, script) == '0 3 0\n'
         assert heard(one) == [b'x', b'y', b'z']
 
 
-def test_a_name_that_nobody_listens_at_is_not_counted_as_sent(tmp_path, free_port):
+def test_a_name_that_nobody_listens_at_is_not_counted_as_sent(said_with_hosts, free_port):
     script = (
         'from marine_tracker.nodes.nmea_output_links import Datagrams\n'
         f"link = Datagrams('udp', 'localhost:{free_port}')\n"
         "print(link.send([b'x'] * 7), link.sent, link.refused)\n"
     )
-    assert in_private_hosts(tmp_path, '::1 localhost', script) == '0 0 7\n'
+    assert said_with_hosts('::1 localhost', script) == '0 0 7\n'
 
 
 @pytest.mark.parametrize('hosts', ['::1 bridge', '127.0.0.1 bridge\n::1 bridge'])
-def test_a_server_at_a_name_lets_clients_of_either_family_in(tmp_path, hosts, free_port):
+def test_a_server_at_a_name_lets_clients_of_either_family_in(said_with_hosts, hosts, free_port):
     script = (
         'import socket\n'
         'from marine_tracker.nodes.nmea_output_links import Clients\n'
@@ -135,7 +133,7 @@ def test_a_server_at_a_name_lets_clients_of_either_family_in(tmp_path, hosts, fr
         "    server.send([host.encode() + b';'])\n"
         "    print(client.recv(99), end='')\n"
     )
-    assert in_private_hosts(tmp_path, hosts, script) == "b'127.0.0.1;'b'::1;'"
+    assert said_with_hosts(hosts, script) == "b'127.0.0.1;'b'::1;'"
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import time
 import numpy as np
 import pynmea2
 import pytest
+from pyproj import Geod
 
 pytest.importorskip('rclpy')
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -24,6 +25,7 @@ OUTPUT = 'nodes.run nmea_output'
 SECOND = 1_000_000_000
 NOON = 1_700_049_600 * SECOND  # 2023-11-15 12:00 UTC
 LOOPBACK = '127.0.0.1'
+EARTH = Geod(ellps='WGS84')
 
 
 def entry(title, message='TRACKING', **values):
@@ -176,9 +178,9 @@ def test_a_scan_gives_own_ship_and_one_ttm_a_target_alike_on_topic_udp_and_tcp(
     assert said[2].startswith('$RAOSD,090.0,A,090.0,P,10.00,P,,,N*')
     rmc = pynmea2.parse(said[0], check=True)
     # Two seconds on at 10 knots from where the fix was.
-    east = np.radians(rmc.longitude - 10.25) * 6371008.8 * np.cos(np.radians(54.5))
-    assert rmc.is_valid and east == pytest.approx(20 * KNOT, abs=0.5)
-    assert rmc.latitude == pytest.approx(54.5, abs=1e-6)
+    bearing, _, distance = EARTH.inv(10.25, 54.5, rmc.longitude, rmc.latitude)
+    assert rmc.is_valid and distance == pytest.approx(20 * KNOT, abs=0.2)
+    assert bearing == pytest.approx(90, abs=1.0)
 
 
 def test_lost_and_cancelled_targets_get_one_last_word_and_then_no_more(rig):
@@ -264,11 +266,71 @@ def test_all_sentences_and_talkers_as_chosen(rig):
     said = here.scan(entry('TT01', range_nm='1.00', bearing_deg='000.0'), seconds=1.0)
     assert [line[1:6] for line in said] == ['GPRMC', 'GPHDT', 'IIOSD', 'IIRSD', 'IITTM', 'IITLL']
     rmc, tll = (pynmea2.parse(said[k], check=True) for k in (0, 5))
-    mile = np.degrees(1852 / 6371008.8)
-    assert rmc.latitude == pytest.approx(54 + mile, abs=2e-6)
-    assert tll.latitude == pytest.approx(54 + 2 * mile, abs=2e-6)
+    assert rmc.latitude == pytest.approx(EARTH.fwd(10, 54, 0, 1852)[1], abs=2e-6)
+    assert tll.latitude == pytest.approx(EARTH.fwd(10, 54, 0, 2 * 1852)[1], abs=2e-6)
     assert tll.longitude == pytest.approx(10.0, abs=2e-6)
     assert ',12.000,N,N*' in said[3]
+
+
+@pytest.mark.parametrize(
+    ('origin', 'own', 'miles', 'bearing'),
+    [
+        ((-17.0, 179.9), (5000.0, -3000.0), 8.0, 77.0),
+        ((52.0, -179.7), (-30 * 1852.0, 2000.0), 12.0, 200.0),
+        ((80.0, 15.0), (22 * 1852.0, 4 * 1852.0), 10.0, 350.0),
+        ((-84.0, 179.5), (9000.0, 0.0), 24.0, 45.0),
+    ],
+)
+@pytest.mark.parametrize('by', ['origin', 'fix'])
+def test_targets_are_at_range_and_true_bearing_from_own_ship_wherever_she_is(
+    rig, ears, by, origin, own, miles, bearing
+):
+    """By the geodesics of pyproj, to what the sentences can tell (0.2 m)."""
+    ear = ears()
+    where = f'{origin[0]} {origin[1]}' if by == 'origin' else ''
+    here = rig(
+        sentences='RMC TTM TLL',
+        origin=where,
+        signalk_udp=f'{LOOPBACK}:{ear.port}',
+        own_ship_period_s=60.0,
+    )
+    own_bearing = np.degrees(np.arctan2(*own))
+    own_lon, own_lat, _ = EARTH.fwd(*origin[::-1], own_bearing, np.hypot(*own))
+    # A fix tells nothing of the origin of `map`.
+    fix = (own_lat, own_lon) if by == 'fix' else None
+    here.send_own_ship(seconds=1.0, position=own, fix=fix)
+    told = here.scan(
+        entry('TT01', range_nm=f'{miles:.2f}', bearing_deg=f'{bearing:.1f}'), seconds=1.0
+    )
+    rmc, tll = pynmea2.parse(told[0], check=True), pynmea2.parse(told[2], check=True)
+    assert EARTH.inv(rmc.longitude, rmc.latitude, own_lon, own_lat)[2] < 0.3
+    lon, lat, _ = EARTH.fwd(own_lon, own_lat, bearing, miles * 1852)
+    assert EARTH.inv(tll.longitude, tll.latitude, lon, lat)[2] < 0.3
+    (delta,) = map(json.loads, ear.hear(1))
+    place = next(
+        one['value']
+        for one in delta['updates'][0]['values']
+        if one['path'] == 'navigation.position'
+    )
+    assert EARTH.inv(place['longitude'], place['latitude'], lon, lat)[2] < 0.1
+    assert -180 <= place['longitude'] < 180
+
+
+def test_odometry_off_the_earth_makes_rmc_void_and_the_next_one_is_told(rig):
+    here = rig(sentences='RMC TLL', origin='54.0 10.0')
+    here.send_own_ship(seconds=1.0, position=(3e7, 0.0), fix=None)
+    assert kinds(said := here.scan(entry('TT01'), seconds=1.0)) == ['RMC'] and ',V,,,,,' in said[0]
+    here.send_own_ship(seconds=2.0, position=(300.0, 0.0), fix=None)
+    assert kinds(here.scan(entry('TT01'), seconds=2.0)) == ['RMC', 'TLL']
+
+
+def test_own_ship_sails_over_the_date_line(rig):
+    here = rig(sentences='RMC')
+    here.send_own_ship(seconds=1.0, fix=(-17.0, 179.99999))
+    rmc = pynmea2.parse(here.scan(entry('TT01'), seconds=4.0)[0], check=True)
+    lon, lat, _ = EARTH.fwd(179.99999, -17.0, 90.0, 30 * KNOT)
+    assert rmc.lon_dir == 'W' and lon < 0
+    assert EARTH.inv(rmc.longitude, rmc.latitude, lon, lat)[2] < 0.3
 
 
 def test_own_ship_is_told_between_scans_as_often_as_asked(rig):
@@ -314,10 +376,11 @@ def test_broken_input_is_counted_and_the_last_good_one_kept(rig):
     no_fix.status.status = -1
     here.fix.publish(no_fix)
     here.fix.publish(convert.fix_message(NOON, np.nan, 10.0))
+    here.fix.publish(convert.fix_message(NOON, 54.0, 190.0))
     counts = here.node._bad.counts
     here.wait(
         lambda: (
-            (counts['own-ship messages not finite'], counts['fixes without a position']) == (1, 2)
+            (counts['own-ship messages not finite'], counts['fixes without a position']) == (1, 3)
         )
     )
     assert pynmea2.parse(here.scan(entry('TT01'))[0]).latitude == pytest.approx(54.5, abs=1e-6)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 
 pytest.importorskip('rclpy')
-from marine_tracker.processes import GRACE_S, LATE
+from marine_tracker.processes import GRACE_S, LATE, end_with_parent
 from marine_tracker.recording import csv_folder
 from marine_tracker.simulation import radar, scenario
 
@@ -93,6 +93,12 @@ class Stop(NamedTuple):
     said: str
 
 
+def as_from_a_terminal():
+    """A shell's job in the background, and so what a test starts there, ignores SIGINT."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    end_with_parent()
+
+
 def start(*arguments):
     return subprocess.Popen(
         [sys.executable, *arguments],
@@ -101,6 +107,7 @@ def start(*arguments):
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
+        preexec_fn=as_from_a_terminal,
     )
 
 
@@ -112,9 +119,10 @@ def stopped(process, number, again=()):
         time.sleep(max(began + seconds - time.monotonic(), 0.0))
         process.send_signal(number)
     try:
-        said, _ = process.communicate(timeout=40)
-    finally:
+        said, _ = process.communicate(timeout=IN_TIME_S + 10)
+    except subprocess.TimeoutExpired:
         process.kill()
+        said, _ = process.communicate()
     return Stop(time.monotonic() - began, process.returncode, said)
 
 

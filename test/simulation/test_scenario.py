@@ -5,7 +5,9 @@ import textwrap
 
 import numpy as np
 import pytest
+from pyproj import Geod
 
+from marine_tracker.geodesy import LocalFrame
 from marine_tracker.geometry import KNOT, NAUTICAL_MILE
 from marine_tracker.parameters import TrackerParameters, from_mapping
 from marine_tracker.simulation import scenario
@@ -79,8 +81,45 @@ def test_geodetic_starts_are_placed_by_the_origin(make_scenario):
         own_ship={'start': {'lat_deg': 60, 'lon_deg': 10}},
         targets=[ship(start={'lat_deg': 60.1, 'lon_deg': 10.1})],
     )
-    assert loaded.fleet.origin == (60, 10)
-    assert loaded.truth_at(0).position[0] == pytest.approx([5560, 11120], rel=1e-3)
+    assert loaded.fleet.origin == LocalFrame(60, 10)
+    assert loaded.truth_at(0).position[0] == pytest.approx([5560, 11144], abs=20)
+
+
+@pytest.mark.parametrize(
+    ('own', 'target'),
+    [
+        ((-17.0, 179.99), (-17.0, -179.98)),
+        ((-17.3, -179.6), (-16.9, 179.7)),
+        ((52.0, 180.0), (51.6, -179.7)),
+        ((78.5, 15.0), (78.9, 13.0)),
+        ((-84.9, 179.0), (-84.7, -178.0)),
+    ],
+)
+def test_a_target_is_at_range_and_bearing_of_the_geodesic_across_the_date_line_too(
+    make_scenario, own, target
+):
+    loaded = make_scenario(
+        own_ship={'start': dict(zip(('lat_deg', 'lon_deg'), own))},
+        targets=[ship(start=dict(zip(('lat_deg', 'lon_deg'), target)))],
+    )
+    bearing, _, distance = Geod(ellps='WGS84').inv(*own[::-1], *target[::-1])
+    expected = distance * np.array([np.sin(np.radians(bearing)), np.cos(np.radians(bearing))])
+    assert loaded.own_ship_at(0).position[0] == pytest.approx([0, 0], abs=1e-6)
+    assert loaded.truth_at(0).position[0] == pytest.approx(expected, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ('place', 'said'),
+    [
+        ({'lat_deg': 10, 'lon_deg': 181.5}, 'lon_deg is 181.5; it must be between -180 and 180'),
+        ({'lat_deg': 10, 'lon_deg': -200}, 'lon_deg is -200; it must be between -180 and 180'),
+        ({'lat_deg': -90.5, 'lon_deg': 10}, 'lat_deg is -90.5; it must be between -90 and 90'),
+    ],
+)
+def test_no_place_on_earth_is_refused(make_scenario, place, said):
+    for change in ({'origin': place}, {'own_ship': {'start': place}}):
+        with pytest.raises(ValueError, match=said):
+            make_scenario(**change)
 
 
 def test_tracker_parameters_are_those_of_the_radar(make_scenario):
@@ -244,7 +283,7 @@ def test_detectable_is_between_blind_and_maximum_range(make_scenario):
             'own_ship.vessel names an AIS vessel, but the scenario has no',
         ),
         ({'own_ship': [1]}, 'own_ship is [1]; it must be a mapping'),
-        ({'ais': {'file': 'nowhere.csv'}}, 'nowhere.csv cannot be read'),
+        ({'ais': {'file': 'nowhere.csv'}}, 'nowhere.csv does not exist'),
     ],
 )
 def test_wrong_scenarios_are_refused_by_name_value_and_limit(tmp_path, values, text):

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import make_smoothing_spline
 
+from ...geodesy import LocalFrame
 from ...geometry import unit_vector
-from ...simulation import ais, motion
+from ...simulation import ais, ais_file, motion
 from ...training.ship_tracks import Ships
 
 TURN_SCAN, TURN_RADIUS, TURN_ANGLE = 100, 200.0, float(np.radians(50))  # paper 000, 5.2
@@ -101,9 +102,10 @@ def real_ships(file: Path, steps, rng) -> Ships:
     Each is turned, mirrored and moved at random. Raises ValueError where no vessel reports
     without a gap for long enough.
     """
-    vessels = ais.read(file, 0.0, HOUR, LONGEST_GAP)
-    origin = next(iter((r.latitude[0], r.longitude[0]) for r in vessels.values()))
-    ways = [ais.way(reports, origin) for reports in vessels.values()]
+    vessels = ais_file.read(file, 0.0, HOUR, LONGEST_GAP).vessels
+    first = next(iter(vessels.values()))
+    frame = LocalFrame(first.latitude[0], first.longitude[0])
+    ways = [ais.way(reports, frame) for reports in vessels.values()]
     paths = motion.table(ways, HOUR)
     need = steps.sum(1).max() + 20
     stretches = []

@@ -8,7 +8,6 @@ tracker's positions, and of the course and speed that the ARPA shows, every 5 s 
 minute on, of the six ships that both radars see; ratios have their 95 % interval over the runs.
 """
 
-import os
 from typing import NamedTuple
 
 import numpy as np
@@ -50,12 +49,12 @@ def run(
     seed: int,
     progress: Progress = silent,
     estimator: str = 'imm',
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> Result:
     """The scene `runs` times in every way."""
     seeds = np.random.SeedSequence([seed, 5]).generate_state(runs)
     work = [parallel.Job(scene, (estimator, int(one))) for one in seeds]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     by_way = dict(zip(WAYS, zip(*found), strict=True))
     rng = np.random.default_rng(seed)
     figures = []
