@@ -18,7 +18,7 @@ EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 END_OF_TIME = 253_402_300_799.0  # s: the year 9999 ends
 
 
-class RSD(pynmea2.TalkerSentence):
+class RSD(pynmea2.TalkerSentence):  # type: ignore[misc]
     """Radar system data, which pynmea2 lacks; it knows it once this module is imported."""
 
     fields = tuple(
@@ -51,7 +51,8 @@ def sentence(talker: str, kind: str, fields: Iterable[str]) -> str:
     known = pynmea2.TalkerSentence.sentence_types
     if kind not in known:
         raise ValueError(f'sentence {kind!r} is not known')
-    return known[kind](talker, kind, list(fields)).render()
+    found: str = known[kind](talker, kind, list(fields)).render()
+    return found
 
 
 def figure(value: float, high: float, decimals: int, low: float = 0.0) -> str:

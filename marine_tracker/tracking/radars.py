@@ -83,7 +83,7 @@ def fused(of_each: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dict[st
 def merged(*radars: Iterable[Scan]) -> Iterator[Scan]:
     """The scans of several radars as a tracker takes them: each when it ends."""
 
-    def of(radar, scans):
+    def of(radar: int, scans: Iterable[Scan]) -> Iterator[Scan]:
         return (scan._replace(radar=radar) for scan in scans)
 
     return heapq.merge(*(of(*pair) for pair in enumerate(radars)), key=lambda scan: scan.end)
@@ -101,7 +101,7 @@ def held_updates(radars: tuple[Radar, ...]) -> int:
     )
 
 
-def _radar(item, place: int, parameters: TrackerParameters) -> Radar:
+def _radar(item: Any, place: int, parameters: TrackerParameters) -> Radar:
     if not isinstance(item, dict) or not isinstance(item.get('topic'), str):
         raise ValueError(f'radar {place} is {shown(item)}; it must be a mapping with a topic')
     topic, own = item['topic'], {k: v for k, v in item.items() if k not in ('topic', 'name')}
