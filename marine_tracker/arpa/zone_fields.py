@@ -15,6 +15,7 @@ from ..types import Array
 KEYS = ('name', 'kind', 'range_nm', 'range_m', 'bearing_deg', 'corners_nm', 'corners_m', 'fixed_to')
 UNITS = {'nm': NAUTICAL_MILE, 'm': 1.0}
 MAX_CORNERS = 1000
+MAX_NAME = 100  # characters
 FARTHEST = 200 * NAUTICAL_MILE  # m, limit of ranges and corners
 
 
@@ -29,6 +30,10 @@ def name_of(item: Any, index: int, taken: list[str]) -> str:
     if not isinstance(name, str) or not name.strip():
         raise ValueError(f'zone {index + 1} has no name')
     name = name.strip()
+    if len(name) > MAX_NAME:
+        raise ValueError(
+            f'zone {index + 1}: name is {shown(name)}; it may have {MAX_NAME} characters'
+        )
     if name in taken:
         raise ValueError(f'two zones have the name {name}')
     for key in item:
