@@ -268,7 +268,7 @@ def cloud_cases(rng: random.Random, folder: Path) -> Iterator[Callable[[], objec
     whole = (0, 1, 3, 7, 8, 16, 255, 2**16, 2**31, 2**32 - 1)
 
     def few(usual, odd):
-        return rng.choice(odd) if rng.random() < 0.15 else usual
+        return rng.choice(odd) if rng.random() < 0.02 else usual
 
     while True:
         message = PointCloud2()
