@@ -14,8 +14,8 @@ from ..types import Array
 
 KEYS = ('name', 'kind', 'range_nm', 'range_m', 'bearing_deg', 'corners_nm', 'corners_m', 'fixed_to')
 UNITS = {'nm': NAUTICAL_MILE, 'm': 1.0}
+LONGEST_NAME = 80  # characters
 MAX_CORNERS = 1000
-MAX_NAME = 100  # characters
 FARTHEST = 200 * NAUTICAL_MILE  # m, limit of ranges and corners
 
 
@@ -30,9 +30,10 @@ def name_of(item: Any, index: int, taken: list[str]) -> str:
     if not isinstance(name, str) or not name.strip():
         raise ValueError(f'zone {index + 1} has no name')
     name = name.strip()
-    if len(name) > MAX_NAME:
+    if len(name) > LONGEST_NAME:
         raise ValueError(
-            f'zone {index + 1}: name is {shown(name)}; it may have {MAX_NAME} characters'
+            f'zone {index + 1} has a name of {len(name)} characters; it must have at most '
+            f'{LONGEST_NAME}, for alarms repeat it'
         )
     if name in taken:
         raise ValueError(f'two zones have the name {name}')
