@@ -10,6 +10,7 @@ from datetime import UTC, datetime, timedelta
 
 import pynmea2
 
+from ..files import shown
 from ..geodesy import wrap_longitude
 
 MILES, KNOTS, MINUTES = 999.999, 999.99, 999.9  # greatest figures that a field takes
@@ -47,10 +48,12 @@ def sentence(talker: str, kind: str, fields: Iterable[str]) -> str:
     talker and kind as in RA, TTM. ValueError where a name is no such code.
     """
     if not (len(talker) == 2 and talker.isascii() and talker.isalnum() and talker.isupper()):
-        raise ValueError(f'talker is {talker!r}; it must be two capital letters or digits, as RA')
+        raise ValueError(
+            f'talker is {shown(talker)}; it must be two capital letters or digits, as RA'
+        )
     known = pynmea2.TalkerSentence.sentence_types
     if kind not in known:
-        raise ValueError(f'sentence {kind!r} is not known')
+        raise ValueError(f'sentence {shown(kind)} is not known')
     found: str = known[kind](talker, kind, list(fields)).render()
     return found
 

@@ -17,6 +17,7 @@ from std_msgs.msg import String
 
 from ..arpa import nmea, nmea_fields, signalk
 from ..arpa.nmea_targets import nothing_told, word
+from ..files import shown
 from ..geometry import NAUTICAL_MILE, unit_vector
 from ..parameters import NmeaOutputParameters
 from . import diagnostics, topics
@@ -46,7 +47,7 @@ class NmeaOutputNode(RunnableNode):
         for kind in self._wanted:
             if kind not in SENTENCES:
                 raise ValueError(
-                    f'parameter sentences has {kind!r}; it must be of {", ".join(SENTENCES)}'
+                    f'parameter sentences has {shown(kind)}; it must be of {", ".join(SENTENCES)}'
                 )
         for talker in (p.talker, p.own_ship_talker):
             nmea_fields.sentence(talker, 'HDT', ())  # ValueError for a wrong one
