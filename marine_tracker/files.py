@@ -33,7 +33,7 @@ def regular(path) -> Path:
     """
     path = Path(path)
     if not stat.S_ISREG(path.stat().st_mode):
-        raise ValueError(f'{path} is not a regular file')
+        raise ValueError(f'{shortened(path)} is not a regular file')
     return path
 
 
@@ -46,13 +46,13 @@ def read_text(path, limit: int) -> str:
     with open(path, 'rb') as file:
         content = file.read(limit + 1)
     if len(content) > limit:
-        raise ValueError(f'{path} has more than {limit} bytes; it must not')
+        raise ValueError(f'{shortened(path)} has more than {limit} bytes; it must not')
     try:
         return content.decode('utf-8-sig')
     except UnicodeDecodeError as error:
         line = content.count(b'\n', 0, error.start) + 1
         raise ValueError(
-            f'{path}, line {line}: the byte 0x{content[error.start]:02x} is not UTF-8; '
+            f'{shortened(path)}, line {line}: the byte 0x{content[error.start]:02x} is not UTF-8; '
             'save the file as UTF-8'
         ) from None
 

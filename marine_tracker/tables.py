@@ -31,7 +31,7 @@ class Table(NamedTuple):
 
     def where(self, row: int) -> str:
         """The row's place, as an error names it."""
-        return f'{self.path}, line {self.line[row]}'
+        return f'{shortened(self.path)}, line {self.line[row]}'
 
     def numbers(
         self, name: str, *, missing: bool = False, low: float = -np.inf, high: float = np.inf
@@ -98,9 +98,9 @@ def rows(path, *, broken: str = 'strict') -> Rows:
     found = _rows(path, broken)
     _, header = next(found, (0, []))
     if not header:
-        raise ValueError(f'{path} is empty; its first line must name the columns')
+        raise ValueError(f'{shortened(path)} is empty; its first line must name the columns')
     if len(set(header)) < len(header):
-        raise ValueError(f'{path} names a column twice: {shortened(", ".join(header))}')
+        raise ValueError(f'{shortened(path)} names a column twice: {shortened(", ".join(header))}')
     return Rows(header, found)
 
 
@@ -114,12 +114,15 @@ def read(path, required=()) -> Table:
     header, found = rows(path)
     for name in required:
         if name not in header:
-            raise ValueError(f'{path} has no column {name}; it has {shortened(", ".join(header))}')
+            raise ValueError(
+                f'{shortened(path)} has no column {name}; it has {shortened(", ".join(header))}'
+            )
     lines = []
     for number, cells in found:
         if len(cells) != len(header):
             raise ValueError(
-                f'{path}, line {number} has {len(cells)} cells; it must have {len(header)}'
+                f'{shortened(path)}, line {number} has {len(cells)} cells; '
+                f'it must have {len(header)}'
             )
         lines.append((number, cells))
     columns = zip(*(cells for _, cells in lines)) if lines else ([] for _ in header)
@@ -142,19 +145,19 @@ def _rows(path: Path, broken: str) -> Iterator[tuple[int, list[str]]]:
                 if cells:
                     yield reader.line_num, [cell.strip() for cell in cells]
     except FileNotFoundError:
-        raise ValueError(f'{path} does not exist') from None
+        raise ValueError(f'{shortened(path)} does not exist') from None
     except UnicodeDecodeError as error:
         kind = 'UTF-16' if utf16 else 'UTF-8'
         byte = error.object[error.start]
         raise ValueError(
-            f'{path}{_line_of_bad_text(path, utf16)}: the byte 0x{byte:02x} is not {kind}; '
-            'save the file as UTF-8'
+            f'{shortened(path)}{_line_of_bad_text(path, utf16)}: the byte 0x{byte:02x} '
+            f'is not {kind}; save the file as UTF-8'
         ) from None
     except OSError as error:
-        raise ValueError(f'{path} cannot be read: {error.strerror or error}') from error
+        raise ValueError(f'{shortened(path)} cannot be read: {error.strerror or error}') from error
     except csv.Error as error:
         raise ValueError(
-            f'{path}, line {reader.line_num} cannot be read as CSV: {error}'
+            f'{shortened(path)}, line {reader.line_num} cannot be read as CSV: {error}'
         ) from error
 
 
@@ -165,7 +168,7 @@ def _lines(file, path: Path) -> Iterator[str]:
         number += 1
         if len(line) > MAX_LINE:
             raise ValueError(
-                f'{path}, line {number} has more than {MAX_LINE} characters; it must not'
+                f'{shortened(path)}, line {number} has more than {MAX_LINE} characters; it must not'
             )
         yield line
 

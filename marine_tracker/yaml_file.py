@@ -18,8 +18,8 @@ from ruamel.yaml.error import MarkedYAMLError
 
 from .files import read_text, shortened, shown
 
-MAX_BYTES = 500_000
-MAX_VALUES = 50_000
+MAX_BYTES = 300_000
+MAX_VALUES = 30_000
 MAX_DEPTH = 32
 MAX_KEY = 200  # characters
 MAX_INTEGER = 2**63 - 1
@@ -46,7 +46,7 @@ class _Found(NamedTuple):
 
 def read(path) -> Any:
     """What a YAML file holds. ValueError for one that is wrong, OSError where none can be read."""
-    return parse(read_text(path, MAX_BYTES), str(path))
+    return parse(read_text(path, MAX_BYTES), shortened(path))
 
 
 def read_mapping(path) -> dict[str, Any]:
@@ -55,13 +55,13 @@ def read_mapping(path) -> dict[str, Any]:
     if values is None:
         return {}
     if not isinstance(values, dict):
-        raise ValueError(f'{path} holds {_kind(values)}; it must hold a mapping')
+        raise ValueError(f'{shortened(path)} holds {_kind(values)}; it must hold a mapping')
     return values
 
 
 def read_json(path) -> dict[str, Any]:
     """A JSON file that holds one object, under the same limits."""
-    return parse_json(read_text(path, MAX_BYTES), str(path))
+    return parse_json(read_text(path, MAX_BYTES), shortened(path))
 
 
 def parse_json(text: str, name: str) -> dict[str, Any]:

@@ -13,10 +13,9 @@ too many targets (capacity.py). If its track is merged into another, that track 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..tracking.lifecycle import LOST
-from ..types import Array, append, row_of, take
+from ..types import Array, BoolArray, CodeArray, IntArray, append, row_of, take
 from .capacity import make_room
 from .situation import Situation
 from .targets import (
@@ -71,8 +70,8 @@ class Barred(NamedTuple):
     last       [R]  s, when it was last inside that zone; nan: not checked yet, -inf: never
     """
 
-    id: NDArray[np.int64]
-    cancelled: NDArray[np.bool_]
+    id: IntArray
+    cancelled: BoolArray
     last: Array
 
 
@@ -106,8 +105,8 @@ def begin() -> Acquisition:
     )
 
 
-def acquire(state: Acquisition, position, now: float) -> Acquisition:
-    """The operator's click at position [2] m. The next `step` finds its track.
+def acquire(state: Acquisition, position: Array, now: float) -> Acquisition:
+    """The operator's click at position [2] m; the next `step` finds its track.
 
     ValueError if the position is not finite, or if MAX_CLICKS are pending already.
     """
@@ -137,7 +136,7 @@ def cancel_all(state: Acquisition) -> tuple[Acquisition, Events]:
     return _cancel(nothing, np.arange(len(state.targets.id)))
 
 
-def how_acquired(state: Acquisition, ids) -> NDArray[np.int8]:
+def how_acquired(state: Acquisition, ids: IntArray) -> CodeArray:
     """AUTOMATIC or MANUAL [N] for the tracks that are targets, -1 for the others."""
     row = row_of(state.targets.id, ids)
     return np.where(row >= 0, np.append(state.targets.acquired, 0)[row], -1).astype(np.int8)
@@ -213,9 +212,9 @@ def _bar(
 
 
 def _answer_clicks(
-    clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how, now: float
-):
-    """Clicks that still wait, rows of the tracks clicked, and positions of clicks that lapse.
+    clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how: CodeArray, now: float
+) -> tuple[Clicks, IntArray, Array]:
+    """Clicks that wait on, rows of the tracks clicked, and positions of clicks that lapse.
 
     A click takes the nearest track that is not a target yet. If there are only targets, the nearest
     one becomes acquired by hand.
@@ -239,7 +238,7 @@ def _answer_clicks(
     )
 
 
-def _cancel(state: Acquisition, rows) -> tuple[Acquisition, Events]:
+def _cancel(state: Acquisition, rows: IntArray) -> tuple[Acquisition, Events]:
     chosen = take(state.targets, rows)
     count = len(chosen.id)
     stay = np.ones(len(state.targets.id), bool)

@@ -9,12 +9,12 @@ import numpy as np
 from scipy.special import ndtr
 
 from ..geometry import wrap_angle
-from ..types import take
-from .directions import EVEN, GAUSS, WIDE, directions, moments, places, rounded
+from ..types import Array, take
+from .directions import EVEN, GAUSS, WIDE, Round, directions, moments, places, rounded
 
 
-def cpa_sigma(position, velocity, covariance, cpa):
-    """RMS deviation [N] m of the CPA from the shown value `cpa` [N] m.
+def cpa_sigma(position: Array, velocity: Array, covariance: Array, cpa: Array) -> Array:
+    """RMS deviation [N] m of the CPA from the value `cpa` [N] m shown.
 
     position [N, 2] m, velocity [N, 2] m/s of the targets relative to own ship and their covariance
     [N, 4, 4].
@@ -31,11 +31,14 @@ def cpa_sigma(position, velocity, covariance, cpa):
     square = (miss - cpa[:, None]) ** 2 + sigma**2 - 2 * cpa[:, None] * (folded - miss)
     over, bell, _, _ = moments(at.rho)
     weight = at.density * (at.rho * over + bell)
-    return np.sqrt(np.maximum((weight * square).sum(1) / weight.sum(1), 0.0))
+    found: Array = np.sqrt(np.maximum((weight * square).sum(1) / weight.sum(1), 0.0))
+    return found
 
 
-def danger_probability(position, velocity, covariance, cpa_limit: float, tcpa_limit: float):
-    """[N] P(CPA < cpa_limit m and 0 <= TCPA < tcpa_limit s), from the same arguments.
+def danger_probability(
+    position: Array, velocity: Array, covariance: Array, cpa_limit: float, tcpa_limit: float
+) -> Array:
+    """[N] P(CPA < cpa_limit m and 0 <= TCPA < tcpa_limit s), of the same arguments.
 
     For a given direction, the events "not passed" and "in time" are taken as independent of the
     miss distance. That is true if position errors are round. Otherwise the probability is wrong by
@@ -70,10 +73,12 @@ def danger_probability(position, velocity, covariance, cpa_limit: float, tcpa_li
     return out
 
 
-def _dangerous(of, position, covariance, cpa_limit):
-    """Range [N] to [N], rad from the mean of z, of the velocities that may lead to danger."""
-    # Directions that pass own ship within the limit and do not lead away from it, with a margin for
-    # position errors.
+def _dangerous(
+    of: Round, position: Array, covariance: Array, cpa_limit: float
+) -> tuple[Array, Array]:
+    """From where [N] to where [N], rad off the mean of z, velocities may lead to danger."""
+    # The directions that pass own ship within the limit and are not away from it, position errors
+    # allowed for.
     distance = np.maximum(np.hypot(*position.T), 1e-300)
     blur = WIDE * np.sqrt(np.trace(covariance[:, :2, :2], axis1=1, axis2=2)) / distance
     wide = cpa_limit / distance + blur
