@@ -106,7 +106,7 @@ def begin() -> Acquisition:
 
 
 def acquire(state: Acquisition, position: Array, now: float) -> Acquisition:
-    """The operator's click at position [2] m; the next `step` finds its track.
+    """The operator's click at position [2] m. The next `step` finds its track.
 
     ValueError if the position is not finite, or if MAX_CLICKS are pending already.
     """
@@ -214,7 +214,7 @@ def _bar(
 def _answer_clicks(
     clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how: CodeArray, now: float
 ) -> tuple[Clicks, IntArray, Array]:
-    """Clicks that wait on, rows of the tracks clicked, and positions of clicks that lapse.
+    """Clicks that still wait, rows of the tracks clicked, and positions of clicks that lapse.
 
     A click takes the nearest track that is not a target yet. If there are only targets, the nearest
     one becomes acquired by hand.

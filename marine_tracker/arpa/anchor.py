@@ -22,7 +22,9 @@ DETECTED, ANCHORED, UNDER_WAY = STATUS = 'detected', 'anchored', 'under_way'
 
 
 def makes_way(moving: Motion) -> BoolArray:
-    """Whether [N] tracks surely move over ground; a new one at anchor shows some speed by noise."""
+    """Whether [N] tracks certainly move over ground. A new track at anchor shows some speed from
+    noise.
+    """
     inverse, _ = invert_2x2(moving.covariance[:, 2:, 2:])
     return ~moving.stationary & (squared_distance(moving.velocity, inverse) > BY_CHANCE)
 
@@ -44,7 +46,7 @@ def at_anchor(samples: OwnShip, own: OwnMotion, time: float, status: str = DETEC
 
 
 def harmless(moving: Motion, own: OwnMotion) -> BoolArray:
-    """Whether [N] targets are no danger to own ship at anchor: they do not surely come nearer.
+    """Whether [N] targets are no danger to own ship at anchor: they do not certainly come nearer.
 
     moving  over ground
     """

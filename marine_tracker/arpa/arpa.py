@@ -177,7 +177,7 @@ class Arpa:
     def _anchored(
         self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float
     ) -> tuple[OwnMotion, BoolArray]:
-        """Own ship, at rest where she lies at anchor; the tracks [N] that are no danger then."""
+        """Own ship, at rest if she is at anchor; and the tracks [N] that are no danger then."""
         if not at_anchor(samples, own, now, self.parameters.own_ship_status):
             return own, np.zeros(len(moving.position), bool)
         return own._replace(velocity=np.zeros(2)), harmless(moving, own)
@@ -201,7 +201,7 @@ class Arpa:
         now: float,
         radar: TrackerParameters,
     ) -> tuple[Array, IntArray]:
-        """Overlap [N] of the gates of the radar's next scan and the rows [N] of the others."""
+        """Overlap [N] of the gates in the radar's next scan, and rows [N] of the other tracks."""
         overlap, other = np.full(len(tracks.id), np.inf), np.full(len(tracks.id), -1)
         rows = ((tracks.number > 0) & (tracks.status != LOST)).nonzero()[0]
         ahead = motion.at(take(remembered, rows), now + radar.scan_period_s)
@@ -226,6 +226,8 @@ def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Target
 
 
 def _fallen(fallen: Mask, acquired: Acquisition, tracks: Tracks) -> int:
-    """How many confirmed targets have fallen back, of the tracks `fallen` [N], or all or none."""
+    """Number of confirmed targets that have fallen back; `fallen` [N] for the tracks, or one for
+    all.
+    """
     target = acquisition.how_acquired(acquired, tracks.id) >= 0
     return int(np.sum(fallen & target & (tracks.status == CONFIRMED)))

@@ -19,7 +19,7 @@ CLOSER = 0.8
 def make_room(
     capacity: int, situation: Situation, how: CodeArray, candidate: BoolArray, clicked: IntArray
 ) -> tuple[IntArray, IntArray, IntArray]:
-    """Who becomes a target and who gives way, by the rule that stands above: rows of tracks.
+    """Which tracks become targets and which are displaced, by the rule above: rows of tracks.
 
     how        [N]  AUTOMATIC or MANUAL, -1 if the track is not a target; includes the clicked ones
     candidate  [N]  tracks to acquire automatically if there is room

@@ -71,7 +71,7 @@ class Approach(NamedTuple):
 
 
 def cpa_of(position: Array, velocity: Array) -> tuple[Array, Array]:
-    """CPA [...] m and TCPA [...] s of relative positions [..., 2] m and velocities [..., 2] m/s.
+    """CPA [...] m and TCPA [...] s from relative positions [..., 2] m and velocities [..., 2] m/s.
 
     Without relative motion the CPA is the range and the TCPA is nan.
     """
@@ -86,7 +86,8 @@ def cpa_of(position: Array, velocity: Array) -> tuple[Array, Array]:
 
 
 def bow_crossing(position: Array, velocity: Array, heading: float) -> tuple[Array, Array]:
-    """Range [...] m at which the line of own ship's keel is crossed and time [...] s of it.
+    """Range [...] m at which the target crosses own ship's keel line, and time [...] s of the
+    crossing.
 
     Relative positions and velocities as in `cpa_of`. A negative range is astern, a negative time is
     past. Not finite if the target moves along the line.
@@ -189,7 +190,7 @@ def _values(
 
 
 def _points() -> Array:
-    """Points [24, 4] of the degree-5 rule for a standard normal law of four dimensions.
+    """Points [24, 4] of the degree-5 rule for a standard normal distribution in four dimensions.
 
     McNamee and Stenger, Numerische Mathematik 10, 1967: at sqrt(3) along every pair of axes, with
     weight 1/36 each. In four dimensions the points on the axes have weight 0. The centre has the
@@ -213,7 +214,7 @@ def spread(
     covariance: Array,
     shown: Array,
 ) -> Array:
-    """RMS deviations [K, N] of function(position, velocity) [K, ...] from what is shown [K, N].
+    """RMS deviations [K, N] of function(position, velocity) [K, ...] from the shown values [K, N].
 
     Not finite where the shown value is not finite.
     """

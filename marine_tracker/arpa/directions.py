@@ -83,7 +83,7 @@ class Places(NamedTuple):
 
 
 def rounded(vector: Array, covariance: Array) -> Round:
-    """Vectors [N, 2] of regular covariance [N, 2, 2]."""
+    """Rounds vectors [N, 2] with invertible covariance [N, 2, 2]."""
     ee = np.sqrt(covariance[:, 0, 0])
     ne = covariance[:, 0, 1] / ee
     nn = np.sqrt(covariance[:, 1, 1] - ne * ne)
@@ -102,7 +102,9 @@ def rounded(vector: Array, covariance: Array) -> Round:
 
 
 def directions(of: Round, low: Array, high: Array, rule: tuple[Array, Array]) -> Directions:
-    """Those from low [N] to high [N] rad off the mean's, for z; rule: nodes and weights [Q]."""
+    """Directions from low [N] to high [N] rad relative to the mean of z; rule: nodes and weights
+    [Q].
+    """
     nodes, weights = rule
     half = 0.5 * (high - low)[:, None]
     turn = 0.5 * (high + low)[:, None] + half * nodes
@@ -170,7 +172,7 @@ def polar_sigma(vector: Array, covariance: Array) -> tuple[Array, Array]:
 
 
 def _integrated(length: Array, unit: Array, of: Round) -> Array:
-    """What `polar_sigma` gives, [2, N], by quadrature over the direction."""
+    """The result of `polar_sigma`, [2, N], by quadrature over the direction."""
     at = directions(of, -of.arc, of.arc, EVEN)
     zeroth, first, second, third = moments(at.rho)
     weight = at.rho * zeroth + first  # E[rho; rho > 0]

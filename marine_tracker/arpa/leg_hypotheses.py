@@ -121,7 +121,7 @@ def update(
 def _change(
     columns: Array, weight: Array, begun: Array, now: Array, step: Array, habits: Habits
 ) -> tuple[Array, Array, Array]:
-    """What may have changed during the steps [N] s from the times `now` [N] s on.
+    """Possible changes during the steps [N] s from the times `now` [N] s on.
 
     Every leg may have changed into a manoeuvre, and the manoeuvre into a new leg.
     """
@@ -140,7 +140,7 @@ def _change(
 
 
 def _merge(legs: Array, weight: Array, begun: Array) -> tuple[Array, Array, Array]:
-    """LEGS legs of LEGS + 1, the last one new: the two are merged whose merger costs least.
+    """LEGS legs out of LEGS + 1, the last one new: merges the two that cost least to merge.
 
     Only velocities count, because all legs agree on the position.
     """
@@ -170,7 +170,7 @@ def _merge(legs: Array, weight: Array, begun: Array) -> tuple[Array, Array, Arra
 
 
 def _stretch(columns: Array, stretch: Array) -> None:
-    """Covariances of columns [14, J, N] as they are for positions misjudged by [N, 2, 2], in place.
+    """Corrects covariances of columns [14, J, N] by [N, 2, 2], in place, for misjudged plot errors.
 
     Straight-line fits scale with the errors of their plots, position and velocity alike.
     """

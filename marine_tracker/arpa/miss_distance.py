@@ -14,7 +14,7 @@ from .directions import EVEN, GAUSS, WIDE, Round, directions, moments, places, r
 
 
 def cpa_sigma(position: Array, velocity: Array, covariance: Array, cpa: Array) -> Array:
-    """RMS deviation [N] m of the CPA from the value `cpa` [N] m shown.
+    """RMS deviation [N] m of the CPA from the shown value `cpa` [N] m.
 
     position [N, 2] m, velocity [N, 2] m/s of the targets relative to own ship and their covariance
     [N, 4, 4].
@@ -38,7 +38,7 @@ def cpa_sigma(position: Array, velocity: Array, covariance: Array, cpa: Array) -
 def danger_probability(
     position: Array, velocity: Array, covariance: Array, cpa_limit: float, tcpa_limit: float
 ) -> Array:
-    """[N] P(CPA < cpa_limit m and 0 <= TCPA < tcpa_limit s), of the same arguments.
+    """[N] P(CPA < cpa_limit m and 0 <= TCPA < tcpa_limit s), from the same arguments.
 
     For a given direction, the events "not passed" and "in time" are taken as independent of the
     miss distance. That is true if position errors are round. Otherwise the probability is wrong by
@@ -76,7 +76,7 @@ def danger_probability(
 def _dangerous(
     of: Round, position: Array, covariance: Array, cpa_limit: float
 ) -> tuple[Array, Array]:
-    """From where [N] to where [N], rad off the mean of z, velocities may lead to danger."""
+    """Range [N] to [N], rad from the mean of z, of the velocities that may lead to danger."""
     # The directions that pass own ship within the limit and are not away from it, position errors
     # allowed for.
     distance = np.maximum(np.hypot(*position.T), 1e-300)

@@ -247,7 +247,7 @@ def hdt(own: OwnShipData, talker: str = 'II') -> str:
 
 
 def _units(targets: Targets) -> list[NDArray[Any]]:
-    """The columns of the targets that can be told, in NM, rad, knots and minutes."""
+    """The columns of the targets that can be sent, in NM, rad, knots and minutes."""
     miles, bearing = targets.range / NAUTICAL_MILE, targets.bearing
     told = (miles >= 0) & (miles < MILES) & (np.abs(bearing) <= ANGLE)
     return [

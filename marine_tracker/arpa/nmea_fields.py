@@ -20,7 +20,7 @@ END_OF_TIME = 253_402_300_799.0  # s: the year 9999 ends
 
 
 class RSD(pynmea2.TalkerSentence):  # type: ignore[misc]
-    """Radar system data, which pynmea2 lacks; it knows it once this module is imported."""
+    """Radar system data, which pynmea2 lacks. Importing this module registers it."""
 
     fields = tuple(
         (name.replace('_', ' '), name)

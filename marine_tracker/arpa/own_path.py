@@ -115,6 +115,6 @@ def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
 
 
 def _share(time: Array, duration: Array) -> Array:
-    """The share [C, K] of a change that takes `duration` [C] which is done by the time [C, K]."""
+    """The share [C, K] of a change lasting `duration` [C] s that is done by the time [C, K]."""
     duration = np.broadcast_to(duration[:, None], time.shape)
     return np.divide(time, duration, out=np.ones_like(time), where=duration > 0).clip(0, 1)

@@ -13,7 +13,7 @@ EASE = 1.25  # gates are searched at this factor of their size
 def swap_risk(
     position: Array, covariance: Array, origin: Array, size: float
 ) -> tuple[Array, IntArray]:
-    """Overlap [N] of each track's gate with that of another, and the row [N] of that one.
+    """Overlap [N] of each track's gate with that of another, and the row [N] of that track.
 
     position    [N, 2]     m, where the tracks are expected next
     covariance  [N, 2, 2]  m^2, of a plot about it

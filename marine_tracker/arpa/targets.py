@@ -65,14 +65,14 @@ class Events(NamedTuple):
 
 
 def label(ids: IntArray, number: IntArray) -> list[str]:
-    """TT07 by its number; Q and the track's id, as Q123, for a target without one."""
+    """TT07 for a target with a number; Q and the track's id, as Q123, for one without."""
     return [f'TT{n:02d}' if n else f'Q{i}' for i, n in zip(ids.tolist(), number.tolist())]
 
 
 def carry_over(
     targets: Targets, situation: Situation, radius: float, brief: float, now: float
 ) -> tuple[CodeArray, Array, Events]:
-    """The targets that go on: how [N] acquired (-1: no target), since [N] s; and the events.
+    """The targets that continue: how [N] acquired (-1: not a target), since [N] s; and the events.
 
     radius, brief  acquisition.AcquisitionSettings.click_radius and .brief
     """
@@ -113,7 +113,7 @@ def carry_over(
 
 
 def _heirs(situation: Situation, merged: BoolArray, radius: float) -> list[tuple[int, int]]:
-    """Rows (merged, heir): the track that a merged target [N] lives on in is the nearest one.
+    """Rows (merged, heir): the nearest track continues a merged target [N].
 
     A confirmed track is merged into confirmed ones only.
     """
@@ -129,7 +129,7 @@ def _heirs(situation: Situation, merged: BoolArray, radius: float) -> list[tuple
 
 
 def nearest_track(situation: Situation, position: Array, fit: BoolArray, radius: float) -> int:
-    """Row of the nearest fit track within the radius of a position, -1 where there is none."""
+    """Row of the nearest fit track within the radius of a position; -1 if there is none."""
     rows = fit.nonzero()[0]
     away = np.hypot(*(situation.position[rows] - position).T)
     near = (away <= radius).nonzero()[0]

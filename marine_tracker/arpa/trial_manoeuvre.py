@@ -182,7 +182,8 @@ def _dot(first: Array, second: Array) -> Array:
 
 
 def _may_meet(position: Array, velocity: Array, covariance: Array, cpa_limit: float) -> BoolArray:
-    """Whether [C, N] a target may pass within the limit, by 6 deviations of all that may err.
+    """Whether [C, N] a target may pass within the limit, with a margin of 6 deviations of all
+    errors.
 
     position, velocity [C, N, 2] relative to own ship, covariance [N, 4, 4]. Few courses meet few
     targets. So this saves nine tenths of the integrals of `danger_probability`.
@@ -200,7 +201,7 @@ def _may_meet(position: Array, velocity: Array, covariance: Array, cpa_limit: fl
 
 
 def _abeam(moving: Array, there: Array) -> Array:
-    """Relative motion [..., 2] m/s at the nearest point [..., 2] m, turned abeam of it.
+    """Relative motion [..., 2] m/s at the nearest point [..., 2] m, turned to be abeam of it.
 
     On a straight piece it is abeam already. If the nearest point is a corner of the path, the
     straight track with that closest approach replaces the path, also for its errors.

@@ -68,9 +68,9 @@ class View(NamedTuple):
 def view(
     picture: Picture, report: Report, estimator: Estimator, shapes: Shapes | None = None
 ) -> View:
-    """The picture's targets with what the tracker's report tells of them.
+    """The picture's targets with the data of the tracker's report.
 
-    estimator: the one that the tracks' state belongs to; shapes: of all the tracks.
+    estimator: the one to which the tracks' state belongs; shapes: of all the tracks.
     """
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
@@ -123,7 +123,7 @@ class Standing(NamedTuple):
 
 
 def standing(report: Report, estimator: Estimator) -> Standing:
-    """How the estimator fares with the confirmed tracks of a report."""
+    """The state of the estimator for the confirmed tracks of a report."""
     if estimator.account is None:
         return Standing({}, 0, '', np.zeros(len(report.tracks.id), bool))
     account = estimator.account(report.tracks.state)
