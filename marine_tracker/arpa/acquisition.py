@@ -46,9 +46,8 @@ class AcquisitionSettings(NamedTuple):
     capacity      largest number of targets
     click_radius  m, largest distance of a track from a click
     click_wait    s, how long a click waits for a track to appear
-    border        s, how long a target must be outside of a zone before it can enter or leave again;
-    so
-                  a target at the border is not acquired and dropped again and again
+    border        s, how long a target must be outside of a zone before it can enter or leave
+                  again; so a target at the border is not acquired and dropped again and again
     brief         s; if a target that was acquired automatically is lost within this time, it is an
                   event but not an alarm, because most such tracks are clutter; 0: always an alarm
     """

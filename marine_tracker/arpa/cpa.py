@@ -22,9 +22,8 @@ class OwnMotion(NamedTuple):
     velocity    [2]     m/s, over ground or through the water, as the targets' motion
     heading     rad, clockwise from true north
     covariance  [4, 4]  of position and velocity, relative to the positions from which the plots
-    were
-                        placed. An error common to both (a wrong log, for example) does not change
-                        range, relative motion and CPA
+                        were placed. An error common to both (a wrong log, for example) does not
+                        change range, relative motion and CPA
     """
 
     position: Array
