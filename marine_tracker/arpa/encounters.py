@@ -25,9 +25,10 @@ NEARER, SOONER, SURELY = 0.5, 0.25, 2.0
 def marked(
     alerts: Alerts, dangers: NDArray[np.bool_], situation: Situation, limits: Limits, now: float
 ) -> Alerts:
-    """The alerts; the dangers [A] acknowledged since the last scan marked with what were worse.
+    """The alerts. Dangers [A] that were acknowledged since the last scan get the marks of a worse
+    danger.
 
-    That is a CPA, m, and a time of the closest approach, s.
+    The marks are a CPA, m, and a time of the closest approach, s.
     """
     row = row_of(situation.id, alerts.id)
     new = dangers & ~np.isnan(alerts.until) & np.isnan(alerts.mark[:, 0]) & (row >= 0)
