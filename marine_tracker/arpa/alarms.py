@@ -1,17 +1,19 @@
-"""The alarms of the ARPA: what raises each of them, and what it says.
+"""The alarms of the ARPA: their causes, and the values for their texts.
 
-What an alert is and how it lives: alerts.py. Here are the kinds and their causes:
+alerts.py has the states of an alert. These are the kinds and their causes:
 
-    danger           CPA and TCPA of a target below the limits, or likely so (situation.danger).
-                     Only a scan in which the target shows raises it: a track that clutter began
-                     does not show again. Once acknowledged: see encounters.py
-    lost target      its track ended for want of plots; not one that left by range, was merged,
-                     cancelled, lay in an exclusion zone, or had hardly been acquired
-    new target       a confirmed track in a guard zone, whether it entered or was first seen there,
-                     target already or not; one alert for each zone
-    near capacity    NEARLY_FULL of the targets that may be
-    capacity         as many targets as may be
-    heading, position, plots missing    not heard for too long; plots of each radar
+    danger           CPA and TCPA of a target are below the limits, or probably so
+                     (situation.danger). It is raised only in a scan with a plot of the target,
+                     because a track that clutter began gets no more plots. After an
+                     acknowledgement: see encounters.py
+    lost target      its track ended because plots were missing. Not if the target moved out of
+                     range, was merged, was cancelled, was in an exclusion zone, or was acquired
+                     only a short time before
+    new target       a confirmed track is in a guard zone, whether it entered or was first seen
+                     there, and whether it is a target already or not; one alert for each zone
+    near capacity    NEARLY_FULL of the largest number of targets
+    capacity         the largest number of targets
+    heading, position, plots missing    not received for too long; plots of each radar
     fallback         at least a share of the confirmed targets have fallen back from their filter
     swap risk        the gate of a target overlaps that of another track
 """

@@ -7,14 +7,18 @@ States and transitions are those of bridge alert management (IEC 62923-1):
     active acknowledged     -- cause gone --> normal
     rectified               -- acknowledged --> normal, -- cause back --> active unacknowledged
 
-A cause must hold for a time before it raises and be gone for a time before it ends, and its level
-knows a middle that neither raises nor ends, nor interrupts what holds: hysteresis in time and in
-value. An acknowledgement may hold for some time only. Of kinds that are remembered it outlives the
-alert: a cause that comes back raises it as acknowledged, until the cause has been clearly gone for
-a time; one that has become clearly worse raises it anew. Cautions need no acknowledgement: they are
-raised as acknowledged. An alert on something momentary (a loss) has no
-cause that could end: it stays active until acknowledged. What nobody acknowledges, as in a tracker
-without an operator, lapses some time after its cause, or alerts would pile up for ever.
+There is hysteresis in time and in value. A cause must last for a time before it raises an alert,
+and it must be gone for a time before the alert ends. Between the level that raises and the level
+that ends there is a middle level: it does neither, and it does not interrupt either.
+
+An acknowledgement may have a time limit. For kinds that are remembered, it lasts longer than the
+alert: a cause that comes back raises the alert as acknowledged, until the cause has been clearly
+gone for a time. A cause that becomes clearly worse raises the alert again. Cautions need no
+acknowledgement: they are raised as acknowledged.
+
+An alert on a momentary event (a loss) has no cause that could end. It stays active until it is
+acknowledged. An alert without a cause that is never acknowledged lapses after some time. Otherwise
+alerts would pile up in a tracker without an operator.
 """
 
 from typing import NamedTuple
@@ -195,15 +199,16 @@ def acknowledge(
     until: float = np.inf,
     remembered: BoolArray | None = None,
 ) -> tuple[Alerts, Alerts]:
-    """The operator has seen the alerts of this kind and target number; None stands for all.
+    """Acknowledges the alerts of this kind and target number for the operator; None means all.
 
-    momentary   [kinds]  which kinds have no cause that lasts
-    until       s, when the acknowledgement ends if the cause lasts; inf: not before the cause
-    remembered  [kinds]  which acknowledgements outlive the alert (Rule); None: of no kind
+    momentary   [kinds]  kinds whose cause does not last
+    until       s, when the acknowledgement ends if the cause lasts; inf: not before the cause ends
+    remembered  [kinds]  kinds whose acknowledgement lasts longer than the alert (Rule); None: no
+    kind
 
-    Returns the alerts and those changed. What was acknowledged already stays as it is, but that of
-    a target that is named is then acknowledged until `until`. ValueError where kind or number are
-    given and there is no such alert.
+    Returns the alerts and those that changed. An alert that is acknowledged already does not
+    change. But if its target is named, it is then acknowledged until `until`. ValueError if kind or
+    number are given and there is no such alert.
     """
     chosen = alerts.state != NORMAL
     for value, column in ((kind, alerts.kind), (number, alerts.number)):

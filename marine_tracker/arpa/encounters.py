@@ -1,14 +1,14 @@
-"""A danger that was acknowledged: has the encounter ended, or become worse than what was seen?
+"""A danger that was acknowledged: has the encounter ended, or has it become worse since then?
 
-It has clearly ended once, for alerts.Rule.forget_after, the closest approach is past, or CPA or
-TCPA are ENDED times beyond their limit with a probability of danger below REMOTE, or own ship lies
-at anchor and the target does not come nearer.
+It has clearly ended when, for alerts.Rule.forget_after, one of these holds: the closest approach is
+past; CPA or TCPA are ENDED times beyond their limit, with a probability of danger below REMOTE; own
+ship is at anchor and the target does not come nearer.
 
-It has clearly become worse when for alerts.Rule.worse_after it is a danger and the CPA is below
-what was acknowledged by NEARER of the CPA limit, or the closest approach comes sooner than was
-acknowledged by SOONER of the TCPA limit; in both by SURELY of their deviations then, too, for what
-was a guess when it was acknowledged may come out as anything. Between the two the operator knows of
-it already.
+It has clearly become worse when, for alerts.Rule.worse_after, it is a danger and one of these
+holds: the CPA is below the acknowledged one by NEARER of the CPA limit; the closest approach comes
+sooner than the acknowledged one by SOONER of the TCPA limit. In both cases the change must also be
+SURELY times their deviations, because early values may be only a guess. Between the two the
+operator knows of the danger already.
 """
 
 import numpy as np
