@@ -6,6 +6,7 @@ It may have OPTIONS, {name: how argparse is to read --name}: its `run` takes the
 from types import ModuleType
 
 from . import marine_table
+from .alarms import alarms
 from .alpha_beta import alpha_beta
 from .compare import compare
 from .extended import extended
@@ -28,4 +29,5 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'extended': extended,
     'hulls': hulls,
     'compare': compare,
+    'alarms': alarms,
 }
