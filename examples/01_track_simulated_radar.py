@@ -9,23 +9,22 @@ import sys
 
 import numpy as np
 
+from marine_tracker import service_for
 from marine_tracker.geometry import KNOT, NAUTICAL_MILE, own_ship_at, to_range_bearing
-from marine_tracker.parameters import TrackerParameters
 from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking.lifecycle import COASTING, CONFIRMED, STATUS_NAMES
-from marine_tracker.tracking.tracker import Tracker
 
 chosen = scenario.load(sys.argv[1] if len(sys.argv) > 1 else 'encounters')
 print(f'{chosen.name}: {chosen.description}')
 
 # What belongs to the radar (noise, range, rotation) comes from the scenario; the rest are defaults.
-tracker = Tracker(TrackerParameters(**chosen.tracker_parameters()))
-memory = tracker.start()
+service = service_for(chosen.tracker_parameters())
+memory = service.start()
 for scan, truth in radar.simulate(chosen, seed=1):  # noqa: B007, the last one is used below
-    memory, report = tracker.step(memory, scan)
+    memory, output = service.step(memory, scan)
 
 # After the last scan: every track on display, and how far the nearest target really is from it.
-estimate = tracker.extrapolate(report.tracks, report.time)
+report, estimate = output.report, output.estimate
 print('track        range  bearing   course    speed   off by')
 for row in np.flatnonzero(np.isin(report.tracks.status, (CONFIRMED, COASTING))):
     own_position, _ = own_ship_at(scan.own_ship, report.time[row])

@@ -10,12 +10,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from marine_tracker.commands.replay import write_tracks
+from marine_tracker import service_for
 from marine_tracker.evaluation import metrics
-from marine_tracker.parameters import TrackerParameters
+from marine_tracker.evaluation.replay import write_tracks
 from marine_tracker.recording import csv_folder, track_file
 from marine_tracker.simulation import radar, scenario
-from marine_tracker.tracking.tracker import Tracker
 
 with tempfile.TemporaryDirectory() as work:
     if len(sys.argv) > 1:
@@ -33,9 +32,9 @@ with tempfile.TemporaryDirectory() as work:
 
     tracks = Path(work, 'tracks.csv')
     for estimator in ('cs_kalman', 'imm'):
-        tracker = Tracker(TrackerParameters(estimator=estimator, **recording.tracker_parameters))
+        service = service_for(recording.tracker_parameters, estimator=estimator)
         with open(tracks, 'w', newline='') as file:
-            write_tracks(tracker, zip(recording.numbers, recording.scans), file)
+            write_tracks(service, zip(recording.numbers, recording.scans), file)
         figures = metrics.score(recording, track_file.read(tracks)).figures
         print(
             f'{estimator:9s}  held {figures["held"]:6.1%}'

@@ -10,11 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from marine_tracker.estimators.contract import Estimator
-from marine_tracker.parameters import TrackerParameters
+from marine_tracker import Estimator, Service, TrackerParameters
 from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking.lifecycle import COASTING, CONFIRMED
-from marine_tracker.tracking.tracker import Tracker
 from marine_tracker.types import Array, Extrapolation, put
 
 NOISE = 0.05  # m^2/s^3: density of the white acceleration that a target may show
@@ -80,12 +78,12 @@ def update(state, plots, rows):
     )
 
 
-def typical_error(tracker, chosen):
+def typical_error(service, chosen):
     """m: median over all scans of the distance from a track on display to the nearest target."""
-    memory, errors = tracker.start(), []
+    memory, errors = service.start(), []
     for scan, truth in radar.simulate(chosen, seed=1):
-        memory, report = tracker.step(memory, scan)
-        estimate = tracker.extrapolate(report.tracks, report.time)
+        memory, output = service.step(memory, scan)
+        report, estimate = output.report, output.estimate
         for row in np.flatnonzero(np.isin(report.tracks.status, (CONFIRMED, COASTING))):
             really = truth.position + (report.time[row] - truth.time)[:, None] * truth.velocity
             errors.append(np.linalg.norm(really - estimate.position[row], axis=1).min())
@@ -94,7 +92,7 @@ def typical_error(tracker, chosen):
 
 encounters = scenario.load('encounters')
 parameters = encounters.tracker_parameters()
-shipped = Tracker(TrackerParameters(estimator='cs_kalman', **parameters))
-own = Tracker(TrackerParameters(**parameters), Estimator(init, extrapolate, update))
+shipped = Service(TrackerParameters(estimator='cs_kalman', **parameters))
+own = Service(TrackerParameters(**parameters), estimator=Estimator(init, extrapolate, update))
 print(f'cs_kalman          {typical_error(shipped, encounters):5.1f} m')
 print(f'your own estimator {typical_error(own, encounters):5.1f} m')

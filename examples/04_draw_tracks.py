@@ -11,10 +11,9 @@ import sys
 import matplotlib
 import numpy as np
 
+from marine_tracker import service_for
 from marine_tracker.geometry import NAUTICAL_MILE, unit_vector
-from marine_tracker.parameters import TrackerParameters
 from marine_tracker.simulation import radar, scenario
-from marine_tracker.tracking.tracker import Tracker
 
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt
@@ -23,12 +22,12 @@ SCANS = 110  # five minutes
 VECTOR_S = 180.0
 
 strait = scenario.load('busy_strait')
-tracker = Tracker(TrackerParameters(**strait.tracker_parameters()))
-memory = tracker.start()
+service = service_for(strait.tracker_parameters())
+memory = service.start()
 plots, ways = [], {}
 for scan, _ in radar.simulate(strait, seed=1):
-    memory, report = tracker.step(memory, scan)
-    estimate = tracker.extrapolate(report.tracks, report.time)
+    memory, output = service.step(memory, scan)
+    report, estimate = output.report, output.estimate
     offset = scan.plots.range[:, None] * unit_vector(scan.plots.bearing)
     plots.append(scan.own_ship.position[0] + offset)
     for row in np.flatnonzero(report.tracks.number > 0):
@@ -43,7 +42,7 @@ axes.set_facecolor('#0b1a24')
 axes.plot(
     *np.concatenate(plots).T / NAUTICAL_MILE, '.', color='#7d8f99', markersize=1.2, alpha=0.35
 )
-shown = set(memory.tracks.number[memory.tracks.number > 0])
+shown = set(memory.tracker.tracks.number[memory.tracker.tracks.number > 0])
 for number in sorted(shown):
     way = np.array(ways[number]) / NAUTICAL_MILE
     (line,) = axes.plot(way[:, 0], way[:, 1], linewidth=1.6)

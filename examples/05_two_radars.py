@@ -8,10 +8,9 @@ the second radar is silent for three minutes; the tracks live on.
 
 import numpy as np
 
-from marine_tracker.parameters import TrackerParameters
+from marine_tracker import service_for
 from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking.radars import fused, merged
-from marine_tracker.tracking.tracker import Tracker
 
 x, s = scenario.load('two_radars_x'), scenario.load('two_radars_s')
 scans_x = [scan for scan, _ in radar.simulate(x, seed=1)]
@@ -22,18 +21,19 @@ together = fused([x.tracker_parameters(), s.tracker_parameters()], ['radar_x', '
 
 def track(parameters, scans):
     """RMS distance, m, of the ships from their tracks, and the numbers of these tracks."""
-    tracker = Tracker(TrackerParameters(**parameters))
-    memory = tracker.start()
+    service = service_for(parameters)
+    memory = service.start()
     errors, numbers = [], set()
     for scan in scans:
-        memory, _ = tracker.step(memory, scan)
+        memory, _ = service.step(memory, scan)
         if scan.end < 120:  # all have been found by then
             continue
-        held = memory.tracks.number > 0
-        now = tracker.extrapolate(memory.tracks, scan.end).position[held]
+        tracks = memory.tracker.tracks
+        held = tracks.number > 0
+        now = service.tracker.extrapolate(tracks, scan.end).position[held]
         apart = np.linalg.norm(x.truth_at(scan.end).position[:6, None] - now, axis=-1)
         errors.append(apart.min(1))
-        numbers.update(memory.tracks.number[held][apart.argmin(1)].tolist())
+        numbers.update(tracks.number[held][apart.argmin(1)].tolist())
     return np.sqrt(np.mean(np.square(errors))), numbers
 
 

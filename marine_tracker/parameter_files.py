@@ -8,8 +8,7 @@ import json
 import textwrap
 from pathlib import Path
 
-import yaml
-
+from . import yaml_file
 from .parameters import NODES
 
 COMMAND = 'python -m marine_tracker.parameter_files'
@@ -37,7 +36,9 @@ def limits(field) -> str:
 def yaml_value(value) -> str:
     """A parameter's value as YAML that every reader takes for the same type."""
     if isinstance(value, str):
-        plain = value.isidentifier() and yaml.safe_load(value) == value  # not yes, no, null
+        # Not null, and none of the words that YAML 1.1, which ROS reads, takes for a bool.
+        word = value.isidentifier() and value.lower() not in ('y', 'n', 'yes', 'no', 'on', 'off')
+        plain = word and yaml_file.parse(value, '') == value
         return value if plain else json.dumps(value)
     return json.dumps(value)
 

@@ -13,6 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+CodeArray = NDArray[np.int8]  # one of a few named numbers, such as Tracks.status
 HISTORY = 20  # scans of hits and misses that a track remembers, bits of Tracks.history
 
 
@@ -136,7 +139,7 @@ class Tracks(NamedTuple):
     bearing     [N]  rad from own ship when last swept: tells when the beam will pass again
     state       estimator state, N rows
     radar       [N]  which radar had the last plot; None with one radar
-    past        the last updates (tracking.order.Update), the last first; () with one radar
+    past        the last updates (tracking.late_plots.Update), the last first; () with one radar
     """
 
     id: NDArray[np.int64]

@@ -10,7 +10,7 @@ import marine_tracker
 PACKAGE = Path(marine_tracker.__file__).resolve().parent
 
 # What each part of the package may import of the others: the table of doc/architecture.md.
-BASE = {'types', 'geometry', 'parameters', 'config', 'processes'}
+BASE = {'types', 'geometry', 'geodesy', 'parameters', 'config', 'processes', 'files', 'yaml_file'}
 CORE = BASE | {'gaussian', 'networks', 'estimators', 'tracking', 'extent'}
 SOURCES = {'simulation', 'recording'}
 SERVICE = CORE | {'arpa', 'service'}
@@ -18,7 +18,10 @@ MAY_IMPORT = {
     'config': set(),
     'types': set(),
     'geometry': {'types'},
-    'parameters': set(),
+    'geodesy': {'types', 'geometry'},
+    'files': set(),
+    'yaml_file': {'files'},
+    'parameters': {'files'},
     'processes': set(),
     'parameter_files': BASE,
     'simulation': BASE,
@@ -101,6 +104,36 @@ def test_no_part_depends_on_itself_through_others():
 
     for part in MAY_IMPORT:
         below(part)
+
+
+def test_only_the_service_puts_extents_tracker_and_arpa_together():
+    """Whoever else made one of them, or took its step, would run something else than is shipped."""
+    for file in MODULES:
+        for node in ast.walk(ast.parse(file.read_text())):
+            if not isinstance(node, ast.Call) or file.name == 'service.py':
+                continue
+            called = node.func
+            name = called.id if isinstance(called, ast.Name) else getattr(called, 'attr', '')
+            assert name not in ('Tracker', 'Extents', 'Arpa'), f'{file}, line {node.lineno}'
+            if name == 'step' and isinstance(called, ast.Attribute):
+                owner = ast.unparse(called.value).split('.')[-1].strip('_')
+                assert owner not in ('tracker', 'arpa', 'extents'), f'{file}, line {node.lineno}'
+
+
+def longest(file, name):
+    """Lines of the longest function of that name."""
+    return max(
+        node.end_lineno - node.lineno + 1
+        for node in ast.walk(ast.parse((PACKAGE / file).read_text()))
+        if isinstance(node, ast.FunctionDef) and node.name == name
+    )
+
+
+@pytest.mark.parametrize(
+    ('file', 'most'), [('tracking/tracker.py', 60), ('arpa/arpa.py', 50), ('service.py', 40)]
+)
+def test_the_main_steps_read_as_a_page(file, most):
+    assert longest(file, 'step') <= most
 
 
 def lines_of(files):

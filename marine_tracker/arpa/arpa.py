@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry import KNOT, NAUTICAL_MILE, locate, polar_to_position, unit_vector
+from ..geometry import KNOT, NAUTICAL_MILE, polar_to_position, unit_vector
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
+from ..tracking.noise import noise_of
 from ..tracking.radars import radars_of
 from ..tracking.tracker import Report
 from ..types import Array, OwnShip, Scan, Tracks, append, row_of, take
@@ -122,30 +123,17 @@ class Arpa:
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
-        bearing_sigma = np.radians(radar.bearing_sigma_deg)
         samples = lately(memory.own, scan.own_ship, now)
         own = own_motion(samples, now, heading)
 
         # motion: course and speed from a memory of their own
-        plots = locate(scan.plots, scan.own_ship, radar.range_sigma_m, bearing_sigma)
+        plots = noise_of(radar, scan).locate(scan)
         remembered = motion.step(memory.motion, report, plots, self.motion, scan.radar)
         moving = motion.at(remembered, now)
-        past = past_positions.step(
-            memory.past,
-            tracks.id,
-            tracks.first_time,
-            moving.position,
-            moving.velocity,
-            own.position,
-            own.velocity,
-            now,
-        )
+        past = past_positions.step(memory.past, tracks.id, tracks.first_time, moving, own, now)
 
         # cpa: how the tracks pass own ship
-        anchored = at_anchor(samples, own, now, self.parameters.own_ship_status)
-        no_danger = anchored & harmless(moving, own)
-        if anchored:
-            own = own._replace(velocity=np.zeros(2))
+        own, no_danger = self._anchored(samples, moving, own, now)
         moving, own = sea_stabilised(moving, own, self.current)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
@@ -153,43 +141,33 @@ class Arpa:
         )
 
         # acquisition: which of them are targets
-        before = memory.acquisition.targets
         acquired, events = acquisition.step(memory.acquisition, self.acquisition, seen, now)
-
-        # alarms
-        overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        target = acquisition.how_acquired(acquired, tracks.id) >= 0
-        fallen = int(np.sum(fallen & target & (tracks.status == CONFIRMED)))
-        alive, changed = alarms.step(
-            memory.alerts,
-            self.alarms,
-            seen,
-            acquired,
-            events,
-            self.zones,
-            alarms.Tracking(self.acquisition.capacity, fallen, overlap, other),
-            now,
-        )
-
-        lost = tracks.id[tracks.status == LOST]
-        targets = append(acquired.targets, take(before, np.isin(before.id, lost)))
-        targets = take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+        targets = _shown(acquired, memory.acquisition, tracks)
         row = row_of(tracks.id, targets.id)
-        return ArpaMemory(samples, remembered, acquired, alive, past), Picture(
-            now,
-            own,
-            row,
-            targets,
-            take(moving, row),
-            take(passing, row),
-            past,
-            no_danger[row],
-            seen.danger[row],
-            overlap[row],
-            events,
-            alive,
-            changed,
+
+        # alarms: those after the scan, and those that changed
+        overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
+        fallen = _fallen(fallen, acquired, tracks)
+        tracking = alarms.Tracking(self.acquisition.capacity, fallen, overlap, other)
+        alarm = alarms.step(
+            memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
+
+        # the picture: the rows of the targets
+        moving, passing = take(moving, row), take(passing, row)
+        told = no_danger[row], seen.danger[row], overlap[row], events, *alarm
+        return (
+            ArpaMemory(samples, remembered, acquired, alarm[0], past),
+            Picture(now, own, row, targets, moving, passing, past, *told),
+        )
+
+    def _anchored(
+        self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float
+    ) -> tuple[OwnMotion, NDArray[np.bool_]]:
+        """Own ship, at rest where she lies at anchor; the tracks [N] that are no danger then."""
+        if not at_anchor(samples, own, now, self.parameters.own_ship_status):
+            return own, np.zeros(len(moving.position), bool)
+        return own._replace(velocity=np.zeros(2)), harmless(moving, own)
 
     def _approach(
         self, moving: Motion, own: OwnMotion, acquired: Acquisition, tracks: Tracks
@@ -225,3 +203,16 @@ class Arpa:
         )
         other[rows] = np.where(found >= 0, np.append(rows, -1)[found], -1)
         return overlap, other
+
+
+def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Targets:
+    """The targets, those that were lost in this scan among them, in the order of their numbers."""
+    lost = np.isin(before.targets.id, tracks.id[tracks.status == LOST])
+    targets = append(acquired.targets, take(before.targets, lost))
+    return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+
+
+def _fallen(fallen, acquired: Acquisition, tracks: Tracks) -> int:
+    """How many confirmed targets have fallen back, of the tracks `fallen` [N], or all or none."""
+    target = acquisition.how_acquired(acquired, tracks.id) >= 0
+    return int(np.sum(fallen & target & (tracks.status == CONFIRMED)))

@@ -11,6 +11,7 @@ from .cpa import Approach, OwnMotion
 from .zones import Zones, inside
 
 SAFE, NEARLY, DANGEROUS = range(3)
+DANGERS = ('safe', 'nearly', 'dangerous')
 WIDER = 1.1  # the limits that a danger must leave to be over, of the limits
 LIKELY, UNLIKELY = 0.5, 0.25  # probabilities of danger that raise it, and that let it end
 

@@ -20,6 +20,13 @@ from .motion import Motion
 from .targets import label
 
 
+class HullView(NamedTuple):
+    """shapes: of N targets; clearance [N] m: how near own ship comes to their hulls."""
+
+    shapes: Shapes
+    clearance: Array
+
+
 class View(NamedTuple):
     """N targets at one moment: those with a number in its order, then those being acquired.
 
@@ -38,7 +45,7 @@ class View(NamedTuple):
     misses      [N]  scans since the last plot
     age         [N]  s since the first plot
     account     how the estimator fares with them, N rows; without words where it gives none
-    hulls       their sizes, N rows; None with extent off
+    hulls       their sizes, N rows; None with extent none
     """
 
     name: list[str]
@@ -56,14 +63,7 @@ class View(NamedTuple):
     misses: NDArray[np.int64]
     age: Array
     account: Account
-    hulls: 'HullView | None' = None
-
-
-class HullView(NamedTuple):
-    """shapes: of N targets; clearance [N] m: how near own ship comes to their hulls."""
-
-    shapes: Shapes
-    clearance: Array
+    hulls: HullView | None = None
 
 
 def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None = None) -> View:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..files import shown
 from ..geometry import NAUTICAL_MILE
 from ..types import Array
 
@@ -134,9 +135,3 @@ def _crosses_itself(corners: Array) -> bool:
     parts = begin * end < 0
     (x, y), (next_x, next_y) = corners.T, np.roll(corners, -1, 0).T
     return bool((parts & parts.T).any()) or not x @ next_y - y @ next_x
-
-
-def shown(value: Any) -> str:
-    """The value as an error tells it, not too long."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + '...'

@@ -26,13 +26,15 @@ REQUIRED = {
     'numpy': 'numpy',
     'scipy': 'scipy',
     'pywt': 'PyWavelets',
-    'yaml': 'PyYAML',
+    'ruamel.yaml': 'ruamel.yaml',
     'rich': 'rich',
     'pynmea2': 'pynmea2',
+    'pyproj': 'pyproj',
 }
 OPTIONAL = {
     'matplotlib': ('matplotlib', 'to draw plots'),
     'stonesoup': ('stonesoup', 'bench compares with it'),
+    'distributed': ('distributed', 'to run experiments on a cluster'),
 }
 SHIPPED = ('tracker.yaml', 'scenarios', 'fastdds_local.xml')
 PROFILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
@@ -160,12 +162,12 @@ def _python() -> Check:
 
 
 def _module(module: str, package: str, advice: str, *, required: bool) -> Check:
-    if find_spec(module) is None:
-        return Check(package, False, 'not installed', advice, required)
     try:
         importlib.import_module(module)
     except Exception as error:  # a broken installation raises whatever it likes
-        return Check(package, False, f'cannot be imported: {_words(error)}', advice, required)
+        absent = isinstance(error, ModuleNotFoundError) and module.startswith(str(error.name))
+        found = 'not installed' if absent else f'cannot be imported: {_words(error)}'
+        return Check(package, False, found, advice, required)
     return Check(package, True, _version(package), '', required)
 
 

@@ -108,8 +108,9 @@ def _notes(loaded):
     sigma = np.radians(loaded.tracker_parameters()['bearing_sigma_deg']) * loaded.radar.max_range
     near = float(round(max(50.0, 2 * sigma)))
     notes: dict[str, Any] = {'seen_within_m': near, 'cutoff_m': 2 * near, 'uncooperative': False}
-    if loaded.fleet.origin is not None:
-        notes['origin'] = list(loaded.fleet.origin)
+    origin = loaded.fleet.origin
+    if origin is not None:
+        notes['origin'] = [origin.latitude, origin.longitude]
     return notes
 
 

@@ -21,7 +21,7 @@ file beside it tells how it came about.
 
 With --scenario the radar is the scenario's, and the tracks of its targets are learned besides;
 with --kinds the vessels move as a file of your own says (its form stands in
-marine_tracker/evaluation/own_waters.py).
+marine_tracker/training/custom_traffic.py).
 """
 ROUGH = """Train the network of `cs_rough_nn`, or that of `cs_bp_nn`.
 

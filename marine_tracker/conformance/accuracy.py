@@ -2,7 +2,7 @@
 
 The four scenarios and the sensor errors of resolution A.823(19), appendices 2 and 3; limits of
 A.823 and of MSC.192(79). Errors are those of 95 runs in a hundred. The radar's plots go through the
-whole service (see target_data), and beside it a straight line is fitted to them, which knows
+whole service (service.py), and beside it a straight line is fitted to them, which knows
 that the target keeps its course: no tracker can do much better.
 
 Relative figures come from the radar; true course and speed are the relative ones and own ship's,
@@ -10,7 +10,6 @@ by a gyro and a log that err as the standard has it. Own ship's place is reckone
 gyro and log, so tracks drift with it, and their motion relative to own ship does not err.
 """
 
-import os
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -20,9 +19,10 @@ from ..arpa.cpa import cpa_of
 from ..evaluation import parallel
 from ..evaluation.result import Progress, silent
 from ..geometry import KNOT, NAUTICAL_MILE, locate, wrap_angle
+from ..service import Output, service_for
 from ..simulation import radar, scenario, standard_scenarios
 from ..types import Array, Scan
-from .target_data import Service, TargetData
+from .ring_of_ships import shown
 
 FIGURES = ('relative course', 'relative speed', 'CPA', 'TCPA', 'true course', 'true speed')
 UNITS = ('deg', 'kn', 'NM', 'min', 'deg', 'kn')
@@ -105,12 +105,12 @@ def figures_of(position, velocity, true_velocity) -> Array:
     )
 
 
-def told(data: TargetData, place) -> Array:
+def told(output: Output, place) -> Array:
     """FIGURES [6] of the target that is shown nearest to `place` [2] m from own ship, or nan."""
-    if not len(data.motion.position):
+    approach, place_of = output.picture.approach, shown(output)
+    if np.isnan(place_of).all():
         return np.full(6, np.nan)
-    row = np.hypot(*(data.motion.position - data.own.position - place).T).argmin()
-    approach = data.approach
+    row = np.nanargmin(np.hypot(*(place_of - place).T))
     return np.array(
         [
             column[row]
@@ -159,7 +159,7 @@ def judged(trial: AccuracyTrial) -> Array:
 def follow(trial: AccuracyTrial, estimators: Sequence[str], seeds: Sequence[int]) -> Array:
     """FIGURES [R, W, 6] that the fit and the service with each estimator find in R runs."""
     loaded = scenario.build(trial.values, 'trial')
-    services = [Service(loaded, name) for name in estimators]
+    services = [service_for(loaded.tracker_parameters(), estimator=name) for name in estimators]
     truth = loaded.truth_at(trial.moment)
     place = truth.position[0] - loaded.own_ship_at(trial.moment).position[0]
     found = np.full((len(seeds), 1 + len(services), 6), np.nan)
@@ -167,11 +167,10 @@ def follow(trial: AccuracyTrial, estimators: Sequence[str], seeds: Sequence[int]
         scans = [scan for scan, _ in radar.simulate(loaded, seed)]
         found[run, 0] = fit(scans, trial.steady_since)
         for column, service in enumerate(services, 1):
-            memory = None
+            memory = service.start()
             for scan in scans:
-                memory = service.step(memory, scan)
-            assert memory is not None
-            found[run, column] = told(service.targets(memory, trial.moment), place)
+                memory, output = service.step(memory, scan)
+            found[run, column] = told(output, place)
     return found
 
 
@@ -196,7 +195,7 @@ def run(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> list[Outcome]:
     """Each trial `runs` times; what comes out depends on seed and runs alone."""
     work, whose = [], []
@@ -205,7 +204,7 @@ def run(
         for first in range(0, runs, CHUNK):
             work.append(parallel.Job(follow, (trial, estimators, seeds[first : first + CHUNK])))
             whose.append(number)
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     return [
         Outcome(
             judged(trial),

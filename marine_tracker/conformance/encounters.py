@@ -5,9 +5,8 @@ CPA and TCPA shown three minutes after a target was acquired, and when its dange
 by then more than six minutes must be left.
 """
 
-import os
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,11 +15,11 @@ from ..arpa.alerts import ACTIVE_UNACKNOWLEDGED
 from ..evaluation import parallel
 from ..evaluation.result import Progress, silent
 from ..geometry import NAUTICAL_MILE
+from ..service import service_for
 from ..simulation import radar, scenario
 from ..simulation.standard_scenarios import IMAZU
 from ..types import Array
-from .ring_of_ships import owners_of
-from .target_data import Service, heading
+from .ring_of_ships import owners
 
 JUDGED_AFTER = 180.0  # s after acquisition
 WARNED_BEFORE = 360.0  # s of TCPA
@@ -47,7 +46,7 @@ def run(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> list[Encounter]:
     """Every encounter `runs` times."""
     numbers = range(1, len(IMAZU) + 1)
@@ -56,7 +55,7 @@ def run(
         for number in numbers
         for of_run in np.random.SeedSequence([seed, 2, number]).generate_state(runs)
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     return [
         Encounter(number, *np.stack(found[first : first + runs], 2))
         for number, first in zip(numbers, range(0, len(found), runs))
@@ -66,8 +65,8 @@ def run(
 def follow(number: int, estimators: Sequence[str], seed: int) -> Array:
     """[4, E, T]: the arrays of Encounter, of one run."""
     loaded = scenario.load(f'imazu_{number:02d}')
-    services = [Service(loaded, name) for name in estimators]
-    memories: list[Any] = [(service.tracker.start(), service.arpa.start()) for service in services]
+    services = [service_for(loaded.tracker_parameters(), estimator=name) for name in estimators]
+    memories = [service.start() for service in services]
     shape = (len(services), len(loaded.fleet.names))
     acquired, cpa, tcpa = np.full((3, *shape), np.inf)
     warned = np.full(shape, -np.inf)
@@ -77,11 +76,9 @@ def follow(number: int, estimators: Sequence[str], seed: int) -> Array:
             break
         place = loaded.truth_at(scan.end).position - loaded.own_ship_at(scan.end).position
         for e, service in enumerate(services):
-            tracked, reckoned = memories[e]
-            tracked, report = service.tracker.step(tracked, scan)
-            reckoned, picture = service.arpa.step(reckoned, scan, report, heading(scan.own_ship))
-            memories[e] = tracked, reckoned
-            row, found = owners_of(picture.motion.position - picture.own.position, place)
+            memories[e], output = service.step(memories[e], scan)
+            picture = output.picture
+            row, found = owners(output, place)
             new = found & np.isinf(acquired[e])
             acquired[e, new] = picture.targets.since[row[new]]
             alarms = picture.alerts.id[

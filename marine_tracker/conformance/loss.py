@@ -4,20 +4,19 @@ Each of ten scans, again and again, has five plots of the target, which ones is 
 may be missing ten times in a row. After ten minutes it vanishes.
 """
 
-import os
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..evaluation import parallel
 from ..evaluation.result import Progress, silent
+from ..service import service_for
 from ..simulation import radar, scenario
 from ..simulation.standard_scenarios import REVOLUTION, ROTATION
 from ..tracking.lifecycle import LOST
 from ..types import Array, take
 from . import ring_of_ships
-from .target_data import Service
 
 BEGIN, MINUTES, AFTER = 10, 10, 14  # scans seen at first; minutes of gaps; scans unseen
 SHOWN, OF = 5, 10
@@ -38,7 +37,7 @@ def run(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> Kept:
     """At least `runs` targets."""
     scenes = -(-runs // ring_of_ships.SHIPS)
@@ -46,7 +45,7 @@ def run(
         parallel.Job(_follow, (estimators, int(of_scene)))
         for of_scene in np.random.SeedSequence([seed, 3]).generate_state(scenes)
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     return Kept(*(np.concatenate(column, axis=1) for column in zip(*found)))
 
 
@@ -75,8 +74,8 @@ def _follow(estimators, seed):
             np.zeros((AFTER, ships), bool),
         ]
     )
-    services = [Service(loaded, name) for name in estimators]
-    memories: list[Any] = [None for _ in services]
+    services = [service_for(loaded.tracker_parameters(), estimator=name) for name in estimators]
+    memories = [service.start() for service in services]
     numbers = np.zeros((len(services), ships), np.int64)  # the ships' target numbers
     kept = np.ones((len(services), ships), bool)
     last = np.zeros(ships, np.int64)
@@ -88,10 +87,10 @@ def _follow(estimators, seed):
         whose = np.minimum(apart, 2 * np.pi - apart).argmin(1)
         scan = scan._replace(plots=take(scan.plots, shows[k, whose]))
         for e, service in enumerate(services):
-            memories[e] = service.step(memories[e], scan)
-            tracks = memories[e].report.tracks
+            memories[e], output = service.step(memories[e], scan)
+            tracks = output.report.tracks
             if k == BEGIN - 1:
-                numbers[e] = _numbers(service.targets(memories[e], scan.end), truth, loaded)
+                numbers[e] = _numbers(output, truth, loaded)
                 kept[e] = numbers[e] > 0
             alive = np.isin(numbers[e], tracks.number[tracks.status != LOST])
             if k < BEGIN + gaps:
@@ -102,9 +101,10 @@ def _follow(estimators, seed):
     return kept, np.where(kept, ended, np.nan)
 
 
-def _numbers(data, truth, loaded):
+def _numbers(output, truth, loaded):
     """[SHIPS] number of each ship's target, 0 for none."""
     row, found = ring_of_ships.owners(
-        data, truth.position - loaded.own_ship_at(truth.time).position
+        output, truth.position - loaded.own_ship_at(truth.time).position
     )
-    return np.where(found, np.append(data.tracks.number, 0)[np.where(found, row, -1)], 0)
+    number = output.picture.targets.number
+    return np.where(found, np.append(number, 0)[np.where(found, row, -1)], 0)

@@ -5,21 +5,20 @@ Own ship turns by 45 degrees to either side in one minute, in the four scenarios
 does their course stay wrong after the turn?
 """
 
-import os
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..evaluation import parallel
 from ..evaluation.result import Progress, silent
 from ..geometry import wrap_angle
+from ..service import service_for
 from ..simulation import radar, scenario
 from ..simulation.standard_scenarios import A823_RADAR, REVOLUTION
 from ..types import Array
 from . import ring_of_ships
 from .accuracy import AccuracyTrial, a823_trial
-from .target_data import Service
 
 OWN_TURNS = (-45.0, 45.0)  # deg
 MET_AGAIN = 20.0  # s after own ship's turn
@@ -71,7 +70,7 @@ def target_turns(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> list[Turn]:
     """At least `runs` ships for each of TURNS."""
     scenes = -(-runs // ring_of_ships.SHIPS)
@@ -80,7 +79,7 @@ def target_turns(
         for kind, (rate, angle) in enumerate(TURNS)
         for number in np.random.SeedSequence([seed, 1, kind]).generate_state(scenes)
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     turns = []
     for kind, (rate, angle) in enumerate(TURNS):
         parts = found[kind * scenes : (kind + 1) * scenes]
@@ -103,8 +102,8 @@ def _turn(rate, angle, estimators, seed):
         ),
         'turning',
     )
-    services = [Service(loaded, name) for name in estimators]
-    memories: list[Any] = [None for _ in services]
+    services = [service_for(loaded.tracker_parameters(), estimator=name) for name in estimators]
+    memories = [service.start() for service in services]
     errors = np.full((len(services), ring_of_ships.SHIPS, loaded.scans), np.inf)
     times = np.zeros(loaded.scans)
     for k, (scan, _) in enumerate(radar.simulate(loaded, seed)):
@@ -113,11 +112,13 @@ def _turn(rate, angle, estimators, seed):
         course = np.arctan2(*truth.velocity.T)
         times[k] = scan.end - end
         for row, service in enumerate(services):
-            memories[row] = service.step(memories[row], scan)
+            memories[row], output = service.step(memories[row], scan)
             if k < BEFORE // 2:
                 continue
-            data = service.targets(memories[row], scan.end)
-            whose = ring_of_ships.owners(data, place)
-            off = data.approach.relative_course[whose.row[whose.found]] - course[whose.found]
+            whose = ring_of_ships.owners(output, place)
+            off = (
+                output.picture.approach.relative_course[whose.row[whose.found]]
+                - course[whose.found]
+            )
             errors[row, whose.found, k] = np.degrees(np.abs(wrap_angle(off)))
     return times, errors

@@ -1,17 +1,16 @@
 """Pictures of the IMO report: distributions of errors, tracks, courses after a turn."""
 
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from ..evaluation.result import Picture
 from ..geometry import NAUTICAL_MILE, unit_vector
+from ..service import service_for
 from ..simulation import radar, scenario
 from .accuracy import FIGURES, UNITS, a823_limits, a823_trial, msc192_limits
 from .figures import RIGHT_WITHIN, Results
 from .manoeuvres import RIGHT
-from .target_data import Service
 
 COLOURS = ('#1f5fa8', '#c2571a', '#3b7d3a', '#8a4fa3')
 A823_COLOUR, MSC192_COLOUR, FIT_COLOUR = '#b00020', '#e08a00', '0.35'
@@ -77,12 +76,13 @@ def _tracks(canvas, estimator, seed):
     for number, axes in enumerate(canvas.subplots(2, 2).flat, 1):
         trial = a823_trial(number, 180.0)
         loaded = scenario.build(trial.values, 'trial')
-        service, places = Service(loaded, estimator), []
-        memory: Any = None
+        service = service_for(loaded.tracker_parameters(), estimator=estimator)
+        memory = service.start()
+        places = []
         for scan, _ in radar.simulate(loaded, seed):
-            memory = service.step(memory, scan)
+            memory, output = service.step(memory, scan)
             places += [r * unit_vector(b) for r, b in zip(scan.plots.range, scan.plots.bearing)]
-        data = service.targets(memory, trial.moment)
+        picture = output.picture
         truth, own = loaded.truth_at(trial.moment), loaded.own_ship_at(trial.moment)
         axes.plot(
             *np.array(places).T / NAUTICAL_MILE, '.', color='0.6', markersize=3, label='plots'
@@ -98,13 +98,13 @@ def _tracks(canvas, estimator, seed):
         ]
         lines += [
             (
-                position - data.own.position,
-                velocity - data.own.velocity,
+                position - picture.own.position,
+                velocity - picture.own.velocity,
                 COLOURS[0],
                 'shown, to its CPA',
                 '-',
             )
-            for position, velocity in zip(data.motion.position, data.motion.velocity)
+            for position, velocity in zip(picture.motion.position, picture.motion.velocity)
         ]
         for position, velocity, colour, name, style in lines:
             ahead = max(-(position @ velocity) / (velocity @ velocity), 180.0)

@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..service import Output
+from ..tracking.lifecycle import LOST
 from ..types import Array
-from .target_data import TargetData
 
 SHIPS = 24
 DISTANCE, SPEED = 5000.0, 8.0  # m, m/s
@@ -41,17 +42,21 @@ class Owners(NamedTuple):
     found: NDArray[np.bool_]
 
 
-def owners(data: TargetData, place: Array) -> Owners:
-    """Which targets are those of ships at `place` [S, 2] m from own ship: the nearest ones."""
-    return owners_of(data.motion.position - data.own.position, place)
-
-
-def owners_of(shown: Array, place: Array) -> Owners:
-    """The same for targets that are shown at [N, 2] m from own ship."""
-    if not len(shown):
+def owners(output: Output, place: Array) -> Owners:
+    """Which targets of the picture are those of ships at `place` [S, 2] m from own ship: the
+    nearest ones."""
+    where = shown(output)
+    if not len(where):
         return Owners(np.zeros(len(place), np.int64), np.zeros(len(place), bool))
-    apart = shown - place[:, None]
+    apart = where - place[:, None]
     distance = np.hypot(apart[..., 0], apart[..., 1])
     distance = np.where(np.isnan(distance), np.inf, distance)
     row = distance.argmin(1)
     return Owners(row, distance[np.arange(len(row)), row] < REACH)
+
+
+def shown(output: Output) -> Array:
+    """[T, 2] m from own ship of the picture's targets; nan for those just lost."""
+    picture = output.picture
+    lost = output.report.tracks.status[picture.row] == LOST
+    return np.where(lost[:, None], np.nan, picture.motion.position - picture.own.position)

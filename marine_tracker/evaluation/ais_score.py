@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geodesy import LocalFrame
 from ..geometry import own_ship_at, to_range_bearing, unit_vector, wrap_angle
 from ..recording.csv_folder import Recording
 from ..recording.track_file import TrackRows
@@ -138,7 +139,7 @@ def score(
     return {name: figures[name] for name in FIGURES}
 
 
-def _origin(recording: Recording, given: Sequence[float] | None) -> tuple[float, float]:
+def _origin(recording: Recording, given: Sequence[float] | None) -> LocalFrame:
     origin = recording.notes.get('origin') if given is None else given
     if origin is None:
         raise ValueError(
@@ -150,18 +151,21 @@ def _origin(recording: Recording, given: Sequence[float] | None) -> tuple[float,
         and len(origin) == 2
         and all(
             type(degrees) in (int, float) and abs(degrees) <= most
-            for degrees, most in zip(origin, (85, 180))
+            for degrees, most in zip(origin, (90, 180))
         )
     ):
-        raise ValueError(f'origin is {origin}; it must be latitude and longitude in degrees')
-    return float(origin[0]), float(origin[1])
+        raise ValueError(
+            f'origin is {origin}; it must be latitude and longitude in degrees, '
+            'from -90 to 90 and from -180 to 180'
+        )
+    return LocalFrame(float(origin[0]), float(origin[1]))
 
 
-def _fleet(recording, file, origin, start, max_gap) -> _Fleet:
+def _fleet(recording, file, frame, start, max_gap) -> _Fleet:
     end = float(recording.scans[-1].end)
     vessels = ais.read(file, start, end, max_gap)
     return _Fleet(
-        list(vessels), motion.table([ais.way(reports, origin) for reports in vessels.values()], end)
+        list(vessels), motion.table([ais.way(reports, frame) for reports in vessels.values()], end)
     )
 
 

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from ..estimators import ESTIMATORS, Estimator
 from ..geometry import KNOT, NAUTICAL_MILE, unit_vector, wrap_bearing
 from ..parameters import TrackerParameters
-from ..tracking.tracker import Tracker
+from ..service import Service
 from ..types import OwnShip, PolarPlots, Scan
 
 PERIOD = 60 / 22  # s
@@ -126,23 +126,23 @@ def run_tracker(scene: Traffic, estimator: str) -> Iterator[BenchmarkResult]:
         max_tracks=min(2 * targets + 1000, 100000),
     )
     clock = Clock()
-    tracker = Tracker(parameters, clock.time(ESTIMATORS[estimator](parameters)))
-    warm = tracker.start()
+    service = Service(parameters, estimator=clock.time(ESTIMATORS[estimator](parameters)))
+    warm = service.start()
     for scan in scene.scans[:WARM_UP]:
-        warm, _ = tracker.step(warm, scan)
+        warm, _ = service.track(warm, scan)
     timed = scene.scans[WARM_UP:]
     while True:
         memory, after = warm, []
         clock.spent, begin = 0.0, time.process_time()
         for scan in timed:
-            memory, _ = tracker.step(memory, scan)
-            after.append(memory.tracks)
+            memory, _ = service.track(memory, scan)
+            after.append(memory.tracker.tracks)
         cpu = time.process_time() - begin
         yield BenchmarkResult(
             cpu / len(timed),
             clock.spent / len(timed),
             [
-                tracker.extrapolate(tracks, scan.end).position[tracks.number > 0]
+                service.tracker.extrapolate(tracks, scan.end).position[tracks.number > 0]
                 for tracks, scan in zip(after, timed, strict=True)
             ],
         )

@@ -1,17 +1,16 @@
 """Extended targets around a point tracker: one plot a cluster in, sizes and headings out.
 
-    extents = Extents(parameters)
-    tracks, known = tracker.start(), extents.start()
-    for scan in scans:
-        (tracks, known), report, plain, shapes = extents.track(tracker, tracks, known, scan)
+    plain, seen = extents.reduce(known, scan, ids, ahead)   # one plot a cluster
+    tracks, report = tracker.step(tracks, plain)
+    known = extents.step(known, seen, ...)
+    shapes = extents.shapes(known, seen, estimate)
 
-`track` is a step of the tracker between `reduce`, which makes the scan `plain` with one plot a
-cluster, and `step`. The tracker is handed in: it knows nothing of extents.
+service.py has it in full. The tracker knows nothing of extents.
 
 What is longer than any ship and stays where it is, is land: its clusters give no plots.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,10 +75,14 @@ class Seen(NamedTuple):
 
 
 class Extents:
-    """The pure core: parameters in, no state of its own. With extent off, plots pass untouched."""
+    """The pure core: parameters in, no state of its own.
+
+    on  whether the parameters ask for extents
+    """
 
     def __init__(self, parameters: TrackerParameters):
         self.parameters = parameters
+        self.on = parameters.extent != 'none'
         self.beam_width = float(np.radians(parameters.beam_width_deg))
 
     def start(self) -> ExtentsMemory:
@@ -96,27 +99,6 @@ class Extents:
         """The memory of another; sizes are found anew where it was asked for something else."""
         same = self.parameters.extent == previous.parameters.extent
         return known if same else self.start()
-
-    def track(
-        self, tracker: Any, tracks: Any, known: ExtentsMemory, scan: Scan
-    ) -> tuple[tuple[Any, ExtentsMemory], Any, Scan, Shapes | None]:
-        """One antenna revolution: a step of a `tracking.tracker.Tracker` and of this.
-
-        Returns the tracker's memory and this one's, the tracker's report, the scan that it refers
-        to, and the shapes of all tracks in it, None with extent off.
-        """
-        if self.parameters.extent == 'off':
-            tracks, report = tracker.step(tracks, scan)
-            return (tracks, known), report, scan, None
-        sure = take(tracks.tracks, tracks.tracks.number > 0)
-        plain, seen = self.reduce(
-            known, scan, sure.id, tracker.extrapolate(sure, 0.5 * (scan.start + scan.end))
-        )
-        tracks, report = tracker.step(tracks, plain)
-        estimate = tracker.extrapolate(report.tracks, report.time)
-        known = self.step(known, seen, report.tracks.id, report.time, report.plot, estimate)
-        noise = self._noise(known.hulls.matrix.mean[:, :2] - seen.own)
-        return (tracks, known), report, plain, hulls.shapes(known.hulls, noise, estimate.position)
 
     def reduce(
         self, memory: ExtentsMemory, scan: Scan, ids, ahead: Extrapolation
@@ -175,6 +157,11 @@ class Extents:
             lined = known.method == BY_GAUSSIAN_PROCESS
             wanted[lined] = known.outline.mean[lined, :2] - known.matrix.mean[lined, :2]
         return ExtentsMemory(known, shift + RAMP * (wanted - shift), at_sea, seen.map, seen.shores)
+
+    def shapes(self, memory: ExtentsMemory, seen: Seen, estimate: Extrapolation) -> Shapes:
+        """Sizes and headings of all N tracks after `step`, with the same estimate."""
+        noise = self._noise(memory.hulls.matrix.mean[:, :2] - seen.own)
+        return hulls.shapes(memory.hulls, noise, estimate.position)
 
     def _noise(self, offset):
         range_, bearing = to_range_bearing(offset)

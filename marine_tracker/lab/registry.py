@@ -1,6 +1,7 @@
 """Experiments by name: each module has HELP, RUNS and run(runs, seed, progress) -> Result.
 
 It may have OPTIONS, {name: how argparse is to read --name}: its `run` takes them as keywords.
+Where `run` takes `workers` too (evaluation.parallel.Workers), the user says where its parts run.
 """
 
 from types import ModuleType

@@ -1,7 +1,7 @@
 """ROS parameters from the dataclasses of parameters/, and back."""
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from rcl_interfaces.msg import (
@@ -14,7 +14,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from ..parameter_files import limits
-from ..parameters import from_mapping, from_mappings
+from ..parameters import from_mappings
+from .diagnostics import one_line
 
 P = TypeVar('P')
 M = TypeVar('M')
@@ -38,11 +39,13 @@ def declare(node: Node, *kinds: type) -> tuple[Any, ...]:
     }
     for name, value in given.items():
         if name in fields:
-            _check_type(name, value, fields[name].type)
+            _check_type(name, value, fields[name])
     parameters = from_mappings(kinds, given)
     for kind, values in zip(kinds, parameters):
         for field in dataclasses.fields(kind):
-            node.declare_parameter(field.name, getattr(values, field.name), descriptor(field))
+            node.declare_parameter(
+                field.name, getattr(values, field.name), descriptor(field), ignore_override=True
+            )
     return parameters
 
 
@@ -69,14 +72,16 @@ def descriptor(field) -> ParameterDescriptor:
     return described
 
 
-def follow(node: Node, kind: type[P], make: Callable[[P], M], apply: Callable[[M], None]) -> None:
-    """Whenever live parameters were changed, `apply` what `make` made of them.
+def follow(
+    node: Node, kinds: Sequence[type], make: Callable[..., M], apply: Callable[[M], None]
+) -> None:
+    """Whenever live parameters were changed, `apply` what `make` made of them, one object a kind.
 
-    A change that the dataclass or `make` refuses with a ValueError is refused with that reason.
+    A change that a dataclass or `make` refuses with a ValueError is refused with that reason.
     `make` must have no side effect: another callback may still refuse the same change.
     """
     made: list[M] = []  # of the last change that was accepted here
-    names = [field.name for field in dataclasses.fields(kind)]  # type: ignore[arg-type]
+    names = [field.name for kind in kinds for field in dataclasses.fields(kind)]
 
     def values(changed: list[Parameter]) -> dict[str, Any]:
         now = {name: node.get_parameter(name).value for name in names}
@@ -85,9 +90,9 @@ def follow(node: Node, kind: type[P], make: Callable[[P], M], apply: Callable[[M
     def validate(changed: list[Parameter]) -> SetParametersResult:
         if any(parameter.name in names for parameter in changed):
             try:
-                made[:] = [make(from_mapping(kind, values(changed)))]
+                made[:] = [make(*from_mappings(kinds, values(changed)))]
             except ValueError as error:
-                return SetParametersResult(successful=False, reason=str(error))
+                return SetParametersResult(successful=False, reason=_named(error, changed))
         return SetParametersResult(successful=True)
 
     def changed(changed: list[Parameter]) -> None:
@@ -98,7 +103,18 @@ def follow(node: Node, kind: type[P], make: Callable[[P], M], apply: Callable[[M
     node.add_post_set_parameters_callback(changed)
 
 
-def _check_type(name: str, value: Any, wanted: Any) -> None:
+def _named(error: ValueError, changed: list[Parameter]) -> str:
+    """Why a change is refused, in one line that names a parameter of it."""
+    names = [parameter.name for parameter in changed]
+    if any(name in str(error) for name in names):
+        return one_line(error)
+    return one_line(f'parameter {", ".join(names)}: {error}')
+
+
+def _check_type(name: str, value: Any, field: dataclasses.Field) -> None:
+    wanted: Any = field.type
+    if isinstance(value, (str, bool)) and value in field.metadata['old']:
+        return
     if value is None:
         raise ValueError(
             f'parameter {name} has no value (an empty entry or list); it must be {WORDS[wanted]}'

@@ -1,7 +1,7 @@
 """The operator's side of the tracker node: targets, alarms, acquisition, trial manoeuvre.
 
-Commands come as topics and services. What they cannot do is told by the service, or logged and
-counted on /diagnostics, a click in vain as well. They take effect at the next scan. `alarms` is
+Commands come as topics and services. What they cannot do is told by the service, or logged once
+and counted on /diagnostics, a click in vain as well. They take effect at the next scan. `alarms` is
 published on change: every alert that is not normal, and those that have just become so.
 
 Time is that of the plots' stamps. It stands at the end of the last scan, and goes on by the wall
@@ -23,34 +23,32 @@ from ..arpa.acquisition import Acquisition
 from ..arpa.alerts import NORMAL, Alerts
 from ..arpa.arpa import Arpa, Picture
 from ..arpa.targets import EVENTS, NO_ROOM, NOTHING_THERE, Events
-from ..parameters import ArpaParameters, TrackerParameters
-from ..tracking.tracker import Report
+from ..service import Output, Service
 from ..types import Array, Scan, append, take
 from . import diagnostics, topics
 from .arpa_messages import alarms_message, trial_message
 from .base_node import RunnableNode
-from .diagnostics import Tally, answered, guarded
+from .diagnostics import Tally, answered
 
 REFUSED = 'commands refused'
 OVERDUE = 3  # revolutions without plots: they are missing, not just to come
 
 
-class ArpaDesk:
-    """Of one tracker node. ValueError where the parameters are wrong."""
+class Operator:
+    """Of one tracker node: the service, its memory, and what the operator does to it.
 
-    def __init__(
-        self,
-        node: RunnableNode,
-        parameters: ArpaParameters,
-        tracker: TrackerParameters,
-        hardware_id: str,
-        failures: Tally,
-    ):
-        self._node, self._hardware_id, self.failures = node, hardware_id, failures
-        self.arpa = Arpa(parameters, tracker)
-        self._memory = self.arpa.start()
+    service  what is running
+    memory   all that it knows; kept nowhere else
+    picture  of the last scan; None before the first
+    """
+
+    def __init__(self, node: RunnableNode, service: Service, hardware_id: str):
+        self._node = node
+        self._hardware_id = hardware_id
+        self.service = service
+        self.memory = service.start()
         self._trial_since: float | None = None  # s, when the trial manoeuvre was switched on
-        self.refused = Tally((REFUSED,), lambda reason, detail: None)
+        self.refused = Tally((REFUSED,), node.tell)
         # Of the wall, s: when each was last heard, and between the last plots of each radar.
         self._heard_heading = self._heard_position = time.monotonic()
         self._heard_plots = [self._heard_heading] * len(self.arpa.radars)
@@ -85,12 +83,18 @@ class ArpaDesk:
         if np.isfinite(heading):
             self._heard_heading, self._heading = wall, heading
 
-    def change(self, parameters: ArpaParameters, tracker: TrackerParameters) -> None:
-        """Live parameters were changed; no target is lost by it."""
-        self.arpa = Arpa(parameters, tracker)
+    @property
+    def arpa(self) -> Arpa:
+        """That of the service."""
+        return self.service.arpa
 
-    def step(self, scan: Scan, report: Report, fallen, end_ns: int) -> Picture:
-        """One scan, which ends at the stamp end_ns; fallen as for Arpa.step.
+    def change(self, service: Service) -> None:
+        """Another service takes over; no target is lost by it."""
+        self.memory = service.adopt(self.memory, self.service)
+        self.service = service
+
+    def step(self, scan: Scan, end_ns: int) -> Output:
+        """One scan, which ends at the stamp end_ns.
 
         The alarms that changed are published, and the trial manoeuvre while it is on.
         """
@@ -98,11 +102,10 @@ class ArpaDesk:
         if self._scanned[scan.radar]:
             self._spacing[scan.radar].append(wall - self._heard_plots[scan.radar])
         self._heard_plots[scan.radar], self._scanned[scan.radar] = wall, True
+        self.memory, output = self.service.step(self.memory, scan, self._heading_now(wall))
         if scan.end >= self._end or self.picture is None:  # of a slow radar they come later
             self._end, self._end_ns = scan.end, end_ns
-        self._memory, self.picture = self.arpa.step(
-            self._memory, scan, report, self._heading_now(wall), fallen
-        )
+        self.picture = output.picture
         self._publish_alarms(self.picture.changed)
         self._tell_of_clicks(self.picture.events)
         if self._trial_since is not None:
@@ -111,7 +114,7 @@ class ArpaDesk:
                     self.arpa, self.picture, scan.end - self._trial_since, end_ns, self._hardware_id
                 )
             )
-        return self.picture
+        return output
 
     def watch(self) -> None:
         """To be called every second: are heading, position and plots still heard?"""
@@ -119,9 +122,15 @@ class ArpaDesk:
         silence = alarms.Silence(
             wall - self._heard_heading, wall - self._heard_position, self._overdue(wall)
         )
-        found, changed = alarms.watch(self._memory.alerts, self.arpa.alarms, silence, self._now())
-        self._memory = self._memory._replace(alerts=found)
+        found, changed = alarms.watch(
+            self.memory.arpa.alerts, self.arpa.alarms, silence, self._now()
+        )
+        self._put(alerts=found)
         self._publish_alarms(changed)
+
+    def _put(self, **parts) -> None:
+        """Replace parts of the ARPA's memory."""
+        self.memory = self.memory._replace(arpa=self.memory.arpa._replace(**parts))
 
     def _heading_now(self, wall: float) -> float:
         """rad; nan where it was not heard lately."""
@@ -145,16 +154,15 @@ class ArpaDesk:
 
     # -- commands ------------------------------------------------------------------------------
 
-    @guarded
     def _on_acquire(self, message: PointStamped) -> None:
         try:
             acquired = acquisition.acquire(
-                self._memory.acquisition, self._point(message), self._end
+                self.memory.arpa.acquisition, self._point(message), self._end
             )
         except ValueError as error:
             self._refuse(str(error))
         else:
-            self._memory = self._memory._replace(acquisition=acquired)
+            self._put(acquisition=acquired)
 
     def _point(self, message: PointStamped) -> Array:
         """Position [2] m in the frame `map`."""
@@ -176,10 +184,9 @@ class ArpaDesk:
         port = np.array([-ahead[1], ahead[0]])
         return self.picture.own.position + point[0] * ahead + point[1] * port
 
-    @guarded
     def _on_cancel(self, message: UInt32) -> None:
         try:
-            acquired, events = acquisition.cancel(self._memory.acquisition, message.data)
+            acquired, events = acquisition.cancel(self.memory.arpa.acquisition, message.data)
         except ValueError as error:
             self._refuse(str(error))
         else:
@@ -187,20 +194,19 @@ class ArpaDesk:
 
     @answered
     def _on_cancel_all(self, _: Trigger.Request) -> str:
-        acquired, events = acquisition.cancel_all(self._memory.acquisition)
+        acquired, events = acquisition.cancel_all(self.memory.arpa.acquisition)
         self._cancelled(acquired, events)
         return f'{len(events.id)} targets cancelled'
 
     def _cancelled(self, acquired: Acquisition, events: Events) -> None:
-        found, changed = alerts.dismiss(self._memory.alerts, events.id, self._now())
-        self._memory = self._memory._replace(acquisition=acquired, alerts=found)
+        found, changed = alerts.dismiss(self.memory.arpa.alerts, events.id, self._now())
+        self._put(acquisition=acquired, alerts=found)
         self._publish_alarms(changed)
 
     @answered
     def _on_acknowledge(self, _: Trigger.Request) -> str:
         return f'{self._acknowledge()} alerts acknowledged'
 
-    @guarded
     def _on_acknowledge_target(self, message: UInt32) -> None:
         try:
             self._acknowledge(message.data)
@@ -209,12 +215,12 @@ class ArpaDesk:
 
     def _acknowledge(self, number: int | None = None) -> int:
         found, changed = alarms.acknowledge(
-            self._memory.alerts,
+            self.memory.arpa.alerts,
             self._now(),
             number=number,
             duration=60 * self.arpa.parameters.acknowledge_for_min,
         )
-        self._memory = self._memory._replace(alerts=found)
+        self._put(alerts=found)
         self._publish_alarms(changed)
         return len(changed.kind)
 
@@ -236,14 +242,13 @@ class ArpaDesk:
                 )
 
     def _refuse(self, reason: str) -> None:
-        self.refused.add(REFUSED, time.monotonic())
-        self._node.get_logger().warning(f'command refused: {reason}')
+        self.refused.add(REFUSED, time.monotonic(), detail=reason)
 
     # -- out -----------------------------------------------------------------------------------
 
     def _publish_alarms(self, changed: Alerts) -> None:
         if len(changed.kind):
-            present = self._memory.alerts
+            present = self.memory.arpa.alerts
             shown = append(
                 take(present, present.state != NORMAL), take(changed, changed.state == NORMAL)
             )

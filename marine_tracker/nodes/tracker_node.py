@@ -2,11 +2,11 @@
 
 What comes in is screened (tracking/intake.py): what is bad is rejected, counted by a named reason
 on /diagnostics and logged once; the tracks live on. See there for how jumps of the clock and of
-own ship are taken. No exception leaves a callback.
+own ship are taken.
 
 `tracks` and `extrapolations` show confirmed and coasting tracks, `tracks_cloud` all with their
 status. In `tracks` each is stamped with the time the beam passed it. `targets` and `markers` show
-those that were acquired (arpa_desk.py); a lost one stands once more in `targets`, as STALE.
+those that were acquired (operator.py); a lost one stands once more in `targets`, as STALE.
 """
 
 import time
@@ -18,28 +18,21 @@ from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import SubscriptionEventCallbacks
 from sensor_msgs.msg import PointCloud2
-from visualization_msgs.msg import MarkerArray
 
-from ..arpa.arpa import Arpa
-from ..arpa.view import Standing, standing, view
-from ..extent.extents import Extents
-from ..extent.hulls import Shapes
-from ..geometry import wrap_bearing
+from ..arpa.view import Standing
+from ..geometry import bearing_from_yaw
 from ..parameters import ArpaParameters, TrackerParameters
+from ..service import Service
 from ..tracking import intake
-from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, TENTATIVE
+from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
 from ..tracking.radars import radars_of
-from ..tracking.tracker import Report, Tracker
-from ..types import Extrapolation, Scan, take
 from . import convert, diagnostics, topics
 from .base_node import RunnableNode
-from .convert import OdometryPool
 from .declare import declare, follow
-from .diagnostics import FAILED, OK, WARN, Durations, Tally, guarded
-from .markers import MarkersWriter
-from .operator import ArpaDesk
+from .diagnostics import FAILED, OK, WARN, Durations, Tally
+from .operator import Operator
 from .radar_input import RadarInput
-from .targets_message import TargetsWriter
+from .tracker_output import TrackerOutput
 
 
 class TrackerNode(RunnableNode):
@@ -48,9 +41,7 @@ class TrackerNode(RunnableNode):
     def __init__(self, **node_arguments):
         super().__init__('tracker', **node_arguments)
         parameters, arpa_parameters = declare(self, TrackerParameters, ArpaParameters)
-        self._tracker = Tracker(parameters)
-        self._extents = Extents(parameters)
-        self._memory, self._known = self._tracker.start(), self._extents.start()
+        service = Service(parameters, arpa_parameters)
         self._base_ns: int | None = None  # stamps are seconds after this
         self._own_log = intake.empty_log()
         self._fallback = intake.OWN_NEVER_HEARD
@@ -62,32 +53,14 @@ class TrackerNode(RunnableNode):
             RadarInput(radar, place, partial(self._tell_of, radar.name))
             for place, radar in enumerate(radars_of(parameters))
         ]
-        self.bad_own_ship = Tally(intake.OWN_REASONS, self._tell)
-        self.failures = Tally((), self._tell)
+        self.bad_own_ship = Tally(intake.OWN_REASONS, self.tell)
 
-        where = self.get_namespace().strip('/')
-        self._label = f'{where}/{self.get_name()}' if where else self.get_name()
-        self._hardware_id = f'{where}/radar' if where else 'radar'
-        self._desk = ArpaDesk(self, arpa_parameters, parameters, self._hardware_id, self.failures)
-        follow(self, TrackerParameters, Tracker, self._change)
-        follow(
-            self,
-            ArpaParameters,
-            lambda p: Arpa(p, self._tracker.parameters),
-            lambda arpa: self._desk.change(arpa.parameters, self._tracker.parameters),
-        )
-        burst = topics.reliable(topics.BURST)
-        self._to_tracks = self.publisher(Odometry, topics.TRACKS, burst)
-        self._to_extrapolations = self.publisher(Odometry, topics.EXTRAPOLATIONS, burst)
-        self._to_cloud = self.publisher(PointCloud2, topics.TRACKS_CLOUD, topics.reliable())
-        self._to_targets = self.publisher(DiagnosticArray, topics.TARGETS, topics.latched())
-        self._to_markers = self.publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
+        self._operator = Operator(self, service, self.hardware_id)
+        follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
+        self._output = TrackerOutput(self, self.hardware_id)
         self._to_diagnostics = self.publisher(
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
-        self._pool = OdometryPool()
-        self._targets = TargetsWriter(self._hardware_id)
-        self._markers = MarkersWriter()
 
         # Own ship first: of messages that wait together it is taken first.
         self._inputs = {}
@@ -122,7 +95,6 @@ class TrackerNode(RunnableNode):
             self.create_subscription(kind, topic, callback, quality, event_callbacks=events),
         )
 
-    @guarded
     def _on_odometry(self, message: Odometry) -> None:
         position, velocity = convert.odometry_to_own_ship(message)
         at = self._seconds(convert.nanoseconds(message.header.stamp))
@@ -136,9 +108,9 @@ class TrackerNode(RunnableNode):
             intake.OWN_NOT_FINITE,
             intake.OWN_REBASED,
         )
-        self._desk.hear_own_ship(placed, np.pi / 2 - convert.yaw_of(message.pose.pose.orientation))
+        yaw = convert.yaw_of(message.pose.pose.orientation)
+        self._operator.hear_own_ship(placed, float(bearing_from_yaw(yaw)))
 
-    @guarded
     def _on_plots(self, heard: RadarInput, message: PointCloud2) -> None:
         began = time.perf_counter()
         found = heard.scan_of(
@@ -150,25 +122,24 @@ class TrackerNode(RunnableNode):
         if found is None:
             return
         scan, self._fallback = found
-        (self._memory, self._known), report, scan, shapes = self._extents.track(
-            self._tracker, self._memory, self._known, scan
+        end_ns = int(self._stamps(heard, scan.end))
+        output = self._operator.step(scan, end_ns)
+        self._output.publish(
+            self._operator.service, output, heard.period, partial(self._stamps, heard)
         )
-        self._publish(heard, scan, report, shapes)
+        self._status_count = np.bincount(output.report.tracks.status, minlength=4)
+        self._standing = output.standing
         now = self.get_clock().now().nanoseconds
         if now:  # 0: no /clock yet
-            end_ns = int(self._stamps(heard, scan.end))
             self._lateness.add((now - end_ns) * 1e-9)
         self._processing.add(time.perf_counter() - began)
 
-    def _change(self, tracker: Tracker) -> None:
-        """Live parameters were changed: another tracker takes the tracks over."""
-        self._memory = tracker.adopt(self._memory, self._tracker)
-        extents = Extents(tracker.parameters)
-        self._known = extents.adopt(self._known, self._extents)
-        self._tracker, self._extents = tracker, extents
+    def _change(self, service: Service) -> None:
+        """Live parameters were changed: another service takes the tracks over."""
+        self._operator.change(service)
+        tracker = service.tracker
         for heard, radar in zip(self.inputs, radars_of(tracker.parameters), strict=True):
             heard.radar = radar
-        self._desk.change(self._desk.arpa.parameters, tracker.parameters)
         self.get_logger().info(f'parameters changed; estimator {tracker.parameters.estimator}')
 
     @property
@@ -186,96 +157,11 @@ class TrackerNode(RunnableNode):
         """Stamps [N] in ns, on the radar's clock, of the tracker's times [N] s."""
         return self._base_ns + np.round((time - heard.order.shift) * 1e9).astype(np.int64)
 
-    # -- out -----------------------------------------------------------------------------------
-
-    def _publish(
-        self, heard: RadarInput, scan: Scan, report: Report, shapes: Shapes | None
-    ) -> None:
-        tracks, tracker = report.tracks, self._tracker
-        self._status_count = np.bincount(tracks.status, minlength=4)
-        listeners = [
-            publisher.get_subscription_count()
-            for publisher in (
-                self._to_tracks,
-                self._to_extrapolations,
-                self._to_cloud,
-                self._to_markers,
-            )
-        ]
-        estimate = tracker.extrapolate(tracks, report.time)
-        if listeners[2]:  # one message, so first
-            self._to_cloud.publish(self._cloud(heard, scan, report, estimate))
-        numbered = np.flatnonzero(tracks.number > 0)
-        numbered = numbered[np.argsort(tracks.number[numbered])]
-        alive = numbered[tracks.status[numbered] != LOST]
-        frames = [f'track_{n:02d}' for n in tracks.number[alive].tolist()]
-        if listeners[0]:
-            self._publish_each(heard, self._to_tracks, frames, take(estimate, alive))
-        if listeners[1]:
-            self._publish_each(
-                heard,
-                self._to_extrapolations,
-                frames,
-                tracker.extrapolate(take(tracks, alive), report.time[alive] + heard.period),
-            )
-        end_ns, name = int(self._stamps(heard, scan.end)), tracker.parameters.estimator
-        self._standing = standing(report, name)
-        picture = self._desk.step(scan, report, self._standing.fallen_at, end_ns)
-        seen, arpa = view(picture, report, name, shapes), self._desk.arpa
-        self._to_targets.publish(
-            self._targets.message(seen, name, arpa.stabilised, scan.end, end_ns)
-        )
-        if listeners[3]:
-            self._to_markers.publish(
-                self._markers.message(seen, picture, arpa.zones, arpa.parameters, end_ns)
-            )
-
-    def _publish_each(self, heard, publisher, frames, estimate: Extrapolation) -> None:
-        for message in self._pool.fill(
-            self._stamps(heard, estimate.time),
-            frames,
-            estimate.position,
-            estimate.velocity,
-            estimate.covariance,
-        ):
-            publisher.publish(message)
-
-    def _cloud(self, heard, scan: Scan, report: Report, estimate: Extrapolation) -> PointCloud2:
-        tracks, velocity, covariance = report.tracks, estimate.velocity, estimate.covariance
-        rows = np.zeros(len(tracks.id), convert.TRACK_TYPE)
-        rows['id'], rows['number'], rows['status'] = tracks.id, tracks.number, tracks.status
-        rows['time_offset'] = estimate.time - scan.start
-        rows['x'], rows['y'] = estimate.position.T
-        rows['vx'], rows['vy'] = velocity.T
-        for name, row, column in (
-            ('xx', 0, 0),
-            ('xy', 0, 1),
-            ('yy', 1, 1),
-            ('vxvx', 2, 2),
-            ('vxvy', 2, 3),
-            ('vyvy', 3, 3),
-            ('xvx', 0, 2),
-            ('xvy', 0, 3),
-            ('yvx', 1, 2),
-            ('yvy', 1, 3),
-        ):
-            rows[name] = covariance[:, row, column]
-        rows['course'] = wrap_bearing(np.arctan2(velocity[:, 0], velocity[:, 1]))
-        rows['speed'] = np.hypot(velocity[:, 0], velocity[:, 1])
-        return convert.cloud_message(rows, int(self._stamps(heard, scan.start)))
-
     # -- how it fares --------------------------------------------------------------------------
 
     def _tell_of(self, radar: str, reason: str, detail: str) -> None:
-        self._tell(f'{radar}: {reason}' if radar else reason, detail)
+        self.tell(f'{radar}: {reason}' if radar else reason, detail)
 
-    def _tell(self, reason: str, detail: str) -> None:
-        """Log the first of its kind; /diagnostics counts the rest."""
-        self.get_logger().warning(
-            f'{reason}{": " + detail if detail else ""} (told once; counted on /diagnostics)'
-        )
-
-    @guarded
     def _on_second(self) -> None:
         for topic in tuple(self._mismatched):
             kind, callback, subscription = self._inputs[topic]
@@ -284,7 +170,7 @@ class TrackerNode(RunnableNode):
             self._mismatched.discard(topic)
             self.get_logger().info(f'{topic} is published best effort: taken so')
         wall, now = time.monotonic(), self.get_clock().now().nanoseconds
-        self._desk.watch()
+        self._operator.watch()
         self._to_diagnostics.publish(
             diagnostics.array(
                 now,
@@ -317,7 +203,8 @@ class TrackerNode(RunnableNode):
         fresh = self.failures.fresh(wall)
         if fresh:
             level, message = diagnostics.ERROR, 'lately: ' + ', '.join(fresh)
-        parameters = self._tracker.parameters
+        service, memory = self._operator.service, self._operator.memory
+        parameters = service.tracker.parameters
         values = {
             'estimator': parameters.estimator,
             **{f'confirmed in {state}': count for state, count in states.items()},
@@ -325,13 +212,13 @@ class TrackerNode(RunnableNode):
             'confirmed': confirmed,
             'coasting': self._status_count[COASTING],
             'tentative': self._status_count[TENTATIVE],
-            **({} if parameters.extent == 'off' else {'clusters of land': self._known.shores}),
-            'at max_tracks': len(self._memory.tracks.id) >= parameters.max_tracks,
+            **({} if parameters.extent == 'none' else {'clusters of land': memory.extents.shores}),
+            'at max_tracks': len(memory.tracker.tracks.id) >= parameters.max_tracks,
             'processing_p50_ms': f'{1e3 * self._processing.percentile(50):.1f}',
             'processing_p99_ms': f'{1e3 * slow:.1f}',
             'lateness_p50_ms': f'{1e3 * self._lateness.percentile(50):.1f}',
             'lateness_p99_ms': f'{1e3 * self._lateness.percentile(99):.1f}',
-            **self._desk.refused.counts,
+            **self._operator.refused.counts,
             FAILED: sum(self.failures.counts.values()),
             **self.failures.counts,
         }
@@ -350,6 +237,4 @@ class TrackerNode(RunnableNode):
         )
 
     def _status(self, task, level, message, values):
-        return diagnostics.status(
-            f'{self._label}: {task}', self._hardware_id, level, message, values
-        )
+        return diagnostics.status(f'{self.label}: {task}', self.hardware_id, level, message, values)

@@ -80,9 +80,11 @@ class ArpaParameters:
         6.0, 'Length of the vectors on `markers`.', unit='min', low=0.1, high=120.0, live=True
     )
     vectors: str = parameter(
-        'true',
-        'Vectors and past positions on `markers`: true or relative to own ship.',
-        choices=('true', 'relative'),
+        'absolute',
+        'Vectors and past positions on `markers`: as over ground or through the water '
+        '(absolute), or relative to own ship.',
+        choices=('absolute', 'relative'),
+        old={'true': 'absolute', True: 'absolute'},
         live=True,
     )
     current_set_deg: float = parameter(

@@ -65,7 +65,9 @@ class NmeaOutputParameters:
         'separated by blanks, broadcast addresses too. Empty: nowhere.',
     )
     tcp: str = parameter(
-        '', 'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks. Empty: no server.'
+        '',
+        'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks, [::]:10110 for those '
+        'of IPv6 as well. Empty: no server.',
     )
     signalk_udp: str = parameter(
         '', 'Where Signal K deltas are sent as datagrams, as for udp. Empty: nowhere.'
@@ -91,8 +93,8 @@ class NmeaOutputParameters:
     )
     origin: str = parameter(
         '',
-        'Latitude and longitude in degrees of the origin of `map`, as "54.1 10.9". Empty: own '
-        'ship is where own_ship/fix says.',
+        'Latitude and longitude in degrees of the origin of `map`, as "54.1 -10.9": south and west '
+        'negative, no longitude beyond 180. Empty: own ship is where own_ship/fix says.',
     )
 
     def __post_init__(self):

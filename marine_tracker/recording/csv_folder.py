@@ -26,8 +26,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import yaml_file
 from ..geometry import own_ship_at, wrap_bearing
-from ..parameters import read_yaml_mapping
 from ..types import Array, OwnShip, PolarPlots, Scan, Truth, take
 from . import tables
 
@@ -85,8 +85,8 @@ def read(folder) -> Recording:
         folder.resolve().name,
         tuple(scans),
         truths,
-        read_yaml_mapping(radar) if radar.exists() else {},
-        _read_notes(notes) if notes.exists() else {},
+        yaml_file.read_mapping(radar) if radar.exists() else {},
+        yaml_file.read_json(notes) if notes.exists() else {},
         numbers,
         own_ship,
     )
@@ -256,16 +256,6 @@ def _velocity(table: tables.Table) -> Array:
 
 def _no_truth() -> Truth:
     return Truth(np.empty(0), np.empty(0, np.int64), np.empty((0, 2)), np.empty((0, 2)))
-
-
-def _read_notes(path) -> dict[str, Any]:
-    try:
-        notes = json.loads(path.read_text())
-    except ValueError as error:
-        raise ValueError(f'{path} is not JSON: {error}') from error
-    if not isinstance(notes, dict):
-        raise ValueError(f'{path} holds a {type(notes).__name__}; it must hold an object')
-    return notes
 
 
 def _metres(*values) -> list[str]:

@@ -28,8 +28,37 @@ COLUMNS = (
     'bearing_deg',
     'plot',
     'estimator',
+    'target',
+    'cpa_nm',
+    'tcpa_min',
+    'danger',
+    'danger_probability',
+    'length_m',
+    'beam_m',
+    'heading_deg',
 )
 REQUIRED = COLUMNS[:7]
+
+
+class TargetColumns(NamedTuple):
+    """What the ARPA tells of N tracks; nan or '' where there is nothing to tell.
+
+    number              [N]  of the target, 0 for none
+    cpa, tcpa           [N]  NM, min
+    danger              [N]  safe, nearly or dangerous
+    danger_probability  [N]
+    length, beam        [N]  m
+    heading             [N]  rad, of the hull
+    """
+
+    number: NDArray[np.int64]
+    cpa: Array
+    tcpa: Array
+    danger: NDArray[np.str_]
+    danger_probability: Array
+    length: Array
+    beam: Array
+    heading: Array
 
 
 class TrackRows(NamedTuple):
@@ -68,6 +97,7 @@ def write_scan(
     plot,
     own_ship: OwnShip,
     estimator: str,
+    targets: TargetColumns,
 ) -> None:
     """One row for each of N tracks.
 
@@ -75,6 +105,7 @@ def write_scan(
     status     [N] name                      predicted  [N, 2] m, nan where unknown
     plot       [N] row of the scan's plots that the track took, -1 for none
     own_ship   gives range and bearing
+    targets    N rows
     """
     origin, _ = own_ship_at(own_ship, tracks.time)
     range_, bearing = to_range_bearing(tracks.position - origin)
@@ -89,7 +120,7 @@ def write_scan(
             f'{time:.4f},{track[n]},{status[n]},{north:.4f},{east:.4f},'
             f'{vel_north:.4f},{vel_east:.4f},{expected},{scan},{sd[n, 1]:.3f},{sd[n, 0]:.3f},'
             f'{_degrees(course[n])},{speed[n] / KNOT:.3f},{range_[n]:.2f},'
-            f'{_degrees(bearing[n])},{taken},{estimator}\n'
+            f'{_degrees(bearing[n])},{taken},{estimator},{_told(targets, n)}\n'
         )
 
 
@@ -119,3 +150,24 @@ def read(path) -> TrackRows:
 def _degrees(bearing) -> str:
     """Degrees with two decimals, 0.00 for what would round to 360."""
     return f'{np.degrees(wrap_bearing(bearing)) % 359.995:.2f}'
+
+
+def _told(targets: TargetColumns, n: int) -> str:
+    """The cells of TargetColumns, empty where there is nothing to tell."""
+    heading = targets.heading[n]
+    return ','.join(
+        (
+            str(targets.number[n] or ''),
+            _number(targets.cpa[n], 4),
+            _number(targets.tcpa[n], 3),
+            targets.danger[n],
+            _number(targets.danger_probability[n], 3),
+            _number(targets.length[n], 1),
+            _number(targets.beam[n], 1),
+            '' if np.isnan(heading) else _degrees(heading),
+        )
+    )
+
+
+def _number(value: float, digits: int) -> str:
+    return f'{value:.{digits}f}' if np.isfinite(value) else ''

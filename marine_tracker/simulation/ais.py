@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import PPoly, make_smoothing_spline
 
-from ..geometry import KNOT, local_from_geodetic
+from ..geodesy import LocalFrame, wrap_longitude
+from ..geometry import KNOT
 from ..types import Array
 from .motion import Piece
 
@@ -97,16 +98,18 @@ def _length(row):
 
 def _reports(found, duration, max_gap, place):
     """Reports in time order with those of one time averaged; None where none is of use."""
-    time, which = np.unique(found[:, 0], return_inverse=True)
+    time, first, which = np.unique(found[:, 0], return_index=True, return_inverse=True)
     count = np.bincount(which)
-    latitude, longitude = (np.bincount(which, found[:, k]) / count for k in (1, 2))
+    latitude = np.bincount(which, found[:, 1]) / count
+    about = found[first, 2]  # 179.9 E and 179.9 W are near each other: count from the first one
+    beyond = np.bincount(which, wrap_longitude(found[:, 2] - about[which])) / count
+    longitude = wrap_longitude(about + beyond)
     useful = (time >= -max_gap) & (time <= duration + max_gap)
     time, latitude, longitude = time[useful], latitude[useful], longitude[useful]
     if len(time) < 2 or time[-1] <= 0 or time[0] >= duration:
         return None
-    step = np.hypot(
-        *np.diff(local_from_geodetic(latitude, longitude, latitude[0], longitude[0]), axis=0).T
-    )
+    before = LocalFrame(latitude[:-1], longitude[:-1])
+    step = np.hypot(*before.to_local(latitude[1:], longitude[1:]).T)
     jump = step > MAX_SPEED * (np.diff(time) + CLOCK_ERROR)
     if jump.any():
         k = int(np.argmax(jump))
@@ -118,9 +121,9 @@ def _reports(found, duration, max_gap, place):
     return Reports(time, latitude, longitude, lengths[0] if len(lengths) else math.nan, max_gap)
 
 
-def way(reports: Reports, origin: tuple[float, float]) -> list[Piece]:
-    """The vessel's way in the frame of `origin` (degrees): a spline over each run without gaps."""
-    position = local_from_geodetic(reports.latitude, reports.longitude, *origin)
+def way(reports: Reports, frame: LocalFrame) -> list[Piece]:
+    """The vessel's way in the frame: a spline over each run without gaps."""
+    position = frame.to_local(reports.latitude, reports.longitude)
     ends = np.flatnonzero(np.diff(reports.time) > reports.max_gap) + 1
     pieces = [Piece(min(0.0, reports.time[0]) - 1.0, tuple(position[0]), exists=False)]
     for time, place in zip(np.split(reports.time, ends), np.split(position, ends), strict=True):

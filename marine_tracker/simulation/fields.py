@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from ..files import shown
 from ..geometry import KNOT, NAUTICAL_MILE
 
 LENGTH_UNITS = {'m': 1.0, 'nm': NAUTICAL_MILE}
@@ -27,7 +28,7 @@ class Section:
         values = {} if values is None else values  # `straight:` with nothing behind it
         if not isinstance(values, Mapping):
             raise ValueError(
-                f'{where or "the scenario"} is {values!r}; it must be a mapping with '
+                f'{where or "the scenario"} is {shown(values)}; it must be a mapping with '
                 f'keys like {", ".join(keys.split()[:3])}'
             )
         self.values, self.where, self.keys = values, where, keys.split()
@@ -61,7 +62,8 @@ class Section:
         value = self.values[key]
         if type(value) not in (int, float):
             raise ValueError(
-                f'{self.place(key)} is {value!r}; it must be a number (the unit stands in the key)'
+                f'{self.place(key)} is {shown(value)}; it must be a number '
+                '(the unit stands in the key)'
             )
         if not math.isfinite(value):
             raise ValueError(f'{self.place(key)} is {value}; it must be finite')
@@ -99,7 +101,7 @@ class Section:
             return default
         value = self.values[key]
         if not isinstance(value, str) or not value.strip():
-            raise ValueError(f'{self.place(key)} is {value!r}; it must be a text')
+            raise ValueError(f'{self.place(key)} is {shown(value)}; it must be a text')
         return value.strip()
 
     def choice(self, key: str, choices: tuple[str, ...], default: str) -> str:
@@ -107,7 +109,7 @@ class Section:
         value = self.values.get(key, default)
         if value not in choices:
             raise ValueError(
-                f'{self.place(key)} is {value!r}; it must be one of {", ".join(choices)}'
+                f'{self.place(key)} is {shown(value)}; it must be one of {", ".join(choices)}'
             )
         return value
 
@@ -115,7 +117,7 @@ class Section:
         """A list, empty where it is not there."""
         value = self.values.get(key, [])
         if not isinstance(value, list):
-            raise ValueError(f'{self.place(key)} is {value!r}; it must be a list')
+            raise ValueError(f'{self.place(key)} is {shown(value)}; it must be a list')
         return value
 
     def section(self, key: str, keys: str) -> 'Section':

@@ -28,6 +28,10 @@ scenario's; its form stands in ais.py); own ship is then one of the vessels, or 
     ais: {file: traffic.csv, start_s: 600, vessels: [3, 17]}      # all vessels, if none are named
     own_ship: {vessel: 1}                                         # or {start: {lat_deg:, lon_deg:}}
 
+Latitudes are -90 to 90 and longitudes -180 to 180 degrees, south and west negative; ships may cross
+180. All positions count from `origin: {lat_deg:, lon_deg:}`, else from where own ship starts, else
+from where the first vessel does (geodesy.LocalFrame): north is true there.
+
 A ship may have a hull, which the radar then sees as cells in place of one plot, and there may be
 land, whose shore does so too (hull.py, land.py); both take the radar's range resolution and beam
 width as the size of a cell:
@@ -49,9 +53,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import config
+from .. import config, yaml_file
 from ..geometry import NAUTICAL_MILE
-from ..parameters import VESSEL_CLASSES, TrackerParameters, read_yaml_mapping
+from ..parameters import VESSEL_CLASSES, TrackerParameters
 from ..types import OwnShip, Truth
 from . import land, motion, sensor_errors, ships
 from .fields import Section
@@ -228,7 +232,7 @@ def load(name_or_path) -> Scenario:
             return build(STANDARD[path.name](), path.name)
         path = config.path('scenarios', f'{path.name}.yaml')
     try:
-        return build(read_yaml_mapping(path), path.stem, path.parent)
+        return build(yaml_file.read_mapping(path), path.stem, path.parent)
     except OSError as error:
         raise ValueError(f'scenario {path} cannot be read: {error.strerror}') from error
     except ValueError as error:

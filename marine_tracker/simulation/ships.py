@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry import KNOT, NAUTICAL_MILE, local_from_geodetic, unit_vector
+from ..geodesy import LocalFrame
+from ..geometry import KNOT, NAUTICAL_MILE, unit_vector
 from ..types import Array
 from . import ais, motion
 from .fields import Section
@@ -45,7 +46,7 @@ class Hulls(NamedTuple):
 class Fleet(NamedTuple):
     """Own ship and T targets.
 
-    origin     (latitude, longitude) in degrees of the frame's [0, 0], or None
+    origin     the frame of all positions; None: nobody says where on Earth it is
     paths      of own ship, ship 0, and the targets by their numbers, from 1
     names      T texts
     pd         [T]  probability of detection at every range, nan where the radar's curve holds
@@ -54,7 +55,7 @@ class Fleet(NamedTuple):
     hulls      T rows
     """
 
-    origin: tuple[float, float] | None
+    origin: LocalFrame | None
     paths: motion.Paths
     names: tuple[str, ...]
     pd: Array
@@ -116,18 +117,18 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
 def _origin(top, own, traffic, own_vessel):
     """Where the frame's [0, 0] is: as stated, else where own ship or the first vessel starts."""
     if 'origin' in top:
-        return _geodetic(top.section('origin', 'lat_deg lon_deg'))
+        return LocalFrame(*_geodetic(top.section('origin', 'lat_deg lon_deg')))
     start = own.values.get('start')
     if isinstance(start, dict) and 'lat_deg' in start:
-        return _geodetic(own.section('start', START_KEYS['lat_deg']))
+        return LocalFrame(*_geodetic(own.section('start', START_KEYS['lat_deg'])))
     if traffic:
         reports = traffic.get(own_vessel) or next(iter(traffic.values()))
-        return float(reports.latitude[0]), float(reports.longitude[0])
+        return LocalFrame(float(reports.latitude[0]), float(reports.longitude[0]))
     return None
 
 
 def _geodetic(section):
-    return section.number('lat_deg', -85.0, 85.0), section.number('lon_deg', -180.0, 180.0)
+    return section.number('lat_deg', -90.0, 90.0), section.number('lon_deg', -180.0, 180.0)
 
 
 def _driven_own_ship(own, origin, traffic, vessel, duration):
@@ -242,7 +243,7 @@ def _start(ship, origin, own_start):
         raise ValueError(
             f'{section.where} gives lat_deg and lon_deg, but the scenario has no origin'
         )
-    return local_from_geodetic(*_geodetic(section), *origin)
+    return origin.to_local(*_geodetic(section))
 
 
 def _leg(item, where):

@@ -3,7 +3,18 @@
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from ..types import Array
+from .gate import Pairs
+
 FEW = 32  # tracks; a matrix of so few is solved sooner than it is taken apart
+
+
+def gain(pairs: Pairs, size: float) -> Array:
+    """What each pair [P] is worth over leaving its track and plot alone: > 0, log-likelihood.
+
+    size  of the gate, squared Mahalanobis distance
+    """
+    return size - pairs.nis + (pairs.log_det.max(initial=0.0) - pairs.log_det) + 1e-9
 
 
 def associate(track, plot, gain, tracks: int, plots: int):

@@ -1,34 +1,64 @@
 """Which plots have the radial speed of the track they lie near, where the radar tells it."""
 
+from typing import NamedTuple
+
 import numpy as np
+from scipy.special import ndtri
 
 from ..geometry import to_range_bearing, unit_vector
-from ..types import Extrapolation, Plots
+from ..parameters import TrackerParameters
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, take
+from .gate import Pairs
 
 
-def agree(
-    track,
-    plot,
+class Limits(NamedTuple):
+    """How far radial speeds of one target may differ.
+
+    sigma      m/s, of a measured radial speed
+    max_speed  m/s, of the targets
+    reach      deviations that are taken for chance
+    """
+
+    sigma: float
+    max_speed: float
+    reach: float
+
+
+def limits(radar: TrackerParameters) -> Limits:
+    """The limits by a radar's parameters; none at all where `doppler_gate` is off."""
+    reach = float(ndtri(0.5 + 0.5 * radar.gate_probability)) if radar.doppler_gate else np.inf
+    return Limits(radar.radial_speed_sigma_mps, radar.max_target_speed_mps, reach)
+
+
+def agreeing(
+    pairs: Pairs, ahead: Extrapolation, lone: Plots, plots: Plots, limits: Limits
+) -> Pairs:
+    """The pairs of the gate that radial speeds do not rule out.
+
+    The rows of `pairs.track` are those of `ahead`, the N tracks, and beyond them those of `lone`,
+    the lone plots of the last scan, of which only the radial speed is known. A plot that tells
+    no radial speed agrees with every track.
+    """
+    if plots.radial_speed is None:
+        return pairs
+    fit = _agree(pairs.track, pairs.plot, ahead, lone, plots, plots.radial_speed, limits)
+    return take(pairs, fit)
+
+
+def _agree(
+    track: IntArray,
+    plot: IntArray,
     ahead: Extrapolation,
     lone: Plots,
     plots: Plots,
-    sigma: float,
-    max_speed: float,
-    reach: float,
-):
-    """Mask [P] of the pairs (track [P], plot [P]) of the gate that radial speeds do not rule out.
-
-    track      row of `ahead`, the N tracks, and beyond them of `lone`, the lone plots of the last
-               scan, which know but their radial speed
-    sigma      m/s, of a radial speed; max_speed m/s, of the targets
-    reach      deviations that are taken for chance
-
-    A plot that tells no radial speed agrees with every track.
-    """
-    assert plots.radial_speed is not None
+    radial_speed: Array,
+    limits: Limits,
+) -> BoolArray:
+    """Mask [P] of the pairs, where the plots' radial speeds [M] m/s are known."""
+    sigma, max_speed, reach = limits
     count = len(ahead.time)
     seam = track.searchsorted(count)
-    told = plots.radial_speed[plot]
+    told = radial_speed[plot]
 
     # Tracks: on the line of sight to where they are expected, for a plot's bearing is coarser.
     row = track[:seam]

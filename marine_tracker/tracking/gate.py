@@ -6,16 +6,42 @@ tracks it takes a fifth of the time of a k-d tree's lists of neighbours. The win
 the search: the exact chi-square test decides.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..geometry import to_range_bearing, wrap_bearing
-from ..types import Plots
+from ..types import Array, IntArray, Plots, take
+from .expected import Expected
+from .noise import Noise
 from .sweep import Sweep
 
 TURN = 2 * np.pi
 HAIR = 1e-8  # rad
 OBLIQUE = 0.07  # sin^2 of the widest angle, asin(1/4), between a plot and its track afar
 PLOTS_A_RING = 256
+
+
+class Pairs(NamedTuple):
+    """Tracks and plots that may belong together, P rows.
+
+    track    [P]  row of the track, ascending
+    plot     [P]  row of the plot
+    nis      [P]  squared Mahalanobis distance between them
+    log_det  [P]  of the covariance [2, 2] of that distance, m^4
+    """
+
+    track: IntArray
+    plot: IntArray
+    nis: Array
+    log_det: Array
+
+
+def split(pairs: Pairs, count: int) -> tuple[Pairs, Pairs]:
+    """The pairs of the first `count` rows, and those of the rows beyond, counted from 0 again."""
+    seam = pairs.track.searchsorted(count)
+    beyond = take(pairs, slice(seam, None))
+    return take(pairs, slice(seam)), beyond._replace(track=beyond.track - count)
 
 
 def gate_size(probability: float) -> float:
@@ -65,78 +91,72 @@ def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
     return track[inside], plot[inside]
 
 
-def gate(
-    time,
-    position,
-    velocity,
-    covariance,
-    sweep: Sweep,
-    plots: Plots,
-    origin,
-    range_sigma: float,
-    bearing_sigma: float,
-    size: float,
-    widest: float = 0.0,
-):
-    """Pairs of tracks and plots inside the chi-square gate.
+def gate(expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, size: float) -> Pairs:
+    """Pairs of expected targets and plots inside the chi-square gate.
 
-    time [N] s, position [N, 2] m, velocity [N, 2] m/s, covariance [N, 2, 2] m^2: where the
-    tracks are when the beam should pass them, and the covariance of that position
-    origin  [N, 2] m, own ship at those times
-    size    of the gate, squared Mahalanobis distance
-    widest  m, deviation of the least certain plot, where plots tell their own
+    noise  of the plots: bounds the search; the test itself takes the covariances as they are
+    size   of the gate, squared Mahalanobis distance
 
-    Returns track [P] (ascending) and plot [P] indices, nis [P] (squared distance) and log_det
-    [P] of the innovation covariance. A plot is compared with the track at the plot's own time.
+    A plot is compared with the target at the plot's own time.
     """
-    offset = position - origin
+    windows = _windows(expected, plots, sweep, noise, np.sqrt(size))
+    track, plot = window_pairs(*windows, plots.range, plots.bearing)
+    nis, determinant = _distance(expected, plots, track, plot)
+    inside = (nis < size).nonzero()[0]
+    return Pairs(track[inside], plot[inside], nis[inside], np.log(determinant[inside]))
+
+
+def _windows(
+    expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, reach: float
+) -> tuple[Array, Array, Array, Array]:
+    """What `window_pairs` asks for: windows that hold every plot within `reach` deviations."""
+    offset, covariance = expected.position - expected.origin, expected.covariance
     distance, bearing = to_range_bearing(offset)
+    range_sigma, bearing_sigma = max(noise.range_sigma, noise.widest), noise.bearing_sigma
     a, b, d = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     sin, cos = offset.T / np.maximum(distance, 1e-9)
-    reach, range_sigma = np.sqrt(size), max(range_sigma, widest)
     spread = sin * sin * a + 2 * sin * cos * b + cos * cos * d
     # What grows with a plot's range is taken at the farthest: its noise across, and the second
     # order of a coarse bearing along, shift and spread (geometry.polar_to_position).
     most = distance + reach * np.sqrt(spread + range_sigma**2)
     second = most * bearing_sigma**2
     along = reach * np.sqrt(spread + range_sigma**2 + 1.5 * second * second) + 0.5 * second
-    noise = np.maximum(((distance + along) * bearing_sigma) ** 2, widest**2)
-    across = reach * np.sqrt(a + d - spread + noise + OBLIQUE * range_sigma**2)
+    sideways = np.maximum(((distance + along) * bearing_sigma) ** 2, noise.widest**2)
+    across = reach * np.sqrt(a + d - spread + sideways + OBLIQUE * range_sigma**2)
     # Near own ship plots may lie in any direction, each with its noise along its own.
-    radius = along + reach * np.sqrt(a + d + noise)
+    radius = along + reach * np.sqrt(a + d + sideways)
     near = distance < 4 * radius
     if near.any():
         along, across = np.where(near, radius, along), np.where(near, radius, across)
     half_width = _half_width(distance, along, across)
-    if sweep.period and len(origin):
+    if sweep.period and len(distance):
         # The plot's time may differ from the track's: by little, but where the revolution
         # begins by a whole one.
         turned = np.mod(bearing - sweep.bearing0, TURN)
         seam = (turned < half_width) | (turned > TURN - half_width)
         share = np.where(seam | (half_width > np.pi / 4), 1.0, half_width / TURN)
         # Own ship moves on meanwhile, too, and ranges count from her.
-        moved = np.hypot(*np.ptp(np.concatenate([origin, plots.origin]), axis=0))
-        slack = (np.hypot(*velocity.T) * sweep.period + moved) * share
+        moved = np.hypot(*np.ptp(np.concatenate([expected.origin, plots.origin]), axis=0))
+        slack = (np.hypot(*expected.velocity.T) * sweep.period + moved) * share
         along, across = along + slack, across + slack
         half_width = _half_width(distance, along, across)
     # Sideways offsets lie farther out than the arc, the more the nearer the track is.
-    farthest = np.hypot(distance + along, across)
-
-    track, plot = window_pairs(
-        distance - along, farthest, bearing, half_width, plots.range, plots.bearing
-    )
-    later = (plots.time[plot] - time[track])[:, None]
-    apart = plots.position.take(plot, 0) - position.take(track, 0) - later * velocity.take(track, 0)
-    de, dn = apart.T
-    noise = plots.covariance.take(plot, 0)
-    a, b, d = (noise[:, i, j] + s[track] for i, j, s in ((0, 0, a), (0, 1, b), (1, 1, d)))
-    determinant = a * d - b * b
-    nis = (d * de * de - 2 * b * de * dn + a * dn * dn) / determinant
-    inside = (nis < size).nonzero()[0]
-    return track[inside], plot[inside], nis[inside], np.log(determinant[inside])
+    return distance - along, np.hypot(distance + along, across), bearing, half_width
 
 
 def _half_width(distance, along, across):
     """Bearings [N] rad either side within which offsets along and across [N] m lie."""
     nearest = distance - along
     return np.where(nearest > 0, np.arctan2(across, np.maximum(nearest, 1e-9)), np.pi)
+
+
+def _distance(expected: Expected, plots: Plots, track: IntArray, plot: IntArray):
+    """Squared Mahalanobis distance [P] of the pairs and the determinant [P] m^4 it goes by."""
+    later = (plots.time[plot] - expected.time[track])[:, None]
+    drifted = later * expected.velocity.take(track, 0)
+    apart = plots.position.take(plot, 0) - expected.position.take(track, 0) - drifted
+    de, dn = apart.T
+    of_plot, of_track = plots.covariance.take(plot, 0), expected.covariance
+    a, b, d = (of_plot[:, i, j] + of_track[:, i, j][track] for i, j in ((0, 0), (0, 1), (1, 1)))
+    determinant = a * d - b * b
+    return (d * de * de - 2 * b * de * dn + a * dn * dn) / determinant, determinant

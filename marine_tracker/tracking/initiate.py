@@ -2,29 +2,22 @@
 
 import numpy as np
 
-from ..types import Plots
-from .gate import gate_size
+from ..types import BoolArray, IntArray, Plots, Tracks
+from .gate import Pairs, gate_size
+from .lifecycle import TENTATIVE
 
 PAIRING_GATE = gate_size(0.99)  # for the noise of a new target's first two plots
 
 
-def reach(before: Plots, now: float, max_speed: float):
-    """Covariance [L, 2, 2] m^2 of where the targets of lone plots may be at the time now, s."""
-    away = max_speed * (now - before.time)
-    covariance = before.covariance.copy()
-    covariance[:, [0, 1], [0, 1]] += (away * away)[:, None]
-    return covariance
+def unexplained(plots: Plots, pairs: Pairs, plot_of: IntArray, tracks: Tracks) -> BoolArray:
+    """Mask [M] of the plots that are no track's, nor near a held one, whose echoes they may be.
 
-
-def first_score(before: Plots, now: Plots, density, max_speed: float, detection_probability: float):
-    """Score [P] of tracks begun by two plots each, where the density [P] of false plots is known.
-
-    A target's second plot may lie anywhere that max_speed, m/s, and the noise allow.
+    pairs    of the gate; plot_of [N]: the plot that each track took, -1 for none
     """
-    away = max_speed * (now.time - before.time)
-    noise = np.sqrt(np.linalg.det(before.covariance + now.covariance))
-    area = np.pi * away**2 + 2 * np.pi * noise
-    return np.log(detection_probability / (density * area))
+    free = np.ones(len(plots.time), bool)
+    free[plot_of[plot_of >= 0]] = False
+    free[pairs.plot[tracks.status[pairs.track] != TENTATIVE]] = False
+    return free
 
 
 def pair_up(before: Plots, now: Plots, first, second, free, max_speed: float, room: int):

@@ -44,6 +44,9 @@ def update(estimator: Estimator, tracks: Tracks, plots: Plots, rows, radar: int)
     A radial speed counts when the plot comes in, not when it is taken again: not all radars
     tell one.
     """
+    last_time = tracks.last_time.copy()
+    last_time[rows] = np.maximum(last_time[rows], plots.time)
+    tracks = tracks._replace(last_time=last_time)
     if not tracks.past:
         return tracks._replace(state=estimator.update(tracks.state, plots, rows))
     here = take(tracks, rows)

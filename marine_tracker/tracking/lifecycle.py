@@ -3,7 +3,8 @@
 import numpy as np
 
 from ..parameters import TrackerParameters
-from ..types import HISTORY, Tracks
+from ..types import HISTORY, Array, BoolArray, CodeArray, Tracks
+from .look import Look
 
 TENTATIVE, CONFIRMED, COASTING, LOST = range(4)
 STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost')
@@ -35,7 +36,7 @@ def misses_in_a_row(history):
 def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters) -> Tracks:
     """Enter one scan: the tracks `rows` [K] had a plot; visible [N] lay where the radar can see.
 
-    gained [K]: what those plots add to the scores (see `evidence`). A scan in which a track
+    gained [K]: what those plots add to the scores (see score.py). A scan in which a track
     could not be seen and was not is left out of its account.
     """
     hit = np.zeros(len(visible), bool)
@@ -72,15 +73,6 @@ def held_by_another(tracks: Tracks, radar: int, time, track, held):
     )
 
 
-def evidence(nis, log_det, density, detection_probability: float):
-    """Log-likelihood ratio [K] of plots: from the track against from clutter.
-
-    nis [K], log_det [K] of the innovations; density [K] of false plots, 1 / m^2. Sittler 1964;
-    Blackman and Popoli 1999, 6.2.
-    """
-    return np.log(detection_probability / (2 * np.pi * density)) - 0.5 * (nis + log_det)
-
-
 def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now: float):
     """Status [N] and reason [N] of a loss, by the named rules.
 
@@ -114,3 +106,45 @@ def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now
     reason = lost * MISSED
     reason[left & ~gone] = OUT_OF_RANGE
     return status.astype(np.int8), reason.astype(np.int8)
+
+
+def step(
+    tracks: Tracks,
+    seen: Look,
+    gained: Array,
+    elsewhere: BoolArray,
+    radar: TrackerParameters,
+    farthest: float,
+    now: float,
+) -> tuple[Tracks, CodeArray]:
+    """The tracks after one scan, recorded and judged, and the reason [N] of each loss.
+
+    gained     [K]  what the plots add to the scores of those that had one (see score.py)
+    elsewhere  [N]  held by another radar (see `held_by_another`)
+    radar      parameters of the one that scanned
+    farthest   m, the greatest range of all radars
+    now        s, end of the scan
+    """
+    in_range = (seen.distance >= radar.min_range_m) & (seen.distance <= radar.max_range_m)
+    tracks = tracks._replace(bearing=seen.bearing)
+    rows = seen.hit.nonzero()[0]
+    tracks = record(tracks, rows, gained, in_range & ~elsewhere, radar)
+    held = seen.hit | elsewhere
+    status, reason = judge(tracks, radar, held, seen.distance > farthest, seen.drift, now)
+    return tracks._replace(status=status), reason
+
+
+def merge(tracks: Tracks, reason: CodeArray, double: BoolArray) -> tuple[Tracks, CodeArray]:
+    """The tracks and reasons where those of the mask [N] are lost to another on their target."""
+    status, reason = tracks.status.copy(), reason.copy()
+    status[double] = LOST
+    reason[double] = MERGED
+    return tracks._replace(status=status), reason
+
+
+def number(tracks: Tracks, next_number: int) -> tuple[Tracks, int]:
+    """Every confirmed track has its target number; and the next number there is."""
+    newly = ((tracks.number == 0) & (tracks.status == CONFIRMED)).nonzero()[0]
+    numbers = tracks.number.copy()
+    numbers[newly] = next_number + np.arange(len(newly))
+    return tracks._replace(number=numbers), next_number + len(newly)

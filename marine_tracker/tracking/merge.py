@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ..types import Extrapolation, Tracks
+from ..types import BoolArray, Extrapolation, IntArray, Tracks
+from .gate import Pairs
 from .lifecycle import LOST, TENTATIVE, hits, misses_in_a_row
 
 SAME = 9.49  # chi-square with 4 degrees of freedom, 95 %
@@ -10,17 +11,19 @@ RECENT = 10  # scans over which two tracks are seen to share the plots of one ta
 STARVED = 4  # misses in a row, each beside the other's plot, that tell as much
 
 
-def duplicates(track, plot, plot_of, ahead: Extrapolation, tracks: Tracks, status):
+def duplicates(pairs: Pairs, plot_of: IntArray, ahead: Extrapolation, tracks: Tracks) -> BoolArray:
     """Mask [N] of tracks that follow a target which another track follows too.
 
-    track, plot  [P] pairs inside the gate; plot_of [N] the association
-    ahead        the tracks before the update
+    pairs    those inside the gate; plot_of [N] the association
+    ahead    the tracks before the update
+    tracks   after it, as this scan has judged them
 
     A track is one too many when it had no plot because another track took one in its gate, both
     agree in position and velocity, and together they had no more plots lately than one target
     gives (or this one none for long). Two ships in company both get plots, ships that cross
     differ in velocity.
     """
+    track, plot, status = pairs.track, pairs.plot, tracks.status
     double = np.zeros(len(status), bool)
     starved = (plot_of < 0) & (status != LOST)
     if not starved.any():

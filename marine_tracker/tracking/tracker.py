@@ -4,19 +4,20 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.special import ndtri
 
 from ..estimators import ESTIMATORS, Estimator, Velocity
-from ..geometry import locate, own_ship_at, to_range_bearing
+from ..geometry import to_range_bearing
 from ..parameters import TrackerParameters
-from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
-from . import clutter_map, doppler, late_plots, lifecycle
-from .associate import associate
-from .gate import gate, gate_size
-from .initiate import first_score, pair_up, reach
-from .lifecycle import CONFIRMED, LOST, MERGED, TENTATIVE
+from ..types import Array, CodeArray, Extrapolation, IntArray, Plots, Scan, Tracks, append, take
+from . import clutter_map, doppler, late_plots, lifecycle, score
+from .associate import associate, gain
+from .expected import expect
+from .gate import gate, gate_size, split
+from .initiate import pair_up, unexplained
+from .lifecycle import LOST, TENTATIVE
+from .look import look
 from .merge import duplicates
+from .noise import noise_of
 from .radars import HELD_REVOLUTIONS, held_updates, radars_of
 from .sweep import sweep_of
 
@@ -64,8 +65,8 @@ class Report(NamedTuple):
     time: Array
     tracks: Tracks
     predicted: Array
-    plot: NDArray[np.int64]
-    reason: NDArray[np.int8]
+    plot: IntArray
+    reason: CodeArray
     begun: Plots
 
 
@@ -86,7 +87,7 @@ class Tracker:
     def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
         # Clusters tell what their middle strays.
         self.parameters = (
-            parameters if parameters.extent == 'off' else replace(parameters, glint_sigma_m=0.0)
+            parameters if parameters.extent == 'none' else replace(parameters, glint_sigma_m=0.0)
         )
         self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
         radars = radars_of(self.parameters)
@@ -94,13 +95,8 @@ class Tracker:
         self.farthest = max(p.max_range_m for p in self.radars)
         self.held = HELD_REVOLUTIONS * np.array([p.scan_period_s for p in self.radars])
         self.updates = held_updates(radars)
-        self.glint = self.parameters.glint_sigma**2 * np.eye(2)
         self.gate_size = gate_size(parameters.gate_probability)
-        self.speed_gate = (
-            float(ndtri(0.5 + 0.5 * parameters.gate_probability))
-            if parameters.doppler_gate
-            else np.inf
-        )
+        self.doppler = [doppler.limits(p) for p in self.radars]
 
     def start(self) -> TrackerMemory:
         """No tracks yet."""
@@ -119,152 +115,63 @@ class Tracker:
 
     def step(self, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemory, Report]:
         """One antenna revolution."""
-        p, tracks, radar = self.radars[scan.radar], memory.tracks, memory.radars[scan.radar]
-        count, lone, bearing_sigma = len(tracks.id), radar.leftover, np.radians(p.bearing_sigma_deg)
-        sweep = sweep_of(scan)
-        plots = locate(scan.plots, scan.own_ship, p.range_sigma_m, bearing_sigma)
+        p, of_radar = self.radars[scan.radar], memory.radars[scan.radar]
+        tracks, count = memory.tracks, len(memory.tracks.id)
+        noise = noise_of(p, scan)
+        measured = noise.locate(scan)
+        plots, lone = noise.with_glint(measured), noise.with_glint(of_radar.leftover)
+        speed = p.max_target_speed_mps
 
         # extrapolate: every track to the time the beam passes it
+        sweep = sweep_of(scan)
         beam = sweep.time_at(tracks.bearing)
         ahead = self.estimator.extrapolate(late_plots.as_of(tracks, beam), beam)
 
         # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
-        time, position, velocity, covariance = (
-            np.concatenate(pair)
-            for pair in (
-                (ahead.time, lone.time),
-                (ahead.position, lone.position),
-                (ahead.velocity, np.zeros_like(lone.position)),
-                (ahead.covariance[:, :2, :2], reach(lone, scan.end, p.max_target_speed_mps)),
-            )
-        )
-        if p.glint_sigma:
-            covariance = covariance + self.glint
-        origin, _ = own_ship_at(scan.own_ship, time)
-        track, plot, nis, log_det = gate(
-            time,
-            position,
-            velocity,
-            covariance,
-            sweep,
-            plots,
-            origin,
-            p.range_sigma_m,
-            bearing_sigma,
-            self.gate_size,
-            _widest(scan.plots.covariance),
-        )
-        if plots.radial_speed is not None:
-            fit = doppler.agree(
-                track,
-                plot,
-                ahead,
-                lone,
-                plots,
-                p.radial_speed_sigma_mps,
-                p.max_target_speed_mps,
-                self.speed_gate,
-            )
-            track, plot, nis, log_det = track[fit], plot[fit], nis[fit], log_det[fit]
-        if p.glint_sigma:
-            plots = plots._replace(covariance=plots.covariance + self.glint)
-        seam = track.searchsorted(count)
-        first, second = track[seam:] - count, plot[seam:]
-        track, plot, nis, log_det = track[:seam], plot[:seam], nis[:seam], log_det[:seam]
+        expected = expect(ahead, lone, scan, speed)
+        pairs = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
+        pairs = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
+        pairs, starts = split(pairs, count)
 
         # associate
-        gain = self.gate_size - nis + (log_det.max(initial=0.0) - log_det) + 1e-9
-        plot_of = associate(track, plot, gain, count, len(plots.time))
-        held_rows = (plot_of >= 0).nonzero()[0]
-        taken = plot_of[held_rows]
+        worth = gain(pairs, self.gate_size)
+        plot_of = associate(pairs.track, pairs.plot, worth, count, len(plots.time))
 
         # initiate: from plots of this scan and the last that nobody else explains
-        free = np.ones(len(plots.time), bool)
-        free[taken] = False
-        free[plot[tracks.status[track] != TENTATIVE]] = False  # echoes of held targets
-        first, second = pair_up(
-            lone, plots, first, second, free, p.max_target_speed_mps, max(0, p.max_tracks - count)
-        )
+        free = unexplained(plots, pairs, plot_of, tracks)
+        room = max(0, p.max_tracks - count)
+        first, second = pair_up(lone, plots, starts.track, starts.plot, free, speed, room)
         free[second] = False
-        begun = take(lone, first)
         if len(first):
-            tracks = append(tracks, self._begin(begun, memory.next_id, scan.radar))
-        plot_of = np.concatenate([plot_of, second])
-        rows = np.concatenate([held_rows, np.arange(count, len(plot_of))])
-        chosen = take(plots, plot_of[rows])
+            tracks = append(tracks, self._begin(take(lone, first), memory.next_id, scan.radar))
+        plot_of = np.append(plot_of, second)
 
         # update
+        rows = (plot_of >= 0).nonzero()[0]
+        chosen = take(plots, plot_of[rows])
         tracks = late_plots.update(self.estimator, tracks, chosen, rows, scan.radar)
-        last_time = tracks.last_time.copy()
-        last_time[rows] = np.maximum(last_time[rows], chosen.time)
-        time = np.concatenate([np.maximum(ahead.time, last_time[:count]), last_time[count:]])
-        time[rows] = last_time[rows]
-        later = time[:count] - ahead.time
-        predicted = np.full((len(time), 2), np.nan)
-        predicted[:count] = ahead.position + later[:, None] * ahead.velocity
 
-        # lifecycle
-        missed = (plot_of < 0).nonzero()[0]
-        distance, bearing, drift = np.zeros((3, len(time)))
-        distance[rows], bearing[rows] = chosen.range, chosen.bearing
-        distance[missed], bearing[missed] = to_range_bearing(
-            ahead.position.take(missed, 0) - origin.take(missed, 0)
-        )
-        drift[missed] = np.sqrt(
-            (ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])[missed]
-            / (p.range_sigma_m**2 + (distance[missed] * bearing_sigma) ** 2 + 2 * p.glint_sigma**2)
-        )
-        density = clutter_map.density(radar.clutter, chosen.range, chosen.bearing)
-        own = (plot_of[track] == plot).nonzero()[0]  # pairs, as held_rows ascends
-        held = len(held_rows)
-        gained = lifecycle.evidence(nis[own], log_det[own], density[:held], p.detection_probability)
-        if len(first):
-            gained = np.concatenate(
-                [
-                    gained,
-                    first_score(
-                        begun,
-                        take(chosen, slice(held, None)),
-                        density[held:],
-                        p.max_target_speed_mps,
-                        p.detection_probability,
-                    ),
-                ]
-            )
-        tracks = tracks._replace(last_time=last_time, bearing=bearing)
-        elsewhere = lifecycle.held_by_another(tracks, scan.radar, time, track, self.held)
-        visible = (distance >= p.min_range_m) & (distance <= p.max_range_m) & ~elsewhere
-        tracks = lifecycle.record(tracks, rows, gained, visible, p)
-        status, reason = lifecycle.judge(
-            tracks, p, (plot_of >= 0) | elsewhere, distance > self.farthest, drift, scan.end
-        )
-        double = duplicates(track, plot, plot_of, ahead, tracks, status)
-        status[double], reason[double] = LOST, MERGED
-        newly = ((tracks.number == 0) & (status == CONFIRMED)).nonzero()[0]
-        number = tracks.number.copy()
-        number[newly] = memory.next_number + np.arange(len(newly))
-        tracks = tracks._replace(status=status, number=number)
+        # judge: what the scan tells of each track, and what becomes of it
+        seen = look(tracks, rows, chosen, ahead, expected, noise)
+        gained = score.gained(pairs, plot_of, take(lone, first), chosen, of_radar.clutter, p)
+        elsewhere = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
+        tracks, reason = lifecycle.step(tracks, seen, gained, elsewhere, p, self.farthest, scan.end)
+        tracks, reason = lifecycle.merge(tracks, reason, duplicates(pairs, plot_of, ahead, tracks))
+        tracks, next_number = lifecycle.number(tracks, memory.next_number)
 
-        single = np.ones(len(lone.time), bool)
-        single[first] = False
-        clutter = clutter_map.learn(radar.clutter, lone.range[single], lone.bearing[single])
-        radars = list(memory.radars)
-        radars[scan.radar] = OfRadar(take(plots, free), clutter)
-        alive = status != LOST
+        # remember
+        begun = take(of_radar.leftover, first)
+        nowhere = np.delete(np.arange(len(lone.time)), first)
+        clutter = clutter_map.learn(of_radar.clutter, lone.range[nowhere], lone.bearing[nowhere])
+        of_radar = OfRadar(take(measured, free), clutter)
+        alive = tracks.status != LOST
         return TrackerMemory(
             tracks if alive.all() else take(tracks, alive),
-            tuple(radars),
+            memory.radars[: scan.radar] + (of_radar,) + memory.radars[scan.radar + 1 :],
             scan.own_ship.position[-1],
-            memory.next_id + len(second),
-            memory.next_number + len(newly),
-        ), Report(
-            time,
-            tracks,
-            predicted,
-            plot_of,
-            reason,
-            begun._replace(covariance=begun.covariance - self.glint) if p.glint_sigma else begun,
-        )
+            memory.next_id + len(first),
+            next_number,
+        ), Report(seen.time, tracks, seen.predicted, plot_of, reason, begun)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.
@@ -313,10 +220,3 @@ class Tracker:
             radar=(np.full(count, radar, np.int8) if len(self.radars) > 1 else None),
             past=late_plots.nothing_yet(state, plots, self.updates),
         )
-
-
-def _widest(covariance) -> float:
-    """Deviation m of the least certain of plots with covariances [M, 2, 2] m^2, 0 for None."""
-    if covariance is None:
-        return 0.0
-    return float(np.sqrt(np.trace(covariance, axis1=1, axis2=2).max(initial=0.0)))

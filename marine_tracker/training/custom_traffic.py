@@ -17,7 +17,8 @@ A file of kinds is YAML; a pair is least and most, and every key but the first t
 from pathlib import Path
 from typing import Any
 
-from ..parameters import read_yaml_mapping
+from .. import yaml_file
+from ..files import shown
 from ..simulation.fields import Section
 from ..simulation.scenario import Scenario
 from .ship_tracks import Kind
@@ -39,7 +40,7 @@ def read_kinds(path: Path) -> dict[str, Kind]:
     Raises ValueError, naming file, place, value and limit, for anything that is wrong in it.
     """
     try:
-        values = read_yaml_mapping(path)
+        values = yaml_file.read_mapping(path)
         if not values:
             raise ValueError('there is no kind of vessel in it')
         return {str(name): _kind(Section(item, str(name), KEYS)) for name, item in values.items()}
@@ -75,13 +76,13 @@ def _pair(section, key, low, high, default=None) -> tuple[float, float]:
     value = section.values[key]
     place = section.place(key)
     if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f'{place} is {value!r}; it must be a pair [least, most]')
+        raise ValueError(f'{place} is {shown(value)}; it must be a pair [least, most]')
     ends = [
         Section({'value': end}, f'{place}[{i}]', 'value').number('value', low, high)
         for i, end in enumerate(value)
     ]
     if ends[0] > ends[1]:
-        raise ValueError(f'{place} is {value}; the least must not be above the most')
+        raise ValueError(f'{place} is {shown(value)}; the least must not be above the most')
     return ends[0], ends[1]
 
 

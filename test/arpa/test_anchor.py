@@ -10,7 +10,7 @@ from marine_tracker.types import OwnShip
 
 
 def lying(velocity, last_s=150.0):
-    """Samples of own ship whose velocity at times [K] s is velocity(times) [K, 2], and her motion."""
+    """Samples of own ship of velocity(times) [K, 2] m/s, and her motion."""
     times = np.arange(0.0, last_s, 1.0)
     made = np.broadcast_to(velocity(times), (len(times), 2)).astype(float)
     samples = OwnShip(times, np.cumsum(made, 0), made)

@@ -263,5 +263,5 @@ def test_tracks_whose_first_plots_went_by_unseen_are_taken_up(sea):
 
 
 def test_wrong_zones_are_refused(sea):
-    with pytest.raises(ValueError, match='zones are not YAML'):
+    with pytest.raises(ValueError, match='zones, line 1 is not YAML'):
         Arpa(ArpaParameters(zones='{'), sea[2])

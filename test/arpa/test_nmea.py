@@ -253,6 +253,25 @@ def test_tll_gives_the_place_to_a_few_decimetres():
     assert parsed.longitude == pytest.approx(-10.987654, abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    ('longitude', 'said'),
+    [
+        (179.9999991, '17959.9999,E'),
+        (179.99999999, '18000.0000,E'),
+        (180.0, '18000.0000,W'),
+        (-180.0, '18000.0000,W'),
+        (180.0257, '17958.4580,W'),
+        (-179.5, '17930.0000,W'),
+    ],
+)
+def test_a_longitude_beyond_180_is_told_as_the_same_one_west(longitude, said):
+    assert f',{said},' in nmea.tll(targets(), [-17.0], [longitude], NOON)[0]
+    assert f',{said},' in nmea.rmc(nmea.OwnShipData(-17.0, longitude), NOON)
+    told = delta((-17.0, longitude))[1]['navigation.position']['longitude']
+    assert -180 <= told < 180
+    assert (told - longitude) % 360 == pytest.approx(0, abs=1e-9)
+
+
 def test_own_ship_sentences():
     own = nmea.OwnShipData(54.5, 10.25, 10 * KNOT, np.radians(90), np.radians(88.5))
     assert nmea.rmc(own, NOON).startswith(

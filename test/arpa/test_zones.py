@@ -199,7 +199,7 @@ def test_the_key_tells_whether_a_zone_is_still_the_same():
 @pytest.mark.parametrize(
     ('text', 'told'),
     [
-        ('[', 'zones are not YAML'),
+        ('[', 'zones, line 1 is not YAML'),
         ('ring', "zones are 'ring'; they must be a list"),
         ('{name: ring}', 'they must be a list'),
         ('[ring]', "zone 1 is 'ring'; it must be a mapping"),

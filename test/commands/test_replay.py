@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from marine_tracker import cli, config
-from marine_tracker.commands.replay import open_source
 from marine_tracker.evaluation import metrics
+from marine_tracker.evaluation.replay import open_source
 from marine_tracker.recording import csv_folder, track_file
 from marine_tracker.simulation import radar, scenario
 
@@ -90,8 +90,8 @@ def parameters_of(monkeypatch, folder, *arguments):
     """The tracker parameters that a replay of the folder runs with."""
     seen = []
     module = sys.modules['marine_tracker.commands.replay']
-    real = module.Tracker
-    monkeypatch.setattr(module, 'Tracker', lambda given: seen.append(given) or real(given))
+    real = module.Service
+    monkeypatch.setattr(module, 'Service', lambda given: seen.append(given) or real(given))
     assert cli.main(['replay', str(folder), '--out', str(folder / 'out.csv'), *arguments]) == 0
     return seen[0]
 
@@ -144,7 +144,7 @@ def test_a_nodes_parameter_file_is_taken_too(monkeypatch, folder):
         (['--set', 'range_sigma_m=-3'], 'parameter range_sigma_m is -3'),
         (['--set', 'range_sigma_m=far'], "parameter range_sigma_m is 'far'"),
         (['--set', 'range_sigma_m'], '--set range_sigma_m: it must be NAME=VALUE'),
-        (['--set', 'range_sigma_m=['], '--set range_sigma_m=[: its value is not YAML'),
+        (['--set', 'range_sigma_m=['], '--set range_sigma_m, line 1 is not YAML'),
         (['--seed', '-1'], '--seed is -1; it must not be negative'),
         (['--parameters', 'none.yaml'], 'none.yaml: no such file or directory'),
     ],

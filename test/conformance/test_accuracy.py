@@ -81,8 +81,7 @@ def test_limits_of_msc_192_are_shares_of_great_speeds():
 def test_runs_do_not_depend_on_the_number_of_processes():
     trials = [imo.a823_trial(4, 60.0)]
     (one,), (two,) = (
-        imo.run(trials, ('cs_kalman',), imo.CHUNK + 2, 5, processes=processes)
-        for processes in (1, 2)
+        imo.run(trials, ('cs_kalman',), imo.CHUNK + 2, 5, workers=processes) for processes in (1, 2)
     )
     assert one.found.shape == (imo.CHUNK + 2, 2, 6)
     np.testing.assert_array_equal(one.found, two.found)
@@ -99,14 +98,15 @@ def test_relative_motion_is_within_half_the_limits_in_eight_runs(number):
 
 def test_a_target_dead_ahead_of_a_moving_own_ship_keeps_its_track():
     """The beam's revolution begins where it lies: it is met early or late in the revolution."""
-    from marine_tracker.conformance.target_data import Service
+    from marine_tracker.service import service_for
     from marine_tracker.simulation import radar, scenario
 
     loaded = scenario.load('imazu_01')
-    service, memory, missed = Service(loaded, 'imm'), None, 0
+    service, missed = service_for(loaded.tracker_parameters(), estimator='imm'), 0
+    memory = service.start()
     for count, (scan, _) in enumerate(radar.simulate(loaded, 1)):
-        memory = service.step(memory, scan)
-        missed += count > 5 and (memory.report.plot < 0).sum()
+        memory, output = service.step(memory, scan)
+        missed += count > 5 and (output.report.plot < 0).sum()
         if count == 100:
             break
     assert len(memory.tracker.tracks.id) == 1 and memory.tracker.next_number == 2

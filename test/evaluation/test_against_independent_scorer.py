@@ -7,11 +7,10 @@ import sys
 import numpy as np
 import pytest
 
-from marine_tracker.commands.replay import open_source, write_tracks
 from marine_tracker.evaluation import metrics
-from marine_tracker.parameters import TrackerParameters
+from marine_tracker.evaluation.replay import open_source, write_tracks
 from marine_tracker.recording import csv_folder, track_file
-from marine_tracker.tracking.tracker import Tracker
+from marine_tracker.service import service_for
 
 
 @pytest.fixture(scope='module')
@@ -25,7 +24,7 @@ def scorer(recordings):
 def tracks_of(folder, path):
     source = open_source(str(folder))
     with open(path, 'w') as file:
-        write_tracks(Tracker(TrackerParameters(**source.tracker_parameters)), source.scans, file)
+        write_tracks(service_for(source.tracker_parameters), source.scans, file)
 
 
 def roughen(path):

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from marine_tracker.extent.clustering import Gates
-from marine_tracker.extent.extents import Extents, one_a_ship
+from marine_tracker.extent.extents import one_a_ship
 from marine_tracker.extent.hulls import BY_GAUSSIAN_PROCESS, BY_RANDOM_MATRIX
 from marine_tracker.lab.hulls import at_sea
 from marine_tracker.lab.hulls.at_sea import FINE, Case
 from marine_tracker.parameters import TrackerParameters
+from marine_tracker.service import Service
 from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking.lifecycle import CONFIRMED, LOST
 from marine_tracker.tracking.tracker import Tracker
@@ -22,21 +23,19 @@ class Run:
 
     def __init__(self, parameters, extent):
         self.parameters = TrackerParameters(**parameters | {'extent': extent})
-        self.tracker, self.extents = Tracker(self.parameters), Extents(self.parameters)
-        self.memory, self.known = self.tracker.start(), self.extents.start()
+        self.service = Service(self.parameters)
+        self.memory = self.service.start()
 
     def step(self, scan):
-        (self.memory, self.known), self.report, self.plain, self.shapes = self.extents.track(
-            self.tracker, self.memory, self.known, scan
+        self.memory, (self.plain, self.report, self.estimate, self.shapes) = self.service.track(
+            self.memory, scan
         )
         return self.report
 
     def become(self, extent):
-        old = self.tracker, self.extents
-        parameters = TrackerParameters(**{**vars(self.parameters), 'extent': extent})
-        self.tracker, self.extents = Tracker(parameters), Extents(parameters)
-        self.memory = self.tracker.adopt(self.memory, old[0])
-        self.known = self.extents.adopt(self.known, old[1])
+        old = self.service
+        self.service = Service(TrackerParameters(**{**vars(self.parameters), 'extent': extent}))
+        self.memory = self.service.adopt(self.memory, old)
 
 
 @pytest.fixture(scope='module')
@@ -50,7 +49,7 @@ def test_extent_off_passes_plots_untouched(one_ship):
     loaded, scans = one_ship
     plain, off = (
         Tracker(TrackerParameters(**loaded.tracker_parameters())),
-        Run(loaded.tracker_parameters(), 'off'),
+        Run(loaded.tracker_parameters(), 'none'),
     )
     memory = plain.start()
     for scan, _ in scans[:8]:
@@ -73,7 +72,7 @@ def test_ship_is_one_track_with_her_length_heading_and_centre(one_ship, extent, 
     assert np.degrees(shapes.heading[0]) == pytest.approx(135, abs=4)
     assert shapes.method[0] == (BY_GAUSSIAN_PROCESS if extent == 'gp' else BY_RANDOM_MATRIX)
     there = truth.position[0] + (report.time[0] - truth.time[0]) * truth.velocity[0]
-    at = run.tracker.extrapolate(report.tracks, report.time).position[0]
+    at = run.estimate.position[0]
     assert np.hypot(*(at - there)) < centre
     # The outline is drawn about the track: its corners' middle is the ship's, too.
     corners = at + shapes.outline[0]
@@ -98,7 +97,7 @@ def test_extents_can_be_switched_while_tracks_live(one_ship):
     run = Run(loaded.tracker_parameters(), 'random_matrix')
     for k, (scan, _) in enumerate(scans[:24]):
         if k in (8, 12, 16):
-            run.become({8: 'gp', 12: 'off', 16: 'random_matrix'}[k])
+            run.become({8: 'gp', 12: 'none', 16: 'random_matrix'}[k])
         run.step(scan)
         assert (run.shapes is None) == (12 <= k < 16)
     assert 1 in run.report.tracks.id.tolist()
@@ -107,7 +106,7 @@ def test_extents_can_be_switched_while_tracks_live(one_ship):
 
 def test_extents_can_be_switched_on_in_an_empty_scan(one_ship):
     loaded, scans = one_ship
-    run = Run(loaded.tracker_parameters(), 'off')
+    run = Run(loaded.tracker_parameters(), 'none')
     for scan, _ in scans[:6]:
         run.step(scan)
     run.become('gp')
@@ -137,7 +136,7 @@ def test_cluster_plot_tells_a_covariance_that_its_error_bears_out(one_ship):
 
 def test_a_coast_gives_hardly_any_track_and_no_ship_is_lost_by_it():
     loaded = scenario.load('coast')
-    runs = [Run(loaded.tracker_parameters(), extent) for extent in ('off', 'random_matrix')]
+    runs = [Run(loaded.tracker_parameters(), extent) for extent in ('none', 'random_matrix')]
     confirmed = [set(), set()]
     scans = list(islice(radar.simulate(loaded, 5), 25))
     for scan, _ in scans:
@@ -145,9 +144,9 @@ def test_a_coast_gives_hardly_any_track_and_no_ship_is_lost_by_it():
             report = run.step(scan)
             found.update(report.tracks.id[report.tracks.status == CONFIRMED].tolist())
     assert len(confirmed[0]) > 200 and len(confirmed[1]) <= 0.1 * len(confirmed[0])
-    assert run.known.shores > 5
+    assert run.memory.extents.shores > 5
     truth, alive = scans[-1][1], report.tracks.status != LOST
-    at = run.tracker.extrapolate(report.tracks, report.time).position[alive]
+    at = run.estimate.position[alive]
     for position, length in zip(truth.position, loaded.fleet.length):
         assert np.hypot(*(at - position).T).min() < 40 + 0.1 * length
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators import ESTIMATORS
-from marine_tracker.evaluation import scored_tracks
+from marine_tracker.evaluation import replay
 from marine_tracker.evaluation.result import draw
 from marine_tracker.lab import marine_table
 from marine_tracker.lab.compare import compare, pictures
@@ -48,7 +48,7 @@ def test_every_estimator_follows_ships_that_turn_hard(name):
 
 def test_a_scenario_is_scored_as_a_recording():
     chosen = scenario.load('clean')
-    found = scored_tracks.figures(scored_tracks.simulated(chosen, 3), 'imm')
+    found = replay.figures(replay.simulated(chosen, 3), 'imm')
     assert found['held'] > 0.95 and found['false_tracks'] == 0
 
 
@@ -80,7 +80,7 @@ def test_a_run_tells_every_estimator_in_every_scene_and_of_the_encounters(monkey
     )
     page = tmp_path / 'page.md'
     page.write_text(f'{compare.BEGIN}\n{compare.END}')
-    found = compare.run(4, 1, page=str(page), processes=1)
+    found = compare.run(4, 1, page=str(page), workers=1)
     names = {figure.name for figure in found.figures}
     assert {
         'imm, busy strait: held',

@@ -181,7 +181,7 @@ def test_radar_yaml_and_notes_are_read(folder):
             r"line 2: target is 'one'; it must be a number",
         ),
         ('radar.yaml', '- 1\n', r'radar.yaml holds a list; it must hold a mapping'),
-        ('notes.json', '{', r'notes.json is not JSON'),
+        ('notes.json', '{', r'notes.json, line 1 is not JSON'),
         ('notes.json', '[]', r'notes.json holds a list; it must hold an object'),
     ],
 )

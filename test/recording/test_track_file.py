@@ -30,6 +30,16 @@ def written(tmp_path):
         np.array([4, -1]),
         AT_ORIGIN,
         'imm',
+        track_file.TargetColumns(
+            np.array([2, 0]),
+            np.array([0.25, np.nan]),
+            np.array([12.5, np.nan]),
+            np.array(['dangerous', '']),
+            np.array([0.75, np.nan]),
+            np.array([180.0, np.nan]),
+            np.array([30.0, np.nan]),
+            np.array([-1e-9, np.nan]),
+        ),
     )
     path = tmp_path / 'tracks.csv'
     path.write_text(file.getvalue())
@@ -58,10 +68,19 @@ def test_rows_say_what_they_should(tmp_path):
         'bearing_deg': '36.87',
         'plot': '4',
         'estimator': 'imm',
+        'target': '2',
+        'cpa_nm': '0.2500',
+        'tcpa_min': '12.500',
+        'danger': 'dangerous',
+        'danger_probability': '0.750',
+        'length_m': '180.0',
+        'beam_m': '30.0',
+        'heading_deg': '0.00',
     }
     row = dict(zip(header.split(','), second.split(',')))
     assert row['pred_north_m'] == row['pred_east_m'] == row['plot'] == ''
     assert row['bearing_deg'] == '0.00'  # not 360.00
+    assert not any(row[name] for name in track_file.COLUMNS[18:])
 
 
 def test_what_is_written_is_read_again(tmp_path):

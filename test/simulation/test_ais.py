@@ -1,10 +1,12 @@
 import numpy as np
 import pytest
+from pyproj import Geod
 
-from marine_tracker.geometry import EARTH_RADIUS, KNOT
+from marine_tracker.geodesy import LocalFrame
+from marine_tracker.geometry import KNOT
 from marine_tracker.simulation.radar import simulate
 
-METRE = np.degrees(1 / EARTH_RADIUS)  # of latitude, in degrees
+FRAME = LocalFrame(55.0, 7.0)
 
 
 @pytest.fixture
@@ -15,9 +17,10 @@ def ais_file(tmp_path):
         lines = [header]
         for vessel, times, north, east in vessels:
             lines += [
-                f'{t:g},{vessel},{55 + n * METRE:.9f},'
-                f'{7 + e * METRE / np.cos(np.radians(55)):.9f},9,<NA>'
-                for t, n, e in zip(times, north, east, strict=True)
+                f'{t:g},{vessel},{latitude:.9f},{longitude:.9f},9,<NA>'
+                for t, latitude, longitude in zip(
+                    times, *FRAME.to_geodetic(np.stack([east, north], -1)), strict=True
+                )
             ]
         (tmp_path / name).write_text('\n'.join(lines) + '\n')
         return name
@@ -42,6 +45,27 @@ def test_steady_reports_give_a_steady_ship_in_the_frame_of_the_own_vessel(ais_fi
     truth = loaded.truth_at(333.0)
     assert truth.position[0] == pytest.approx([2000, 333 * 8], abs=1e-2)
     assert truth.velocity[0] == pytest.approx([0, 8], abs=1e-4)
+
+
+@pytest.mark.parametrize('start', [(54.0, 179.995), (-16.5, -179.996), (79.0, 179.98)])
+def test_ships_cross_the_date_line_and_go_on(tmp_path, make_scenario, start):
+    """Two at 12 m/s along geodesics, one of which reports twice each time, 30 m either side."""
+    earth, times = Geod(ellps='WGS84'), np.arange(0.0, 310, 10)
+    course = 90.0 if start[1] > 0 else 270.0
+    lines = ['time_s,vessel,lat_deg,lon_deg']
+    for vessel, ahead, asides in (('own', 0.0, [0.0]), ('twice', 3000.0, [-30.0, 30.0])):
+        for time in times:
+            for aside in asides:
+                lon, lat, _ = earth.fwd(*start[::-1], course, ahead + 12 * time + aside)
+                lines.append(f'{time:g},{vessel},{lat:.9f},{lon:.9f}')
+    (tmp_path / 'line.csv').write_text('\n'.join(lines) + '\n')
+    loaded = make_scenario(duration_s=300, ais={'file': 'line.csv'}, own_ship={'vessel': 'own'})
+    along = np.array([np.sin(np.radians(course)), 0.0])
+    for time in (5.0, 150.0, 295.0):
+        truth = loaded.truth_at(time)
+        assert loaded.own_ship_at(time).position[0] == pytest.approx(12 * time * along, abs=0.1)
+        assert truth.position[0] == pytest.approx((3000 + 12 * time) * along, abs=0.1)
+        assert truth.velocity[0] == pytest.approx(12 * along, abs=0.01)
 
 
 def test_whole_second_time_stamps_do_not_shake_the_ship(ais_file, make_scenario):
@@ -135,7 +159,7 @@ def test_wrong_use_of_a_file_is_refused(ais_file, make_scenario, change, text):
         ('time_s,vessel,lat_deg,lon_deg\n0,1,55\n', 'line 2: lon_deg is None'),
         (
             'time_s,vessel,lat_deg,lon_deg\n0,1,55,7\n10,1,55.1,7\n',
-            'vessel 1 moves 11120 m in 10 s',
+            'vessel 1 moves 11132 m in 10 s',
         ),
     ],
 )

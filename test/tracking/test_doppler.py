@@ -4,6 +4,7 @@ import pytest
 from marine_tracker.parameters import TrackerParameters
 from marine_tracker.simulation import radar, scenario
 from marine_tracker.tracking import doppler
+from marine_tracker.tracking.gate import Pairs
 from marine_tracker.tracking.lifecycle import CONFIRMED
 from marine_tracker.tracking.tracker import Tracker
 from marine_tracker.types import Extrapolation, Plots, take
@@ -41,6 +42,16 @@ NO_TRACKS = tracks(np.zeros((0, 2)), np.zeros((0, 2)), 1.0)
 NO_PLOTS = plots_at(np.zeros((0, 2)), [])
 
 
+def agrees(track, plot, ahead, lone, plots, max_speed=10.0):
+    """Which of the pairs (track, plot) radial speeds leave."""
+    pairs = Pairs(np.array(track), np.array(plot), np.zeros(len(track)), np.zeros(len(track)))
+    limits = doppler.Limits(SIGMA, max_speed, REACH)
+    left = doppler.agreeing(pairs, ahead, lone, plots, limits)
+    kept = set(zip(left.track.tolist(), left.plot.tolist()))
+    assert len(left.track) == len(left.nis) == len(left.log_det) == len(kept)
+    return [pair in kept for pair in zip(track, plot)]
+
+
 @pytest.mark.parametrize(
     'place, speed, passes',
     [
@@ -56,17 +67,7 @@ NO_PLOTS = plots_at(np.zeros((0, 2)), [])
 )
 def test_a_plot_must_leave_as_fast_as_its_track_goes_that_way(place, speed, passes):
     ahead = tracks([place], [(5.0, -2.0)], 0.1)
-    fit = doppler.agree(
-        np.array([0]),
-        np.array([0]),
-        ahead,
-        NO_PLOTS,
-        plots_at([place], [speed]),
-        SIGMA,
-        10.0,
-        REACH,
-    )
-    assert fit.tolist() == [passes]
+    assert agrees([0], [0], ahead, NO_PLOTS, plots_at([place], [speed])) == [passes]
 
 
 @pytest.mark.parametrize(
@@ -83,32 +84,20 @@ def test_a_plot_must_leave_as_fast_as_its_track_goes_that_way(place, speed, pass
 def test_two_plots_of_a_new_target_leave_alike(before, now, step, passes):
     lone = plots_at([(0, 1000.0)], [before])
     plots = plots_at([(0, 1000.0)], [now], step)
-    fit = doppler.agree(np.array([0]), np.array([0]), NO_TRACKS, lone, plots, SIGMA, 10.0, REACH)
-    assert fit.tolist() == [passes]
+    assert agrees([0], [0], NO_TRACKS, lone, plots) == [passes]
 
 
 def test_lone_plots_that_told_nothing_rule_nothing_out():
     lone = plots_at([(0, 1000.0)], [0.0])._replace(radial_speed=None)
-    fit = doppler.agree(
-        np.array([0]),
-        np.array([0]),
-        NO_TRACKS,
-        lone,
-        plots_at([(0, 1000.0)], [9.0]),
-        SIGMA,
-        10.0,
-        REACH,
-    )
-    assert fit.tolist() == [True]
+    assert agrees([0], [0], NO_TRACKS, lone, plots_at([(0, 1000.0)], [9.0])) == [True]
 
 
 def test_tracks_and_lone_plots_are_told_apart_in_one_call():
     ahead = tracks([(1000, 0)], [(5.0, 0.0)], 0.1)
     lone = plots_at([(0, 1000.0)], [-3.0])
     plots = plots_at([(1000, 0), (0, 1000.0)], [5.0, -3.0])
-    track, plot = np.array([0, 0, 1, 1]), np.array([0, 1, 0, 1])
-    fit = doppler.agree(track, plot, ahead, lone, plots, SIGMA, 0.01, REACH)
-    assert fit.tolist() == [True, False, False, True]
+    fit = agrees([0, 0, 1, 1], [0, 1, 0, 1], ahead, lone, plots, max_speed=0.01)
+    assert fit == [True, False, False, True]
 
 
 @pytest.fixture(scope='module')

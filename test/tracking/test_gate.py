@@ -3,7 +3,9 @@ import pytest
 from scipy.stats import chi2
 
 from marine_tracker.geometry import locate, own_ship_at, to_range_bearing, unit_vector, wrap_bearing
-from marine_tracker.tracking.gate import gate, gate_size, window_pairs
+from marine_tracker.tracking.expected import Expected
+from marine_tracker.tracking.gate import Pairs, gate, gate_size, split, window_pairs
+from marine_tracker.tracking.noise import Noise
 from marine_tracker.tracking.sweep import Sweep
 from marine_tracker.types import OwnShip, PolarPlots
 
@@ -58,11 +60,17 @@ def scene(
         plot_time = sweep.time_at(bearing)
     polar = PolarPlots(plot_time, distance, wrap_bearing(bearing), np.zeros(plots))
     located = locate(polar, own, 15.0, bearing_sigma)
-    return time, position, velocity, covariance, sweep, located, own_ship_at(own, time)[0]
+    expected = Expected(time, position, velocity, covariance, own_ship_at(own, time)[0])
+    return expected, located, sweep
 
 
-def brute_force(time, position, velocity, covariance, sweep, plots, origin, size):
+def noise(range_sigma=15.0, bearing_sigma=0.0087, widest=0.0):
+    return Noise(range_sigma, bearing_sigma, 0.0, widest)
+
+
+def brute_force(expected, plots, size):
     """Every track with every plot at the plot's own time, one matrix after the other."""
+    time, position, velocity, covariance, _ = expected
     found = {}
     for i in range(len(time)):
         for j in range(len(plots.time)):
@@ -102,9 +110,10 @@ SCENES = {
 def test_the_gate_is_that_of_all_pairs(about, seed):
     rng = np.random.default_rng(100 + seed)
     size = gate_size((0.5, 0.9, 0.99, 0.999)[seed])
-    arguments = scene(rng, 25, 60, **about)
-    expected = brute_force(*arguments, size)
-    track, plot, nis, log_det = gate(*arguments, 15.0, about.get('bearing_sigma', 0.0087), size)
+    targets, plots, sweep = scene(rng, 25, 60, **about)
+    expected = brute_force(targets, plots, size)
+    sigmas = noise(bearing_sigma=about.get('bearing_sigma', 0.0087))
+    track, plot, nis, log_det = gate(targets, plots, sweep, sigmas, size)
     assert (np.diff(track) >= 0).all()
     found = list(zip(track.tolist(), plot.tolist()))
     assert len(set(found)) == len(found), 'a pair came twice'
@@ -127,24 +136,16 @@ def test_the_gate_does_not_tear_at_north(north):
         0.0087,
     )
     covariance = np.tile(2500.0 * np.eye(2), (9, 1, 1))
-    arguments = (
-        np.zeros(9),
-        position,
-        np.zeros((9, 2)),
-        covariance,
-        Sweep(0.0, 0.0, 0.0),
-        plots,
-        np.zeros((9, 2)),
-    )
-    track, plot, _, _ = gate(*arguments, 15.0, 0.0087, gate_size(0.99))
-    assert set(zip(track.tolist(), plot.tolist())) == set(brute_force(*arguments, gate_size(0.99)))
+    targets = Expected(np.zeros(9), position, np.zeros((9, 2)), covariance, np.zeros((9, 2)))
+    size = gate_size(0.99)
+    track, plot, _, _ = gate(targets, plots, Sweep(0.0, 0.0, 0.0), noise(), size)
+    assert set(zip(track.tolist(), plot.tolist())) == set(brute_force(targets, plots, size))
     assert len(track) > 30
 
 
 @pytest.mark.parametrize(('tracks', 'plots'), [(0, 0), (0, 5), (5, 0)])
 def test_nothing_meets_nothing(tracks, plots):
-    arguments = scene(np.random.default_rng(1), tracks, plots)
-    found = gate(*arguments, 15.0, 0.0087, gate_size(0.99))
+    found = gate(*scene(np.random.default_rng(1), tracks, plots), noise(), gate_size(0.99))
     assert [len(column) for column in found] == [0, 0, 0, 0]
     assert found[0].dtype.kind == found[1].dtype.kind == 'i'
 
@@ -165,18 +166,15 @@ def test_the_gate_holds_the_targets_plot_as_often_as_promised():
             wrap_bearing(bearing + rng.normal(0, 0.0087, count)),
             np.zeros(count),
         )
-        track, plot, _, _ = gate(
+        targets = Expected(
             np.zeros(count),
             truth + rng.normal(size=(count, 2)) @ root.T,
             np.zeros((count, 2)),
             np.tile(root @ root.T, (count, 1, 1)),
-            Sweep(0.0, 0.0, 0.0),
-            locate(polar, own, 15.0, 0.0087),
             np.zeros((count, 2)),
-            15.0,
-            0.0087,
-            gate_size(0.99),
         )
+        plots = locate(polar, own, 15.0, 0.0087)
+        track, plot, _, _ = gate(targets, plots, Sweep(0.0, 0.0, 0.0), noise(), gate_size(0.99))
         hits += np.count_nonzero(track == plot)
     assert abs(hits / 20_000 - 0.99) < 0.003
 
@@ -209,14 +207,25 @@ def test_windows_find_exactly_the_plots_inside_them(seed):
 def test_plots_that_tell_their_own_covariance_are_gated_by_it(seed):
     """Clusters at close range are far less certain than the radar's figures say."""
     rng = np.random.default_rng(seed)
-    arguments = scene(rng, 40, 60, reach=2500.0, sigma=20.0)
-    plots = arguments[5]
+    targets, plots, sweep = scene(rng, 40, 60, reach=2500.0, sigma=20.0)
     root = rng.normal(0, 30, (len(plots.time), 2, 2))
     told = plots._replace(covariance=root @ root.swapaxes(1, 2) + 4 * np.eye(2))
-    arguments = (*arguments[:5], told, arguments[6])
     widest = float(np.sqrt(np.trace(told.covariance, axis1=1, axis2=2).max()))
-    track, plot, _, _ = gate(*arguments, 5.0, 0.005, gate_size(0.99), widest)
-    expected = set(brute_force(*arguments, gate_size(0.99)))
+    size = gate_size(0.99)
+    track, plot, _, _ = gate(targets, told, sweep, noise(5.0, 0.005, widest), size)
+    expected = set(brute_force(targets, told, size))
     assert set(zip(track.tolist(), plot.tolist())) == expected
-    narrow, _, _, _ = gate(*arguments, 5.0, 0.005, gate_size(0.99))
+    narrow, _, _, _ = gate(targets, told, sweep, noise(5.0, 0.005), size)
     assert len(narrow) < len(expected)
+
+
+def test_pairs_of_tracks_and_of_lone_plots_come_apart_where_the_tracks_end():
+    pairs = Pairs(
+        np.array([0, 2, 2, 3, 5]), np.array([4, 0, 1, 1, 3]), np.arange(5.0), -np.arange(5.0)
+    )
+    for count, held in ((0, 0), (2, 1), (3, 3), (9, 5)):
+        first, beyond = split(pairs, count)
+        assert first.track.tolist() == pairs.track[:held].tolist()
+        assert beyond.track.tolist() == (pairs.track[held:] - count).tolist()
+        for one, two, both in zip(first[1:], beyond[1:], pairs[1:]):
+            assert one.tolist() + two.tolist() == both.tolist()

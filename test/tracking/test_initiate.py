@@ -3,7 +3,9 @@ import itertools
 import numpy as np
 import pytest
 
-from marine_tracker.tracking.initiate import first_score, pair_up, reach
+from marine_tracker.tracking.expected import reach
+from marine_tracker.tracking.initiate import pair_up
+from marine_tracker.tracking.score import first_score
 from marine_tracker.types import Plots
 
 PERIOD = 60 / 22

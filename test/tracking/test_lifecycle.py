@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from marine_tracker.parameters import TrackerParameters
-from marine_tracker.tracking import lifecycle
+from marine_tracker.tracking import lifecycle, score
 from marine_tracker.tracking.lifecycle import (
     COASTING,
     CONFIRMED,
@@ -218,7 +218,7 @@ def test_the_evidence_of_a_plot_is_its_likelihood_ratio():
         spread = root @ root.T + np.eye(2)
         z = rng.normal(0, 60, 2)
         density = 10 ** rng.uniform(-9, -4)
-        found = lifecycle.evidence(
+        found = score.evidence(
             np.array([z @ np.linalg.solve(spread, z)]),
             np.array([np.linalg.slogdet(spread)[1]]),
             np.array([density]),

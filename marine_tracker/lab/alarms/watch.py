@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from ...arpa import alarms
 from ...arpa.alarms import DANGER
 from ...arpa.alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
-from ...arpa.arpa import Arpa
 from ...arpa.cpa import cpa_of
 from ...parameters import ArpaParameters, TrackerParameters, from_mapping
+from ...service import Service
 from ...simulation import radar
 from ...simulation.scenario import Scenario
-from ...tracking.tracker import Tracker
 from ...types import Array
 
 REACTION = 20.0  # s from an alarm to its acknowledgement
@@ -50,8 +49,9 @@ def keep(scenario: Scenario, seed: int, swing: float = 0.0, **parameters) -> Wat
     parameters  of the ARPA
     """
     settings = from_mapping(TrackerParameters, scenario.tracker_parameters())
-    tracker, arpa = Tracker(settings), Arpa(ArpaParameters(**parameters), settings)
-    tracked, memory = tracker.start(), arpa.start()
+    service = Service(settings, ArpaParameters(**parameters))
+    memory = service.start()
+    limits = service.arpa.limits
     ships = scenario.fleet.paths.ships - 1
     shape = (scenario.scans, ships)
     time, dangerous, alarmed = np.zeros(shape[0]), np.zeros(shape, bool), np.zeros(shape, bool)
@@ -64,20 +64,17 @@ def keep(scenario: Scenario, seed: int, swing: float = 0.0, **parameters) -> Wat
         truth, own = scenario.truth_at(now), _own_ship(scenario, now, swing)
         row = truth.target - 1
         cpa[k, row], tcpa = cpa_of(truth.position - own[0], truth.velocity - own[1])
-        dangerous[k, row] = (
-            (cpa[k, row] < arpa.limits.cpa) & (tcpa >= 0) & (tcpa < arpa.limits.tcpa)
-        )
+        dangerous[k, row] = (cpa[k, row] < limits.cpa) & (tcpa >= 0) & (tcpa < limits.tcpa)
         for track in [track for track, since in heard.items() if now >= since + REACTION]:
             del heard[track]
-            alerts = memory.alerts
+            alerts = memory.arpa.alerts
             of = (alerts.id == track) & (alerts.kind == DANGER) & (alerts.state > 0)
             if of.any():
                 number = int(alerts.number[of][0])
                 alerts, _ = alarms.acknowledge(alerts, now, DANGER, number)
-                memory = memory._replace(alerts=alerts)
-        tracked, report = tracker.step(tracked, scan)
-        heading = float(np.arctan2(*scan.own_ship.velocity[-1]))
-        memory, picture = arpa.step(memory, scan, report, heading)
+                memory = memory._replace(arpa=memory.arpa._replace(alerts=alerts))
+        memory, output = service.step(memory, scan)
+        picture = output.picture
         away = np.linalg.norm(picture.motion.position[:, None] - truth.position, axis=2)
         nearest = away.argmin(1) if len(row) else np.zeros(len(away), np.int64)
         its = {

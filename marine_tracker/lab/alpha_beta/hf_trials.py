@@ -13,11 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import config
+from ... import config, yaml_file
 from ...estimators.contract import Estimator
 from ...estimators.polar_motion import to_polar
 from ...geometry import polar_to_position, wrap_angle
-from ...parameters import read_yaml_mapping
 from ...simulation import scenario
 from ...types import Array, Plots, take
 
@@ -64,7 +63,7 @@ def scene(crossing_speed: float | None = None) -> Scene:
 
     crossing_speed  m/s, of the fifth ship; by default the scenario's
     """
-    values = read_yaml_mapping(config.path('scenarios', 'hf_radar.yaml'))
+    values = yaml_file.read_mapping(config.path('scenarios', 'hf_radar.yaml'))
     if crossing_speed is not None:
         values['targets'][CROSSING]['speed_mps'] = crossing_speed
     loaded = scenario.build(values, 'hf_radar')

@@ -13,7 +13,6 @@ once for every 50 of them, recordings once. Imazu's encounters go through the wh
 danger is told from a motion that is the ARPA's own whatever the estimator is.
 """
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,7 +22,7 @@ import numpy as np
 from ...conformance import encounters
 from ...conformance.encounters import WARNED_BEFORE
 from ...estimators import ESTIMATORS, Estimator
-from ...evaluation import parallel, report, scored_tracks
+from ...evaluation import parallel, replay, report
 from ...evaluation.result import Progress, Result, silent
 from ...parameters import TrackerParameters
 from ...recording import csv_folder
@@ -79,17 +78,16 @@ def run(
     progress: Progress = silent,
     data: str | None = None,
     page: str | None = None,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> Result:
     """Every estimator of the registry in every scene."""
-    processes = processes or os.cpu_count() or 1
     scenes = scenes_of(runs, seed, data)
     work = [
         parallel.Job(function, (name, *arguments))
         for name in ESTIMATORS
         for function, *arguments in scenes.values()
     ]
-    results = iter(parallel.run(work, processes, progress))
+    results = iter(parallel.run(work, workers, progress))
     found = {name: {scene: next(results) for scene in scenes} for name in ESTIMATORS}
     figures = [
         report.Figure(f'{name}, {scene}: {what}', getattr(errors, what), unit)
@@ -98,7 +96,7 @@ def run(
         for what, unit in (('position', 'm'), ('velocity', 'm/s'), ('held', ''))
         if what != 'held' or errors.held != 1.0
     ]
-    figures += _imazu(max(1, runs // 200), seed, processes)
+    figures += _imazu(max(1, runs // 200), seed, workers)
     if page:
         write_table(page, found)
     return Result(figures, pictures=[pictures.picture(found)])
@@ -171,14 +169,12 @@ def in_traffic(name: str, scene: str, runs: int, seed: int) -> Errors:
     else:
         chosen = scenario.load(scene)
     seeds = np.random.SeedSequence([seed, 8]).generate_state(runs).tolist()
-    return _scored(
-        [scored_tracks.figures(scored_tracks.simulated(chosen, one), name) for one in seeds]
-    )
+    return _scored([replay.figures(replay.simulated(chosen, one), name) for one in seeds])
 
 
 def on_recording(name: str, folder: str) -> Errors:
     """A recording through the whole tracker."""
-    return _scored([scored_tracks.figures(csv_folder.read(folder), name)])
+    return _scored([replay.figures(csv_folder.read(folder), name)])
 
 
 def _scored(runs: list[dict[str, Any]]) -> Errors:
@@ -194,9 +190,9 @@ def _scored(runs: list[dict[str, Any]]) -> Errors:
     )
 
 
-def _imazu(runs: int, seed: int, processes: int) -> list[report.Figure]:
+def _imazu(runs: int, seed: int, workers: parallel.Workers) -> list[report.Figure]:
     """The encounters: dangers told in time, and the CPA three minutes after acquisition."""
-    found = encounters.run(list(ESTIMATORS), runs, seed, processes=processes)
+    found = encounters.run(list(ESTIMATORS), runs, seed, workers=workers)
     figures = []
     for e, name in enumerate(ESTIMATORS):
         warned = np.concatenate([one.warned[e].ravel() for one in found])

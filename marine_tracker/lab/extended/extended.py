@@ -6,12 +6,10 @@ deviation of 1 m; 0.8 a frame, which is next to nothing, and 0.8 a metre of outl
 two processors.
 """
 
-import os
-
 import numpy as np
 
 from ...evaluation import parallel
-from ...evaluation.parallel import Job
+from ...evaluation.parallel import Job, Workers
 from ...evaluation.result import Progress, Result, silent
 from ...extent.input_noise import VARIANTS
 from . import figures, handover
@@ -23,28 +21,13 @@ from .trials import RANDOM_MATRIX, gaussian_process_trial, random_matrix_trial
 
 HELP = 'outlines of extended targets by Gaussian processes and by a random matrix'
 RUNS = 100
-OPTIONS = {
-    'processes': {
-        'type': int,
-        'metavar': 'N',
-        'default': os.cpu_count(),
-        'help': 'how many at once (default %(default)s); no figure depends on it',
-    }
-}
 
 
-def run(runs: int, seed: int, progress: Progress = silent, processes: int | None = None) -> Result:
+def run(runs: int, seed: int, progress: Progress = silent, workers: Workers = None) -> Result:
     """All variants in all cases, the claims of the paper, and the pictures."""
-    if processes is not None and processes < 1:
-        raise ValueError(f'--processes is {processes}; it must be at least 1')
     paper, ship = plan(runs, seed)
     found = dict(
-        zip(
-            [*paper, *ship],
-            parallel.run(
-                [*paper.values(), *ship.values()], processes or os.cpu_count() or 1, progress
-            ),
-        )
+        zip([*paper, *ship], parallel.run([*paper.values(), *ship.values()], workers, progress))
     )
     trials = {of: found[of] for of in paper}
     return Result(

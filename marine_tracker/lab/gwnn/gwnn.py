@@ -7,6 +7,7 @@ on ships and small craft; 300 runs of both take about three minutes on two proce
 
 from pathlib import Path
 
+from ...evaluation.parallel import Workers
 from ...evaluation.result import Progress, Result, silent
 from ..gwnn_paper import gwnn_paper
 from . import monte_carlo
@@ -21,12 +22,12 @@ def run(
     seed: int,
     progress: Progress = silent,
     data: Path | None = None,
-    processes: int | None = None,
+    workers: Workers = None,
 ) -> Result:
     """Figures, claims and pictures of both parts."""
     parts = (
         gwnn_paper.run(min(runs, gwnn_paper.RUNS), seed, progress),
-        monte_carlo.run(runs, seed, progress, data, processes),
+        monte_carlo.run(runs, seed, progress, data, workers),
     )
     return Result(
         [figure for part in parts for figure in part.figures],

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import make_smoothing_spline
 
+from ...geodesy import LocalFrame
 from ...geometry import unit_vector
 from ...simulation import ais, motion
 from ...training.ship_tracks import Ships
@@ -102,8 +103,9 @@ def real_ships(file: Path, steps, rng) -> Ships:
     without a gap for long enough.
     """
     vessels = ais.read(file, 0.0, HOUR, LONGEST_GAP)
-    origin = next(iter((r.latitude[0], r.longitude[0]) for r in vessels.values()))
-    ways = [ais.way(reports, origin) for reports in vessels.values()]
+    first = next(iter(vessels.values()))
+    frame = LocalFrame(first.latitude[0], first.longitude[0])
+    ways = [ais.way(reports, frame) for reports in vessels.values()]
     paths = motion.table(ways, HOUR)
     need = steps.sum(1).max() + 20
     stretches = []

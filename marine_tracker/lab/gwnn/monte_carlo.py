@@ -8,7 +8,6 @@ in the plots' deviations sigma. Ratios are to the IMM tuned on the network's own
 with 95 % intervals over the tracks. 300 runs take two to three minutes on two processors.
 """
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,7 +15,7 @@ import numpy as np
 
 from ...estimators.gwnn import gwnn
 from ...evaluation import parallel
-from ...evaluation.parallel import Job
+from ...evaluation.parallel import Job, Workers
 from ...evaluation.result import Progress, Result, silent
 from ...networks import gwnn_weights
 from . import failures, figures, pictures
@@ -32,13 +31,7 @@ OPTIONS = {
         'metavar': 'FOLDER',
         'help': 'also judge on real tracks: a folder that '
         'holds ' + ' or '.join(map(str, RECORDED.values())) + ', or both',
-    },
-    'processes': {
-        'type': int,
-        'metavar': 'N',
-        'default': os.cpu_count(),
-        'help': 'how many at once (default %(default)s); no figure depends on it',
-    },
+    }
 }
 
 
@@ -47,19 +40,17 @@ def run(
     seed: int,
     progress: Progress = silent,
     data: Path | None = None,
-    processes: int | None = None,
+    workers: Workers = None,
 ) -> Result:
     """All cells and failures; what is demanded of them, what is claimed, and the picture."""
-    if processes is not None and processes < 1:
-        raise ValueError(f'--processes is {processes}; it must be at least 1')
-    found = measure(runs, seed, progress, data, processes or os.cpu_count() or 1)
+    found = measure(runs, seed, progress, data, workers)
     return Result(figures.figures(found), claims(found), pictures.pictures(found))
 
 
 def measure(
-    runs: int, seed: int, progress: Progress, data: Path | None, processes: int
+    runs: int, seed: int, progress: Progress, data: Path | None, workers: Workers
 ) -> Findings:
-    """All measurements, in `processes` processes."""
+    """All measurements."""
     if data is not None and not any((data / file).exists() for file in RECORDED.values()):
         raise ValueError(
             f'--data is {data}; it holds neither of ' + ', '.join(map(str, RECORDED.values()))
@@ -71,7 +62,7 @@ def measure(
     planned = {
         of: job for name in FLEETS for of, job in plan(name, runs, data, weights[name], seeds)
     }
-    results = dict(zip(planned, parallel.run(list(planned.values()), processes, progress)))
+    results = dict(zip(planned, parallel.run(list(planned.values()), workers, progress)))
 
     def those(what):
         return {of[1:]: result for of, result in results.items() if of[0] == what}

@@ -4,13 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...extent.extents import Extents
 from ...extent.hulls import BY_GAUSSIAN_PROCESS
 from ...geometry import wrap_angle
-from ...parameters import TrackerParameters
+from ...service import service_for
 from ...simulation import radar, scenario
 from ...tracking.lifecycle import CONFIRMED
-from ...tracking.tracker import Tracker
 
 SPEED = 6.0  # m/s
 SCANS = 44  # two minutes
@@ -78,24 +76,22 @@ def scene(case: Case) -> scenario.Scenario:
 def run(case: Case, extent: str, seed: int) -> HullsAtSea:
     """One run of the tracker with extents."""
     loaded = scene(case)
-    parameters = TrackerParameters(**loaded.tracker_parameters() | {'extent': extent})
-    tracker, extents = Tracker(parameters), Extents(parameters)
-    memory, known = tracker.start(), extents.start()
+    service = service_for(loaded.tracker_parameters(), extent=extent)
+    memory = service.start()
     course = np.radians(BEARING + case.aspect)
     ahead = np.array([np.sin(course), np.cos(course)])
     axes = np.stack([ahead, [ahead[1], -ahead[0]]])
     off, lined, last = [], [], (np.nan,) * 3
     for k, (scan, truth) in enumerate(radar.simulate(loaded, seed)):
-        (memory, known), report, _, shapes = extents.track(tracker, memory, known, scan)
+        memory, (_, report, estimate, shapes) = service.track(memory, scan)
         assert shapes is not None
-        estimate = tracker.extrapolate(report.tracks, report.time)
         there = truth.position[0] + (report.time - truth.time[0])[:, None] * truth.velocity[0]
         away = np.hypot(*(estimate.position - there).T)
         away[(report.tracks.status != CONFIRMED)] = np.inf
         if not np.isfinite(away).any():
             continue
         row = int(away.argmin())
-        velocity = known.hulls.matrix.mean[row, 2:]
+        velocity = memory.extents.hulls.matrix.mean[row, 2:]
         last = (
             shapes.length[row] - case.length,
             wrap_angle(np.arctan2(*velocity) - course),
@@ -103,7 +99,7 @@ def run(case: Case, extent: str, seed: int) -> HullsAtSea:
         )
         if k >= SCANS // 2:
             off.append(axes @ (estimate.position[row] - there[row]))
-            lined.append(known.hulls.method[row] == BY_GAUSSIAN_PROCESS)
+            lined.append(memory.extents.hulls.method[row] == BY_GAUSSIAN_PROCESS)
     if not off:
         return HullsAtSea(*last, (np.nan, np.nan), 0.0)
     return HullsAtSea(*last, tuple(np.mean(off, 0)), float(np.mean(lined)))

@@ -88,10 +88,10 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
 
     tracked = {}
     for name, extent in (
-        ('hulls', 'off'),
+        ('hulls', 'none'),
         ('hulls', 'random_matrix'),
         ('hulls', 'gp'),
-        ('coast', 'off'),
+        ('coast', 'none'),
         ('coast', 'gp'),
     ):
         one_more()
@@ -102,34 +102,34 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
             report.Figure(f'{name}, extent {extent}: RMSE of the nearest track', now.nearest, 'm'),
         ]
     for extent in ('random_matrix', 'gp'):
-        now, plain = tracked['hulls', extent], tracked['hulls', 'off']
+        now, plain = tracked['hulls', extent], tracked['hulls', 'none']
         figures += [
             report.at_most(
-                f'hulls, extent {extent}: position RMSE', now.rmse, plain.rmse, 'm', 'extent off'
+                f'hulls, extent {extent}: position RMSE', now.rmse, plain.rmse, 'm', 'extent none'
             ),
             report.at_least(
                 f'hulls, extent {extent}: held',
                 float(now.held.mean()),
                 float(plain.held.mean()),
                 '',
-                'extent off',
+                'extent none',
             ),
         ]
     coast = tracked['coast', 'gp']
     figures += [
         report.at_most(
-            'coast: tracks confirmed over those with extent off',
-            coast.confirmed / tracked['coast', 'off'].confirmed,
+            'coast: tracks confirmed over those with extent none',
+            coast.confirmed / tracked['coast', 'none'].confirmed,
             0.1,
             '',
-            'extent off',
+            'extent none',
         ),
         report.at_least(
             'coast: held',
             float(coast.held.mean()),
-            float(tracked['coast', 'off'].held.mean()),
+            float(tracked['coast', 'none'].held.mean()),
             '',
-            'extent off',
+            'extent none',
         ),
     ]
     progress(whole, whole)

@@ -5,12 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...extent.extents import Extents
 from ...geometry import locate, unit_vector
-from ...parameters import TrackerParameters
+from ...service import service_for
 from ...simulation import hull, radar, scenario
 from ...tracking.lifecycle import COASTING, CONFIRMED
-from ...tracking.tracker import Tracker
 from ...types import Array, Extrapolation
 
 SETTLED = 10  # scans that do not count
@@ -50,9 +48,8 @@ def track(name: str, extent: str, seed: int) -> HullsInTraffic:
     The nearest of many tracks on one hull would flatter a tracker that has too many.
     """
     loaded = scenario.load(name)
-    parameters = TrackerParameters(**loaded.tracker_parameters() | {'extent': extent})
-    tracker, extents = Tracker(parameters), Extents(parameters)
-    memory, known = tracker.start(), extents.start()
+    service = service_for(loaded.tracker_parameters(), extent=extent)
+    memory = service.start()
     ships = len(loaded.fleet.names)
     holder, held, seen = np.full(ships, -1), np.zeros(ships), np.zeros(ships)
     confirmed: set[int] = set()
@@ -60,8 +57,8 @@ def track(name: str, extent: str, seed: int) -> HullsInTraffic:
     nearest: list[float] = []
     snapshot = None
     for k, (scan, truth) in enumerate(radar.simulate(loaded, seed)):
-        (memory, known), report, _, shapes = extents.track(tracker, memory, known, scan)
-        tracks, estimate = report.tracks, tracker.extrapolate(report.tracks, report.time)
+        memory, (_, report, estimate, shapes) = service.track(memory, scan)
+        tracks = report.tracks
         confirmed.update(tracks.id[tracks.status == CONFIRMED].tolist())
         live = np.isin(tracks.status, (CONFIRMED, COASTING))
         if k == OUTLINE_SCAN and shapes is not None:

@@ -8,19 +8,19 @@ tracker's positions, and of the course and speed that the ARPA shows, every 5 s 
 minute on, of the six ships that both radars see; ratios have their 95 % interval over the runs.
 """
 
-import os
 from typing import NamedTuple
 
 import numpy as np
 
-from ...conformance.target_data import Service
+from ...arpa import motion
 from ...evaluation import parallel, report
 from ...evaluation.gospa import assign
 from ...evaluation.result import BORNE_OUT, NOT_BORNE_OUT, Progress, Result, silent
+from ...service import Service, service_for
 from ...simulation import radar, scenario
 from ...tracking.lifecycle import LOST
 from ...tracking.radars import fused, merged
-from ...types import Array
+from ...types import Array, take
 
 HELP = 'the fused track of two radars against that of each alone, with one of them failing'
 RUNS = 100
@@ -49,12 +49,12 @@ def run(
     seed: int,
     progress: Progress = silent,
     estimator: str = 'imm',
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> Result:
     """The scene `runs` times in every way."""
     seeds = np.random.SeedSequence([seed, 5]).generate_state(runs)
     work = [parallel.Job(scene, (estimator, int(one))) for one in seeds]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     by_way = dict(zip(WAYS, zip(*found), strict=True))
     rng = np.random.default_rng(seed)
     figures = []
@@ -110,43 +110,48 @@ def scene(estimator: str, seed: int) -> list[Course]:
     of_s = [scan for scan, _ in radar.simulate(s, second)]
     fails = [scan for scan in of_s if not SILENT[0] < scan.end < SILENT[1]]
     both = fused([x.tracker_parameters(), s.tracker_parameters()], ['x', 's'])
-    as_they_come = Service(x, estimator, **both)
+    of_radar_x, of_radar_s = (
+        service_for(one.tracker_parameters(), estimator=estimator) for one in (x, s)
+    )
+    of_both = service_for({**x.tracker_parameters(), **both}, estimator=estimator)
+    as_they_come = service_for({**x.tracker_parameters(), **both}, estimator=estimator)
     as_they_come.tracker.updates = 0  # none is held to be undone
     return [
-        follow(Service(x, estimator), of_x, x),
-        follow(Service(s, estimator), of_s, s),
-        follow(Service(x, estimator, **both), merged(of_x, of_s), x),
-        follow(Service(x, estimator, **both), merged(of_x, fails), x),
+        follow(of_radar_x, of_x, x),
+        follow(of_radar_s, of_s, s),
+        follow(of_both, merged(of_x, of_s), x),
+        follow(of_both, merged(of_x, fails), x),
         follow(as_they_come, merged(of_x, of_s), x),
     ]
 
 
 def follow(service: Service, scans, truth: scenario.Scenario) -> Course:
     """What the service makes of the scans."""
-    memory, due = None, SETTLED
+    memory, output, due = service.start(), None, SETTLED
     errors: list[Array] = []
     last: dict[int, int] = {}
     changes, false, true = 0, set(), set()
     for scan in scans:
-        while memory is not None and scan.end > due:
-            ships, data = truth.truth_at(due), service.targets(memory, due)
-            tracks = memory.report.tracks
+        while output is not None and scan.end > due:
+            ships = truth.truth_at(due)
+            tracks = output.report.tracks
             shown = (tracks.number > 0) & (tracks.status != LOST)
+            moving = motion.at(take(memory.arpa.motion, np.flatnonzero(shown)), due)
             place = service.tracker.extrapolate(tracks, due).position[shown]
             apart = np.linalg.norm(ships.position[:, None] - place, axis=-1)
             ship, track = assign(apart, WITHIN)
             off = np.full((2, len(ships.target)), np.nan)
             off[0, ship] = apart[ship, track]
-            off[1, ship] = np.hypot(*(data.motion.velocity[track] - ships.velocity[ship]).T)
+            off[1, ship] = np.hypot(*(moving.velocity[track] - ships.velocity[ship]).T)
             errors.append(off)
-            numbers = data.tracks.number
+            numbers = tracks.number[shown]
             for one, number in zip(ship.tolist(), numbers[track].tolist()):
                 changes += last.get(one, number) != number
                 last[one] = number
             true |= set(numbers[track].tolist())
             false |= set(numbers.tolist())
             due += EVERY
-        memory = service.step(memory, scan)
+        memory, output = service.step(memory, scan)
     position, velocity = np.stack(errors, 1)
     return Course(position, velocity, changes, len(false - true))
 

@@ -13,13 +13,12 @@ from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import UInt32
 from std_srvs.srv import SetBool, Trigger
 
-from marine_tracker.arpa.arpa import Arpa
 from marine_tracker.geometry import NAUTICAL_MILE, own_ship_at, unit_vector
 from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.tracker_node import TrackerNode
 from marine_tracker.parameters import TrackerParameters, from_mapping
+from marine_tracker.service import Service
 from marine_tracker.simulation import radar, scenario
-from marine_tracker.tracking.tracker import Tracker
 from marine_tracker.types import Scan, take
 
 EPOCH_NS = 1_700_000_000 * 1_000_000_000  # stamps as a real radar has them
@@ -227,17 +226,20 @@ class Bridge(Rig):
         self.wait(lambda: self.heard_clicks() > before)
 
     def heard_clicks(self):
-        desk = self.tracker._desk
-        return len(desk._memory.acquisition.clicks.since) + desk.refused.counts.total()
+        operator = self.tracker._operator
+        return len(operator.memory.arpa.acquisition.clicks.since) + operator.refused.counts.total()
 
     def cancel(self, number):
-        desk = self.tracker._desk
-        before, refused = len(desk._memory.acquisition.targets.id), desk.refused.counts.total()
+        operator = self.tracker._operator
+        before, refused = (
+            len(operator.memory.arpa.acquisition.targets.id),
+            operator.refused.counts.total(),
+        )
         self.say(UInt32, topics.CANCEL, UInt32(data=number))
         self.wait(
             lambda: (
-                len(desk._memory.acquisition.targets.id) < before
-                or desk.refused.counts.total() > refused
+                len(operator.memory.arpa.acquisition.targets.id) < before
+                or operator.refused.counts.total() > refused
             )
         )
 
@@ -256,7 +258,7 @@ class Bridge(Rig):
         return answer.message
 
     def refused(self):
-        return self.tracker._desk.refused.counts.total()
+        return self.tracker._operator.refused.counts.total()
 
     def standing(self):
         """The alarms of the last message as state by name."""
@@ -336,11 +338,9 @@ def core():
 
     def run(scans, heading, node):
         base = (node._base_ns - EPOCH_NS) * 1e-9  # the node's times begin there
-        tracker, arpa = (
-            Tracker(node._tracker.parameters),
-            Arpa(node._desk.arpa.parameters, node._tracker.parameters),
-        )
-        memory, known = tracker.start(), arpa.start()
+        running = node._operator.service
+        service = Service(running.tracker.parameters, running.arpa.parameters)
+        memory = service.start()
         for scan in scans:
             scan = Scan(
                 scan.start - base,
@@ -348,8 +348,7 @@ def core():
                 scan.plots._replace(time=scan.plots.time - base),
                 scan.own_ship._replace(time=scan.own_ship.time - base),
             )
-            memory, report = tracker.step(memory, scan)
-            known, picture = arpa.step(known, scan, report, heading)
-            yield picture
+            memory, output = service.step(memory, scan, heading)
+            yield output.picture
 
     return run

@@ -296,7 +296,7 @@ def test_a_failure_in_a_scan_costs_no_target_and_no_alarm(bridge, sea, monkeypat
         raise RuntimeError('on purpose')
 
     with monkeypatch.context() as patch:
-        patch.setattr(here.tracker._desk.arpa, 'step', fail)
+        patch.setattr(here.tracker._operator.service.arpa, 'step', fail)
         here.radar.publish(
             convert.plots_to_cloud(
                 here.scans[here._played], here.stamp(here.scans[here._played].start)

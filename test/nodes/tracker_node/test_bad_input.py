@@ -160,7 +160,7 @@ def test_an_exception_in_a_callback_is_counted_not_thrown(rig, clean, monkeypatc
         raise RuntimeError('on purpose')
 
     with monkeypatch.context() as patch:
-        patch.setattr(here.tracker._tracker, 'step', fail)
+        patch.setattr(here.tracker._operator.service.tracker, 'step', fail)
         here.radar.publish(convert.plots_to_cloud(clean[0][8], here.stamp(clean[0][8].start)))
         here.wait(lambda: here.tracker.failures.counts.total() == 1)
     here.play(clean[0][9:11])

@@ -122,7 +122,7 @@ def test_diagnostics_count_clusters_of_land(rig):
     _, scans, parameters = first_scans('coast', 10)
     here = rig(**given(parameters, extent='random_matrix'))
     here.play(scans)
-    assert here.tracker._known.shores > 0
+    assert here.tracker._operator.memory.extents.shores > 0
     values = {pair.key: pair.value for pair in here.tracker._tracking_status(0.0).values}
-    assert values['clusters of land'] == str(here.tracker._known.shores)
+    assert values['clusters of land'] == str(here.tracker._operator.memory.extents.shores)
     assert len(here.rows()) <= 9

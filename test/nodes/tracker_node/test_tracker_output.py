@@ -31,7 +31,7 @@ def test_what_is_published_is_what_the_core_says(rig, clean):
     tracks = here.listen(Odometry, topics.TRACKS)
     ahead = here.listen(Odometry, topics.EXTRAPOLATIONS)
     cloud = here.listen(PointCloud2, topics.TRACKS_CLOUD)
-    core = Tracker(here.tracker._tracker.parameters)
+    core = Tracker(here.tracker._operator.service.tracker.parameters)
     memory, expected, further, rows = core.start(), [], [], []
     for scan in scans[:15]:
         memory, report = core.step(memory, scan)
@@ -207,7 +207,8 @@ def points(marker):
 def test_nobody_who_listens_means_no_markers_and_no_odometry(rig, clean, monkeypatch):
     here = rig()
     published = []
-    for publisher in (here.tracker._to_markers, here.tracker._to_tracks):
+    output = here.tracker._output
+    for publisher in (output._to_markers, output._to_tracks):
         monkeypatch.setattr(publisher, 'publish', published.append)
     here.play(clean[0][:8])
     assert here.names() and not published

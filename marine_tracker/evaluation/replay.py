@@ -1,0 +1,218 @@
+"""Recordings and scenarios through the service in process, faster than real time."""
+
+import csv
+import tempfile
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import IO, Any, NamedTuple
+
+import numpy as np
+
+from ..arpa import alarms, alerts
+from ..arpa.alarm_text import parts, text
+from ..arpa.situation import DANGERS
+from ..arpa.targets import label
+from ..geometry import NAUTICAL_MILE
+from ..recording import csv_folder, track_file
+from ..recording.csv_folder import Recording
+from ..recording.track_file import TargetColumns, TrackRows
+from ..service import Output, Service, service_for
+from ..simulation import radar, scenario
+from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
+from ..tracking.radars import fused, merged
+from ..types import Scan
+from . import metrics
+
+NAMES = np.array(STATUS_NAMES)
+ALARM_COLUMNS = ('time_s', 'alarm', 'target', 'where', 'priority', 'state', 'text')
+
+
+class Source(NamedTuple):
+    """Scans to track.
+
+    scans               (number, scan) in time order
+    total               how many; None where it is not known
+    tracker_parameters  those that belong to the radar and its waters
+    """
+
+    scans: Iterable[tuple[int, Scan]]
+    total: int | None
+    tracker_parameters: dict[str, Any]
+
+
+class Summary(NamedTuple):
+    """scans done, tracks ever confirmed, the service's mean CPU time a scan in ms, and whether any
+    plots told radial speeds."""
+
+    scans: int
+    confirmed: int
+    cpu_ms: float
+    doppler: bool
+
+
+def open_source(name: str, seed: int = 1) -> Source:
+    """A recording where `name` is a folder, else a scenario run with `seed`.
+
+    ValueError where it is neither, or is not in order.
+    """
+    if Path(name).is_dir():
+        recording = csv_folder.read(name)
+        numbers = recording.numbers.tolist()
+        return Source(zip(numbers, recording.scans), len(numbers), recording.tracker_parameters)
+    chosen = scenario.load(name)
+    simulated = enumerate(scan for scan, _ in radar.simulate(chosen, seed))
+    return Source(simulated, None, chosen.tracker_parameters())
+
+
+def fuse(names: Sequence[str], seed: int = 1) -> Source:
+    """The sources of one scene as one, each of them a radar of its own; a single one as it is.
+
+    Scans are numbered as they end. Of scenarios each has noise of its own, from `seed` on.
+    """
+    sources = [open_source(name, seed + k) for k, name in enumerate(names)]
+    if len(sources) == 1:
+        return sources[0]
+    radars = [f'radar_{k}' for k in range(1, len(sources) + 1)]
+    totals = [source.total for source in sources if source.total is not None]
+    return Source(
+        enumerate(merged(*((scan for _, scan in source.scans) for source in sources))),
+        sum(totals) if len(totals) == len(sources) else None,
+        fused([source.tracker_parameters for source in sources], radars),
+    )
+
+
+def run(service: Service, scans: Iterable[Scan]) -> Iterator[Output]:
+    """What each scan comes to; own ship heads as she goes."""
+    memory = service.start()
+    for scan in scans:
+        memory, output = service.step(memory, scan)
+        yield output
+
+
+def write_tracks(
+    service: Service,
+    scans: Iterable[tuple[int, Scan]],
+    file: IO[str],
+    alarm_file: IO[str] | None = None,
+) -> Summary:
+    """Run the service over numbered scans and write what it tells after each of them: one row a
+    track, and one in `alarm_file` for each alert that changes."""
+    confirmed: set[int] = set()
+    count, cpu, doppler = 0, 0.0, False
+    memory = service.start()
+    track_file.write_header(file)
+    if alarm_file:
+        csv.writer(alarm_file, lineterminator='\n').writerow(ALARM_COLUMNS)
+    for number, scan in scans:
+        began = time.process_time()
+        memory, output = service.step(memory, scan)
+        cpu += time.process_time() - began
+        tracks = output.report.tracks
+        track_file.write_scan(
+            file,
+            number,
+            output.estimate,
+            tracks.id,
+            NAMES[tracks.status],
+            output.report.predicted,
+            output.report.plot,
+            scan.own_ship,
+            service.tracker.parameters.estimator,
+            target_columns(output),
+        )
+        if alarm_file:
+            _write_alarms(alarm_file, service, output)
+        confirmed.update(tracks.id[tracks.status == CONFIRMED].tolist())
+        count += 1
+        doppler |= scan.plots.radial_speed is not None
+    return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1), doppler)
+
+
+def target_columns(output: Output) -> TargetColumns:
+    """What a track file tells of the targets among the N tracks, and of the tracks' sizes."""
+    picture, count = output.picture, len(output.report.tracks.id)
+
+    def of_targets(values):
+        column = np.full(count, np.nan)
+        column[picture.row] = values
+        return column
+
+    danger = np.full(count, '', dtype='<U9')
+    danger[picture.row] = np.array(DANGERS)[picture.danger]
+    length, beam, heading = np.full((3, count), np.nan)
+    if output.shapes is not None:
+        sized = output.shapes.extended
+        length[sized] = output.shapes.length[sized]
+        beam[sized] = output.shapes.beam[sized]
+        heading[sized] = output.shapes.heading[sized]
+    return TargetColumns(
+        output.report.tracks.number,
+        of_targets(picture.approach.cpa / NAUTICAL_MILE),
+        of_targets(picture.approach.tcpa / 60),
+        danger,
+        of_targets(picture.approach.danger_probability),
+        length,
+        beam,
+        heading,
+    )
+
+
+def _write_alarms(file: IO[str], service: Service, output: Output) -> None:
+    changed = output.picture.changed
+    radars = [radar.name for radar in service.arpa.radars]
+    zones = service.arpa.zones
+    rows = zip(
+        changed.kind.tolist(),
+        [name if id else '' for id, name in zip(changed.id, label(changed.id, changed.number))],
+        parts(changed, zones, radars),
+        changed.state.tolist(),
+        text(changed, zones, radars),
+    )
+    csv.writer(file, lineterminator='\n').writerows(
+        (
+            f'{output.picture.time:.4f}',
+            alarms.NAMES[kind],
+            name,
+            where,
+            alarms.PRIORITY[kind],
+            alerts.STATES[state],
+            words,
+        )
+        for kind, name, where, state, words in rows
+    )
+
+
+def figures(recording: Recording, estimator: str) -> dict[str, Any]:
+    """`metrics.score` of the tracks with the recording's own parameters and this estimator."""
+    service = service_for(recording.tracker_parameters, estimator=estimator)
+    return metrics.score(recording, follow(service, recording)).figures
+
+
+def follow(service: Service, recording: Recording) -> TrackRows:
+    """The rows that `write_tracks` would write, as far as scores need them."""
+    rows = []
+    for number, output in zip(recording.numbers.tolist(), run(service, recording.scans)):
+        tracks, now = output.report.tracks, output.estimate
+        rows.append(
+            (
+                now.time,
+                tracks.id.astype(str),
+                NAMES[tracks.status],
+                now.position,
+                now.velocity,
+                output.report.predicted,
+                np.full(len(now.time), number),
+            )
+        )
+    return TrackRows(*map(np.concatenate, zip(*rows)))
+
+
+def simulated(chosen: scenario.Scenario, seed: int) -> Recording:
+    """A scenario as a recording."""
+    with tempfile.TemporaryDirectory() as work:
+        folder = Path(work, chosen.name)
+        csv_folder.write(
+            folder, chosen.name, radar.simulate(chosen, seed), chosen.tracker_parameters()
+        )
+        return csv_folder.read(folder)

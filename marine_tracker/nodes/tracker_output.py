@@ -1,0 +1,110 @@
+"""What the tracker node publishes after each scan: tracks, extrapolations, targets, markers.
+
+Tracks that have no number yet are in `tracks_cloud` only. What nobody listens to is not made.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import PointCloud2
+from visualization_msgs.msg import MarkerArray
+
+from ..arpa.view import view
+from ..geometry import wrap_bearing
+from ..service import Output, Service
+from ..tracking.lifecycle import LOST
+from ..types import Extrapolation, take
+from . import convert, topics
+from .base_node import RunnableNode
+from .convert import OdometryPool
+from .markers import MarkersWriter
+from .targets_message import TargetsWriter
+
+COVARIANCE = {  # of [x, y, vx, vy]: row and column of each field of `tracks_cloud`
+    'xx': (0, 0),
+    'xy': (0, 1),
+    'yy': (1, 1),
+    'vxvx': (2, 2),
+    'vxvy': (2, 3),
+    'vyvy': (3, 3),
+    'xvx': (0, 2),
+    'xvy': (0, 3),
+    'yvx': (1, 2),
+    'yvy': (1, 3),
+}
+
+
+class TrackerOutput:
+    """Of one tracker node."""
+
+    def __init__(self, node: RunnableNode, hardware_id: str):
+        burst = topics.reliable(topics.BURST)
+        self._to_tracks = node.publisher(Odometry, topics.TRACKS, burst)
+        self._to_extrapolations = node.publisher(Odometry, topics.EXTRAPOLATIONS, burst)
+        self._to_cloud = node.publisher(PointCloud2, topics.TRACKS_CLOUD, topics.reliable())
+        self._to_targets = node.publisher(DiagnosticArray, topics.TARGETS, topics.latched())
+        self._to_markers = node.publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
+        self._pool = OdometryPool()
+        self._targets = TargetsWriter(hardware_id)
+        self._markers = MarkersWriter()
+
+    def publish(
+        self, service: Service, output: Output, period: float, stamps: Callable[..., np.ndarray]
+    ) -> None:
+        """All that a scan came to.
+
+        period  s, of the radar's revolution
+        stamps  ns, on the radar's clock, of the tracker's times [N] s
+        """
+        if self._to_cloud.get_subscription_count():  # one message, so first
+            self._to_cloud.publish(_cloud(output, int(stamps(output.scan.start))))
+        self._publish_tracks(service, output, period, stamps)
+        end_ns = int(stamps(output.scan.end))
+        name = service.tracker.parameters.estimator
+        arpa = service.arpa
+        seen = view(output.picture, output.report, name, output.shapes)
+        self._to_targets.publish(
+            self._targets.message(seen, name, arpa.stabilised, output.scan.end, end_ns)
+        )
+        if self._to_markers.get_subscription_count():
+            self._to_markers.publish(
+                self._markers.message(seen, output.picture, arpa.zones, arpa.parameters, end_ns)
+            )
+
+    def _publish_tracks(self, service, output, period, stamps) -> None:
+        tracks = output.report.tracks
+        alive = np.flatnonzero((tracks.number > 0) & (tracks.status != LOST))
+        alive = alive[np.argsort(tracks.number[alive])]
+        frames = [f'track_{n:02d}' for n in tracks.number[alive].tolist()]
+        if self._to_tracks.get_subscription_count():
+            self._publish_each(self._to_tracks, stamps, frames, take(output.estimate, alive))
+        if self._to_extrapolations.get_subscription_count():
+            ahead = service.tracker.extrapolate(
+                take(tracks, alive), output.report.time[alive] + period
+            )
+            self._publish_each(self._to_extrapolations, stamps, frames, ahead)
+
+    def _publish_each(self, publisher, stamps, frames, estimate: Extrapolation) -> None:
+        for message in self._pool.fill(
+            stamps(estimate.time), frames, estimate.position, estimate.velocity, estimate.covariance
+        ):
+            publisher.publish(message)
+
+
+def _cloud(output: Output, start_ns: int) -> PointCloud2:
+    tracks, estimate = output.report.tracks, output.estimate
+    velocity = estimate.velocity
+    rows = np.zeros(len(tracks.id), convert.TRACK_TYPE)
+    rows['id'] = tracks.id
+    rows['number'] = tracks.number
+    rows['status'] = tracks.status
+    rows['time_offset'] = estimate.time - output.scan.start
+    rows['x'], rows['y'] = estimate.position.T
+    rows['vx'], rows['vy'] = velocity.T
+    for name, (row, column) in COVARIANCE.items():
+        rows[name] = estimate.covariance[:, row, column]
+    rows['course'] = wrap_bearing(np.arctan2(velocity[:, 0], velocity[:, 1]))
+    rows['speed'] = np.hypot(velocity[:, 0], velocity[:, 1])
+    return convert.cloud_message(rows, start_ns)

@@ -1,0 +1,146 @@
+"""The one way of the data: a scan in; tracks, sizes, targets and alarms out.
+
+    service = Service(TrackerParameters(estimator='imm'), ArpaParameters())
+    memory = service.start()
+    for scan in scans:
+        memory, output = service.step(memory, scan)
+
+Node, replay, scores, the IMO report and the examples all call `step`: what is certified is what
+runs. State goes in and comes out. A change of parameters is a new Service, which takes the memory
+of the old one over: `memory = new.adopt(memory, old)`; no track is lost by it.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .arpa.anchor import AT_REST
+from .arpa.arpa import Arpa, ArpaMemory, Picture
+from .arpa.view import Standing, standing
+from .estimators import Estimator
+from .extent.extents import Extents, ExtentsMemory
+from .extent.hulls import Shapes
+from .parameters import ArpaParameters, TrackerParameters, from_mapping
+from .tracking.tracker import Report, Tracker, TrackerMemory
+from .types import Array, Extrapolation, OwnShip, Scan, take
+
+
+class ServiceMemory(NamedTuple):
+    """All that the service knows between two scans."""
+
+    tracker: TrackerMemory
+    extents: ExtentsMemory
+    arpa: ArpaMemory
+
+
+class Tracking(NamedTuple):
+    """What a scan did to the N tracks; lost ones and those just initiated are among them.
+
+    scan      as the tracker took it: with extents one plot a cluster
+    report    of the tracker
+    estimate  N rows, at the report's times
+    shapes    N rows: sizes and headings; None with extent none
+    """
+
+    scan: Scan
+    report: Report
+    estimate: Extrapolation
+    shapes: Shapes | None
+
+
+class Output(NamedTuple):
+    """What a scan came to: the fields of Tracking, and
+
+    standing  how the estimator fares with the confirmed tracks
+    picture   targets and alarms
+    """
+
+    scan: Scan
+    report: Report
+    estimate: Extrapolation
+    shapes: Shapes | None
+    standing: Standing
+    picture: Picture
+
+
+class Service:
+    """Extents, tracker and ARPA as one, without a state of its own: parameters in.
+
+    An `estimator` of your own takes the place of the one that the parameters name.
+    ValueError where parameters are wrong.
+    """
+
+    def __init__(
+        self,
+        tracker: TrackerParameters,
+        arpa: ArpaParameters | None = None,
+        estimator: Estimator | None = None,
+    ):
+        self.tracker = Tracker(tracker, estimator)
+        self.extents = Extents(tracker)
+        # Whose account is asked for; of one of your own nobody knows how it fares.
+        self._name = '' if estimator else tracker.estimator
+        self.arpa = Arpa(arpa or ArpaParameters(), self.tracker.parameters)
+
+    def start(self) -> ServiceMemory:
+        """No tracks yet."""
+        return ServiceMemory(self.tracker.start(), self.extents.start(), self.arpa.start())
+
+    def step(
+        self, memory: ServiceMemory, scan: Scan, heading: float | None = None
+    ) -> tuple[ServiceMemory, Output]:
+        """One antenna revolution.
+
+        heading  rad, own ship's, true; nan where it is not known; None: see `course_over_ground`
+        """
+        memory, done = self.track(memory, scan)
+        fares = standing(done.report, self._name)
+        if heading is None:
+            heading = course_over_ground(scan.own_ship)
+        known, picture = self.arpa.step(
+            memory.arpa, done.scan, done.report, heading, fares.fallen_at
+        )
+        return memory._replace(arpa=known), Output(*done, fares, picture)
+
+    def track(self, memory: ServiceMemory, scan: Scan) -> tuple[ServiceMemory, Tracking]:
+        """The first half of `step`: tracks and their sizes, without targets and alarms."""
+        tracker, extents = self.tracker, self.extents
+        seen = None
+        if extents.on:
+            sure = take(memory.tracker.tracks, memory.tracker.tracks.number > 0)
+            ahead = tracker.extrapolate(sure, 0.5 * (scan.start + scan.end))
+            scan, seen = extents.reduce(memory.extents, scan, sure.id, ahead)
+        tracks, report = tracker.step(memory.tracker, scan)
+        estimate = tracker.extrapolate(report.tracks, report.time)
+        known, shapes = memory.extents, None
+        if seen is not None:
+            known = extents.step(known, seen, report.tracks.id, report.time, report.plot, estimate)
+            shapes = extents.shapes(known, seen, estimate)
+        return (
+            memory._replace(tracker=tracks, extents=known),
+            Tracking(scan, report, estimate, shapes),
+        )
+
+    def adopt(self, memory: ServiceMemory, previous: 'Service') -> ServiceMemory:
+        """The memory of another service, made fit for this one; no track is lost."""
+        return ServiceMemory(
+            self.tracker.adopt(memory.tracker, previous.tracker),
+            self.extents.adopt(memory.extents, previous.extents),
+            memory.arpa,
+        )
+
+
+def service_for(values: Mapping[str, Any], **changes: Any) -> Service:
+    """A service with the tracker parameters that a scenario or a recording gives, and `changes`;
+    else with shipped defaults. ValueError where one is unknown or wrong."""
+    return Service(from_mapping(TrackerParameters, {**values, **changes}))
+
+
+def course_over_ground(own_ship: OwnShip) -> float:
+    """rad: own ship's course over ground in its last sample, which stands for her heading where no
+    compass is heard; nan where she makes no way."""
+    velocity: Array = own_ship.velocity[-1]
+    if np.hypot(*velocity) < AT_REST:
+        return float('nan')
+    return float(np.arctan2(*velocity))

@@ -1,0 +1,65 @@
+"""What one scan shows of every track, whether it had a plot or not."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry import to_range_bearing
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, Tracks
+from .expected import Expected
+from .noise import Noise
+
+
+class Look(NamedTuple):
+    """What one scan showed of the tracks, one row a track.
+
+    time       [N]     s, when the beam passed the track (its plot's time where it had one); or
+                       its last plot's, where another radar's was later
+    predicted  [N, 2]  m, where the track was expected at `time`; nan for a new track
+    distance   [N]     m, from own ship: of its plot, or else of where it was expected
+    bearing    [N]     rad, likewise
+    drift      [N]     deviation of the expected position over that of a plot; 0 where it had one
+    hit        [N]     it had a plot
+    """
+
+    time: Array
+    predicted: Array
+    distance: Array
+    bearing: Array
+    drift: Array
+    hit: BoolArray
+
+
+def look(
+    tracks: Tracks,
+    rows: IntArray,
+    plots: Plots,
+    ahead: Extrapolation,
+    expected: Expected,
+    noise: Noise,
+) -> Look:
+    """What the scan showed: of the tracks `rows` [K] their K plots, of the others where they
+    should have been.
+
+    tracks           N, their `last_time` up to date; those that `ahead` lacks are new: they have
+                     a plot
+    ahead, expected  the tracks before the update; beyond them `expected` may have more rows
+    """
+    count, before = len(tracks.id), len(ahead.time)
+    hit = np.zeros(count, bool)
+    hit[rows] = True
+    missed = (~hit).nonzero()[0]
+    time = tracks.last_time.copy()
+    time[missed] = np.maximum(ahead.time[missed], time[missed])
+    predicted = np.full((count, 2), np.nan)
+    later = time[:before] - ahead.time
+    predicted[:before] = ahead.position + later[:, None] * ahead.velocity
+    distance, bearing, drift = np.zeros((3, count))
+    distance[rows] = plots.range
+    bearing[rows] = plots.bearing
+    distance[missed], bearing[missed] = to_range_bearing(
+        ahead.position.take(missed, 0) - expected.origin.take(missed, 0)
+    )
+    spread = (ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])[missed]
+    drift[missed] = np.sqrt(spread / noise.variance(distance[missed]))
+    return Look(time, predicted, distance, bearing, drift, hit)

@@ -1,0 +1,56 @@
+"""How far the plots of a radar stray from the targets they belong to."""
+
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from ..geometry import locate
+from ..parameters import TrackerParameters
+from ..types import Array, Plots, Scan
+from .expected import Expected
+
+Spread = TypeVar('Spread', Plots, Expected)  # what has a covariance [..., 2, 2] m^2
+
+
+class Noise(NamedTuple):
+    """The noise of the plots of one scan; the only place that knows of glint.
+
+    range_sigma    m
+    bearing_sigma  rad
+    glint_sigma    m, each axis: the point of a target that echoes, about the target's middle
+    widest         m, deviation of the least certain plot where plots tell their own; else 0
+    """
+
+    range_sigma: float
+    bearing_sigma: float
+    glint_sigma: float
+    widest: float
+
+    def locate(self, scan: Scan) -> Plots:
+        """The scan's plots as the radar measured them: where the echoes are."""
+        return locate(scan.plots, scan.own_ship, self.range_sigma, self.bearing_sigma)
+
+    def with_glint(self, spread: Spread) -> Spread:
+        """The same with the covariance that glint adds.
+
+        Of plots: they tell where the middle of the target is. Of expected targets: where they
+        echo.
+        """
+        if not self.glint_sigma:
+            return spread
+        return spread._replace(covariance=spread.covariance + self.glint_sigma**2 * np.eye(2))
+
+    def variance(self, distance: Array) -> Array:
+        """m^2 [N], both axes together, of a plot's place at the distances [N] m, with glint."""
+        across = distance * self.bearing_sigma
+        return self.range_sigma**2 + across**2 + 2 * self.glint_sigma**2
+
+
+def noise_of(radar: TrackerParameters, scan: Scan) -> Noise:
+    """The noise of a scan's plots; the parameters are those of its radar."""
+    told, widest = scan.plots.covariance, 0.0
+    if told is not None:
+        widest = float(np.sqrt(np.trace(told, axis1=1, axis2=2).max(initial=0.0)))
+    return Noise(
+        radar.range_sigma_m, float(np.radians(radar.bearing_sigma_deg)), radar.glint_sigma, widest
+    )
