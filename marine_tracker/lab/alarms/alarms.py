@@ -12,7 +12,6 @@ danger before, and without need where that danger is more than SOON before or af
 never was one.
 """
 
-import os
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -66,7 +65,7 @@ def run(
     seed: int,
     progress: Progress = silent,
     data: str | None = None,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> Result:
     """Every scene `runs` times."""
     seeds = np.random.SeedSequence([seed, 11]).generate_state(runs).tolist()
@@ -84,7 +83,7 @@ def run(
         for turn, one in enumerate(seeds)
         for amplitude, period in YAWS
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     figures = _traffic('busy strait', found[:runs])
     for folder in folders:
         its = [
