@@ -8,8 +8,8 @@ nearer.
 It has clearly become worse when for alerts.Rule.worse_after it is a danger and
 
     the CPA is below what was acknowledged by NEARER of the CPA limit, or the closest approach comes
-    sooner than was acknowledged by SOONER of the TCPA limit. What was acknowledged is taken at the
-    first scan at which it was no guess: when SURELY of its deviations came to no more than that; or
+    sooner than was acknowledged by SOONER of the TCPA limit. Both are taken only where they are no
+    guess, SURELY of their deviations being no more than that; or
     the target was no danger any more and, still as near as ENDED times the CPA limit, comes back:
     to less than BACK of the distance.
 
@@ -19,9 +19,9 @@ Between the two the operator knows of it already.
 import numpy as np
 from numpy.typing import NDArray
 
-from ..types import row_of
+from ..types import Array, row_of
 from .alerts import CLEAR, NORMAL, OFF, ON, WORSE, Alerts
-from .situation import SAFE, Limits, Situation
+from .situation import DANGEROUS, SAFE, Limits, Situation
 
 ENDED, REMOTE = 1.5, 0.1
 NEARER, SOONER, SURELY, BACK = 0.5, 0.25, 2.0, 0.5
@@ -36,19 +36,22 @@ def marked(
     """
     row = row_of(situation.id, alerts.id)
     new = dangers & ~np.isnan(alerts.until) & (row >= 0)
-    nearer, sooner = NEARER * limits.cpa, SOONER * limits.tcpa
-    worse = np.stack(
-        [
-            np.where(SURELY * situation.cpa_sigma <= nearer, situation.cpa - nearer, np.nan),
-            np.where(
-                SURELY * situation.tcpa_sigma <= sooner, now + situation.tcpa - sooner, np.nan
-            ),
-        ],
-        1,
-    )
+    new &= np.append(situation.danger, SAFE)[row] == DANGEROUS
+    worse = _known(situation, limits, now) - _clearly(limits)
     worse = np.append(worse, [[np.nan, np.nan]], 0)[row]  # -1, gone away: the last
     mark = np.where(new[:, None] & np.isnan(alerts.mark), worse, alerts.mark)
     return alerts._replace(mark=mark)
+
+
+def _clearly(limits: Limits) -> Array:
+    """[2] m, s: by how much CPA and TCPA must differ."""
+    return np.array([NEARER * limits.cpa, SOONER * limits.tcpa])
+
+
+def _known(situation: Situation, limits: Limits, now: float) -> Array:
+    """[N, 2] CPA, m, and the time of it, s; nan where it is a guess."""
+    sure = SURELY * np.stack([situation.cpa_sigma, situation.tcpa_sigma], 1) <= _clearly(limits)
+    return np.where(sure, np.stack([situation.cpa, now + situation.tcpa], 1), np.nan)
 
 
 def level(
@@ -78,10 +81,8 @@ def level(
         & (situation.tcpa < ENDED * limits.tcpa)
     ) | (situation.probability >= REMOTE)
     clear = (situation.danger == SAFE) & (situation.harmless | ~(near | within))
-    worse = (
-        (situation.cpa < mark[:, 0])
-        | (now + situation.tcpa < mark[:, 1])
-        | (over & near & (situation.cpa < BACK * situation.range))
+    worse = (_known(situation, limits, now) < mark).any(1) | (
+        over & near & (situation.cpa < BACK * situation.range)
     )
     return np.select(
         [acknowledged & (danger == OFF) & clear, acknowledged & (danger == ON) & worse],
