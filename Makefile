@@ -6,6 +6,7 @@
 #   make check                           ruff, mypy, API pages and the fast tests: what CI runs
 #   make api                             pages from the docstrings, in build/api
 #   make slow                            the slow tests
+#   make fuzz                            46,000 broken files and messages, the same ones each time
 #   make clean                           removes .venv, caches and colcon's folders
 #
 # PYTHON=/path/to/python3.11 chooses the interpreter of .venv.
@@ -33,9 +34,9 @@ demo: $(DEMO)
 # Arithmetic on all processors, then the nodes by themselves, which run in real time. Code 5: ARGS
 # leaves no test in this half.
 test: $(TEST)
-	$(BIN)/python -m pytest -m 'not slow and not nodes' -n auto --maxprocesses 4 --dist loadfile \
-	    $(ARGS) || [ $$? = 5 ]
-	$(BIN)/python -m pytest -m 'not slow and nodes' $(ARGS) || [ $$? = 5 ]
+	$(BIN)/python -m pytest -m 'not slow and not fuzz and not nodes' -n auto --maxprocesses 4 \
+	    --dist loadfile $(ARGS) || [ $$? = 5 ]
+	$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' $(ARGS) || [ $$? = 5 ]
 
 check: $(CHECK)
 	$(BIN)/ruff check
@@ -48,6 +49,9 @@ api: $(CHECK)
 
 slow: $(TEST)
 	$(BIN)/python -m pytest -m slow $(ARGS)
+
+fuzz: $(INSTALLED)
+	$(BIN)/python -m pytest -m fuzz -s $(ARGS)
 
 $(DEMO): $(DESCRIPTION)
 	@.ci/setup $(FOR_DEMO)

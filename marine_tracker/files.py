@@ -3,9 +3,7 @@
 import contextlib
 import os
 import reprlib
-import signal
 import stat
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
@@ -22,6 +20,12 @@ def shown(value: Any) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + '...'
 
 
+def shortened(text: Any) -> str:
+    """A name or path as a message tells it: in one line, long ones cut."""
+    line = ' '.join(str(text).split())
+    return line if len(line) <= 200 else line[:197] + '...'
+
+
 def regular(path) -> Path:
     """The path, if it is that of a regular file; else ValueError (OSError where there is none).
 
@@ -29,7 +33,7 @@ def regular(path) -> Path:
     """
     path = Path(path)
     if not stat.S_ISREG(path.stat().st_mode):
-        raise ValueError(f'{path} is not a regular file')
+        raise ValueError(f'{shortened(path)} is not a regular file')
     return path
 
 
@@ -42,13 +46,13 @@ def read_text(path, limit: int) -> str:
     with open(path, 'rb') as file:
         content = file.read(limit + 1)
     if len(content) > limit:
-        raise ValueError(f'{path} has more than {limit} bytes; it must not')
+        raise ValueError(f'{shortened(path)} has more than {limit} bytes; it must not')
     try:
         return content.decode('utf-8-sig')
     except UnicodeDecodeError as error:
         line = content.count(b'\n', 0, error.start) + 1
         raise ValueError(
-            f'{path}, line {line}: the byte 0x{content[error.start]:02x} is not UTF-8; '
+            f'{shortened(path)}, line {line}: the byte 0x{content[error.start]:02x} is not UTF-8; '
             'save the file as UTF-8'
         ) from None
 
@@ -62,6 +66,8 @@ def written(path, mode: str = 'w', **options) -> Iterator[IO[Any]]:
     mode, options  as for `open`
     """
     path = Path(os.path.realpath(path))
+    if 'b' not in mode:
+        options.setdefault('encoding', 'utf-8')
     if path.exists() and not path.is_file():
         with open(path, mode, **options) as file:
             yield file
@@ -88,13 +94,3 @@ def write_text(path, text: str) -> None:
     """Write a text file, whole or not at all."""
     with written(path) as file:
         file.write(text)
-
-
-def stop_on_sigterm() -> None:
-    """From now on SIGTERM ends the main thread as SIGINT does, so that it can clean up."""
-
-    def stop(*_):
-        raise SystemExit(128 + signal.SIGTERM)
-
-    if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, stop)

@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .geometry import to_range_bearing, unit_vector
+from .geometry import Angle, to_range_bearing, unit_vector
 from .types import Array
 
 FARTHEST = 2.0e7  # m: half way round the Earth, less 4 km
@@ -24,9 +24,9 @@ def _earth():
     return Geod(ellps='WGS84')
 
 
-def wrap_longitude(longitude):
+def wrap_longitude(longitude: Angle) -> Angle:
     """The same longitude [...] in [-180, 180) deg."""
-    turned = longitude % 360.0
+    turned: Angle = longitude % 360.0
     return turned - 360.0 * (turned >= 180.0)
 
 

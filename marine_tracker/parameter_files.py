@@ -9,6 +9,7 @@ import textwrap
 from pathlib import Path
 
 from . import yaml_file
+from .files import write_text
 from .parameters import NODES
 
 COMMAND = 'python -m marine_tracker.parameter_files'
@@ -113,7 +114,7 @@ def main() -> None:
     for name, text in files().items():
         path = root / name
         path.parent.mkdir(exist_ok=True)
-        path.write_text(text)
+        write_text(path, text)
 
 
 if __name__ == '__main__':

@@ -7,6 +7,7 @@ import fcntl
 import os
 import signal
 import sys
+from typing import NoReturn
 
 PR_SET_PDEATHSIG = 1  # sys/prctl.h
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h of the GNU C library
@@ -48,6 +49,15 @@ def end_in_time() -> None:
     fcntl.fcntl(read, fcntl.F_SETFL, os.O_ASYNC)
     os.set_blocking(write, False)
     signal.set_wakeup_fd(write, warn_on_full_buffer=False)
+
+
+def stop_on_sigterm() -> None:
+    """From now on SIGTERM raises SystemExit, so that what was begun is put in order."""
+
+    def stop(*_: object) -> NoReturn:
+        raise SystemExit(128 + signal.SIGTERM)
+
+    signal.signal(signal.SIGTERM, stop)
 
 
 def closing() -> None:

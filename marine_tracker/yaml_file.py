@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 from ruamel.yaml import YAML, events
 from ruamel.yaml.error import MarkedYAMLError
 
-from .files import read_text, shown
+from .files import read_text, shortened, shown
 
-MAX_BYTES = 500_000
-MAX_VALUES = 50_000
+MAX_BYTES = 300_000
+MAX_VALUES = 30_000
 MAX_DEPTH = 32
 MAX_KEY = 200  # characters
 MAX_INTEGER = 2**63 - 1
@@ -46,7 +46,7 @@ class _Found(NamedTuple):
 
 def read(path) -> Any:
     """What a YAML file holds. ValueError for one that is wrong, OSError where none can be read."""
-    return parse(read_text(path, MAX_BYTES), str(path))
+    return parse(read_text(path, MAX_BYTES), shortened(path))
 
 
 def read_mapping(path) -> dict[str, Any]:
@@ -55,38 +55,41 @@ def read_mapping(path) -> dict[str, Any]:
     if values is None:
         return {}
     if not isinstance(values, dict):
-        raise ValueError(f'{path} holds {_kind(values)}; it must hold a mapping')
+        raise ValueError(f'{shortened(path)} holds {_kind(values)}; it must hold a mapping')
     return values
 
 
 def read_json(path) -> dict[str, Any]:
     """A JSON file that holds one object, under the same limits."""
-    text = read_text(path, MAX_BYTES)
+    return parse_json(read_text(path, MAX_BYTES), shortened(path))
+
+
+def parse_json(text: str, name: str) -> dict[str, Any]:
+    """The one object of a JSON text, under the same limits; `name` says what the text is."""
 
     def pairs(items):
         made: dict[str, Any] = {}
         for key, value in items:
-            _check_key(key, made, str(path))
+            _check_key(key, made, name)
             made[key] = value
         return made
 
-    def integer(digits):
-        return _integer(digits, str(path))
-
     try:
-        found = json.loads(text, object_pairs_hook=pairs, parse_int=integer)
+        found = json.loads(
+            text, object_pairs_hook=pairs, parse_int=lambda digits: _integer(digits, name)
+        )
     except json.JSONDecodeError as error:
-        raise ValueError(f'{path}, line {error.lineno} is not JSON: {error.msg}') from None
+        raise ValueError(f'{name}, line {error.lineno} is not JSON: {error.msg}') from None
     except RecursionError:
-        raise ValueError(f'{path} is nested too deep; {MAX_DEPTH} levels are allowed') from None
+        raise ValueError(f'{name} is nested too deep; {MAX_DEPTH} levels are allowed') from None
     if not isinstance(found, dict):
-        raise ValueError(f'{path} holds {_kind(found)}; it must hold an object')
+        raise ValueError(f'{name} holds {_kind(found)}; it must hold an object')
     level: list[Any] = [found]
     for _ in range(MAX_DEPTH):
         inner = (item.values() if isinstance(item, dict) else item for item in level)
         level = [value for items in inner for value in items if isinstance(value, (dict, list))]
     if level:
-        raise ValueError(f'{path} is nested too deep; {MAX_DEPTH} levels are allowed')
+        raise ValueError(f'{name} is nested too deep; {MAX_DEPTH} levels are allowed')
     return found
 
 
@@ -109,9 +112,9 @@ def _events(text: str, name: str) -> Iterator[Any]:
         mark = error.problem_mark or error.context_mark
         place = f'{name}, line {mark.line + 1}' if mark else name
         why = error.problem or error.context or 'it cannot be read'
-        raise ValueError(f'{place} is not YAML: {_in_line(why)}') from None
+        raise ValueError(f'{place} is not YAML: {shortened(why)}') from None
     except Exception as error:  # of broken texts the library raises more than its own errors
-        raise ValueError(f'{name} is not YAML: {_in_line(error)}') from None
+        raise ValueError(f'{name} is not YAML: {shortened(error)}') from None
 
 
 class _Composer:
@@ -158,7 +161,7 @@ class _Composer:
 
     def _begin(self, event) -> None:
         if event.tag is not None:
-            raise self._wrong(event, f'the tag {_in_line(event.tag)} is not read; leave it out')
+            raise self._wrong(event, f'the tag {shortened(event.tag)} is not read; leave it out')
         if self.open and self.open[-1].wants_key:
             raise self._wrong(event, 'a key is a list or mapping; it must be a word')
         if len(self.open) == MAX_DEPTH:
@@ -176,7 +179,7 @@ class _Composer:
     def _scalar(self, event) -> Any:
         text = event.value
         if event.tag is not None and str(event.tag) not in TEXT_TAGS:
-            raise self._wrong(event, f'the tag {_in_line(event.tag)} is not read; leave it out')
+            raise self._wrong(event, f'the tag {shortened(event.tag)} is not read; leave it out')
         is_key = bool(self.open) and self.open[-1].wants_key
         if self.as_text or is_key or event.style is not None or event.tag is not None:
             return text
@@ -209,7 +212,7 @@ class _Composer:
             if not isinstance(collection.value, dict):
                 keys += f'[{len(collection.value)}]'
             elif not collection.wants_key:
-                keys += f'{"." if keys else ""}{_in_line(collection.key)}'
+                keys += f'{"." if keys else ""}{shortened(collection.key)}'
         where = f'{self.name}, line {event.start_mark.line + 1}'
         return f'{where}, {keys}' if keys else where
 
@@ -248,9 +251,3 @@ def _check_key(key: str, before: dict[str, Any], place: str) -> None:
 def _kind(value) -> str:
     kinds = {list: 'a list', str: 'a text', dict: 'a mapping', type(None): 'nothing'}
     return kinds.get(type(value), shown(value))
-
-
-def _in_line(what) -> str:
-    """Words of others in one line, not too many."""
-    text = ' '.join(str(what).split())
-    return text if len(text) <= 120 else text[:117] + '...'

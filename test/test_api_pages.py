@@ -46,9 +46,14 @@ def test_a_docstring_that_names_what_is_not_there_fails_the_build(tmp_path):
         if file.is_file():
             (tmp_path / 'doc' / 'api' / file.name).write_bytes(file.read_bytes())
     package.mkdir()
+    (package / '__init__.py').write_text(
+        "import importlib\n__all__ = ['hail']\n\n\ndef __getattr__(name):\n"
+        "    if name != 'hail':\n        raise AttributeError(name)\n"
+        "    return importlib.import_module('marine_tracker.signals').hail\n"
+    )
     built = []
     for annotation in ('int', "'Vessel'"):
-        (package / '__init__.py').write_text(f'def hail(ship: {annotation}) -> None: ...\n')
+        (package / 'signals.py').write_text(f'def hail(ship: {annotation}) -> None: ...\n')
         built.append(
             subprocess.run(
                 [sys.executable, tmp_path / 'doc' / 'api' / BUILD.name, tmp_path / 'pages'],
@@ -59,5 +64,9 @@ def test_a_docstring_that_names_what_is_not_there_fails_the_build(tmp_path):
             )
         )
     good, bad = built
-    assert good.returncode == 0 and (tmp_path / 'pages' / 'index.html').is_file(), good.stderr
+    assert good.returncode == 0, good.stderr
+    pages = tmp_path / 'pages'
+    assert (pages / 'index.html').is_file() and (pages / 'marine_tracker/signals.html').is_file()
+    top = (pages / 'marine_tracker.html').read_text()
+    assert 'marine_tracker/signals.html' in top and 'id="hail"' in top
     assert bad.returncode != 0 and 'Vessel' in bad.stderr

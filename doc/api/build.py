@@ -5,6 +5,7 @@ is shown as it stands, any other one as prose. A warning is an error.
 """
 
 import importlib
+import pkgutil
 import re
 import sys
 import warnings
@@ -33,8 +34,10 @@ def _paragraph(text: str) -> Markup:
 def build(folder: Path) -> None:
     """Write the pages of all modules into the folder."""
     package = importlib.import_module('marine_tracker')
-    for name in getattr(package, '__all__', ()):  # imported when asked for: pdoc does not ask
+    for name in package.__all__:  # imported when asked for: pdoc does not ask
         setattr(package, name, getattr(package, name))
+    rooms = (room.name for room in pkgutil.iter_modules(package.__path__) if room.name[0] != '_')
+    package.__all__ = [*package.__all__, *rooms]  # pdoc leaves out what is not there
     pdoc.render.env.filters['plain_text'] = plain_text
     pdoc.render.configure(template_directory=Path(__file__).parent, search=True)
     pdoc.pdoc('marine_tracker', output_directory=folder)

@@ -13,10 +13,9 @@ way where there are more than may be (capacity.py).
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..tracking.lifecycle import LOST
-from ..types import Array, append, row_of, take
+from ..types import Array, BoolArray, CodeArray, IntArray, append, row_of, take
 from .capacity import make_room
 from .situation import Situation
 from .targets import (
@@ -70,8 +69,8 @@ class Barred(NamedTuple):
     last       [R]  s, when it was last inside that zone; nan: not looked yet, -inf: never
     """
 
-    id: NDArray[np.int64]
-    cancelled: NDArray[np.bool_]
+    id: IntArray
+    cancelled: BoolArray
     last: Array
 
 
@@ -105,7 +104,7 @@ def begin() -> Acquisition:
     )
 
 
-def acquire(state: Acquisition, position, now: float) -> Acquisition:
+def acquire(state: Acquisition, position: Array, now: float) -> Acquisition:
     """The operator's click at position [2] m; the next `step` finds its track.
 
     ValueError where the position is not finite or MAX_CLICKS are pending already.
@@ -135,7 +134,7 @@ def cancel_all(state: Acquisition) -> tuple[Acquisition, Events]:
     return _cancel(nothing, np.arange(len(state.targets.id)))
 
 
-def how_acquired(state: Acquisition, ids) -> NDArray[np.int8]:
+def how_acquired(state: Acquisition, ids: IntArray) -> CodeArray:
     """AUTOMATIC or MANUAL [N] for the tracks that are targets, -1 for the others."""
     row = row_of(state.targets.id, ids)
     return np.where(row >= 0, np.append(state.targets.acquired, 0)[row], -1).astype(np.int8)
@@ -211,8 +210,8 @@ def _bar(
 
 
 def _answer_clicks(
-    clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how, now: float
-):
+    clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how: CodeArray, now: float
+) -> tuple[Clicks, IntArray, Array]:
     """Clicks that wait on, rows of the tracks clicked, and positions of clicks that lapse.
 
     A click takes the nearest track that is no target yet; where there are only targets, the
@@ -237,7 +236,7 @@ def _answer_clicks(
     )
 
 
-def _cancel(state: Acquisition, rows) -> tuple[Acquisition, Events]:
+def _cancel(state: Acquisition, rows: IntArray) -> tuple[Acquisition, Events]:
     chosen = take(state.targets, rows)
     count = len(chosen.id)
     stay = np.ones(len(state.targets.id), bool)

@@ -7,10 +7,9 @@ hold once she makes more than SWINGING, for then the anchor does not hold either
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..gaussian.linear import invert_2x2, squared_distance
-from ..types import OwnShip
+from ..types import BoolArray, OwnShip
 from .cpa import OwnMotion
 from .motion import Motion
 from .yaw import HISTORY
@@ -22,7 +21,7 @@ SURELY = 3.0  # deviations of the speed towards own ship
 DETECTED, ANCHORED, UNDER_WAY = STATUS = 'detected', 'anchored', 'under_way'
 
 
-def makes_way(moving: Motion) -> NDArray[np.bool_]:
+def makes_way(moving: Motion) -> BoolArray:
     """Whether [N] tracks surely move over ground; a new one at anchor shows some speed by noise."""
     inverse, _ = invert_2x2(moving.covariance[:, 2:, 2:])
     return ~moving.stationary & (squared_distance(moving.velocity, inverse) > BY_CHANCE)
@@ -44,7 +43,7 @@ def at_anchor(samples: OwnShip, own: OwnMotion, time: float, status: str = DETEC
     return bool(slow or (held and swings and np.hypot(*lately.mean(0)) < AT_REST))
 
 
-def harmless(moving: Motion, own: OwnMotion) -> NDArray[np.bool_]:
+def harmless(moving: Motion, own: OwnMotion) -> BoolArray:
     """Whether [N] targets are no danger to own ship at anchor: they do not surely come nearer.
 
     moving  over ground
@@ -53,4 +52,5 @@ def harmless(moving: Motion, own: OwnMotion) -> NDArray[np.bool_]:
     towards = -offset / np.maximum(np.hypot(*offset.T), 1e-9)[:, None]
     closing = (moving.velocity * towards).sum(1)
     variance = np.einsum('ni,nij,nj->n', towards, moving.covariance[:, 2:, 2:], towards)
-    return ~(makes_way(moving) & (closing > SURELY * np.sqrt(variance)))
+    surely: BoolArray = closing > SURELY * np.sqrt(variance)
+    return ~(makes_way(moving) & surely)

@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import KNOT, NAUTICAL_MILE, polar_to_position, unit_vector
 from ..parameters import ArpaParameters, TrackerParameters
@@ -12,7 +11,18 @@ from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.noise import noise_of
 from ..tracking.radars import radars_of
 from ..tracking.tracker import Report
-from ..types import Array, OwnShip, Scan, Tracks, append, row_of, take
+from ..types import (
+    Array,
+    BoolArray,
+    CodeArray,
+    IntArray,
+    OwnShip,
+    Scan,
+    Tracks,
+    append,
+    row_of,
+    take,
+)
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
@@ -23,6 +33,8 @@ from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
 from .swap_risk import swap_risk
 from .targets import Events, Targets
+
+Mask = bool | BoolArray  # for all rows, or [N]
 
 
 class ArpaMemory(NamedTuple):
@@ -58,13 +70,13 @@ class Picture(NamedTuple):
 
     time: float
     own: OwnMotion
-    row: NDArray[np.int64]
+    row: IntArray
     targets: Targets
     motion: Motion
     approach: Approach
     past: PastPositions
-    harmless: NDArray[np.bool_]
-    danger: NDArray[np.int8]
+    harmless: BoolArray
+    danger: CodeArray
     overlap: Array
     events: Events
     alerts: Alerts
@@ -115,7 +127,7 @@ class Arpa:
         )
 
     def step(
-        self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen=False
+        self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen: Mask = False
     ) -> tuple[ArpaMemory, Picture]:
         """One antenna revolution; all is reckoned to its end.
 
@@ -147,8 +159,8 @@ class Arpa:
 
         # alarms: those after the scan, and those that changed
         overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        fallen = _fallen(fallen, acquired, tracks)
-        tracking = alarms.Tracking(self.acquisition.capacity, fallen, overlap, other)
+        down = _fallen(fallen, acquired, tracks)
+        tracking = alarms.Tracking(self.acquisition.capacity, down, overlap, other)
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
@@ -163,7 +175,7 @@ class Arpa:
 
     def _anchored(
         self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float
-    ) -> tuple[OwnMotion, NDArray[np.bool_]]:
+    ) -> tuple[OwnMotion, BoolArray]:
         """Own ship, at rest where she lies at anchor; the tracks [N] that are no danger then."""
         if not at_anchor(samples, own, now, self.parameters.own_ship_status):
             return own, np.zeros(len(moving.position), bool)
@@ -181,13 +193,13 @@ class Arpa:
 
     def _swap_risk(
         self,
-        tracks,
+        tracks: Tracks,
         remembered: motion.MotionMemory,
         passing: Approach,
         own: OwnMotion,
         now: float,
         radar: TrackerParameters,
-    ):
+    ) -> tuple[Array, IntArray]:
         """Overlap [N] of the gates of the radar's next scan and the rows [N] of the others."""
         overlap, other = np.full(len(tracks.id), np.inf), np.full(len(tracks.id), -1)
         rows = ((tracks.number > 0) & (tracks.status != LOST)).nonzero()[0]
@@ -212,7 +224,7 @@ def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Target
     return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
 
 
-def _fallen(fallen, acquired: Acquisition, tracks: Tracks) -> int:
+def _fallen(fallen: Mask, acquired: Acquisition, tracks: Tracks) -> int:
     """How many confirmed targets have fallen back, of the tracks `fallen` [N], or all or none."""
     target = acquisition.how_acquired(acquired, tracks.id) >= 0
     return int(np.sum(fallen & target & (tracks.status == CONFIRMED)))

@@ -9,13 +9,16 @@ again and again. The rest waits.
 
 import numpy as np
 
+from ..types import BoolArray, CodeArray, IntArray
 from .situation import SAFE, Situation
 from .targets import AUTOMATIC
 
 CLOSER = 0.8
 
 
-def make_room(capacity: int, situation: Situation, how, candidate, clicked):
+def make_room(
+    capacity: int, situation: Situation, how: CodeArray, candidate: BoolArray, clicked: IntArray
+) -> tuple[IntArray, IntArray, IntArray]:
     """Who becomes a target and who gives way, by the rule that stands above: rows of tracks.
 
     how        [N]  AUTOMATIC or MANUAL, -1 where the track is no target; the clicked ones are in

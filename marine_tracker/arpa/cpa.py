@@ -1,11 +1,12 @@
 """What the navigator reads of each target: where, which way, how near, when, and how surely."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector
-from ..types import Array
+from ..types import Array, BoolArray
 from .directions import polar_sigma
 from .miss_distance import cpa_sigma, danger_probability
 from .motion import Motion
@@ -68,7 +69,7 @@ class Approach(NamedTuple):
     danger_probability: Array
 
 
-def cpa_of(position, velocity):
+def cpa_of(position: Array, velocity: Array) -> tuple[Array, Array]:
     """CPA [...] m and TCPA [...] s of relative positions [..., 2] m and velocities [..., 2] m/s.
 
     Without relative motion the CPA is the range and the TCPA nan.
@@ -83,7 +84,7 @@ def cpa_of(position, velocity):
     return cpa, tcpa
 
 
-def bow_crossing(position, velocity, heading):
+def bow_crossing(position: Array, velocity: Array, heading: float) -> tuple[Array, Array]:
     """Range [...] m at which the line of own ship's keel is crossed and time [...] s of it.
 
     Relative positions and velocities as in `cpa_of`. A range below 0 is astern, a time below 0
@@ -128,16 +129,25 @@ def approach(motion: Motion, own: OwnMotion, cpa_limit: float, tcpa_limit: float
 
 
 def _values(
-    position, velocity, covariance, true_velocity, true_covariance, heading, cpa_limit, tcpa_limit
-):
+    position: Array,
+    velocity: Array,
+    covariance: Array,
+    true_velocity: Array,
+    true_covariance: Array,
+    heading: float,
+    cpa_limit: float,
+    tcpa_limit: float,
+) -> Array:
     """The fields of Approach, in their order, of targets relative to own ship."""
 
-    def polar(vector, covariance):
+    def polar(vector: Array, covariance: Array) -> tuple[Array, Array, Array, Array]:
         length, angle = to_range_bearing(vector)
         length_sigma, angle_sigma = polar_sigma(vector, covariance)
         return length, length_sigma, angle, angle_sigma
 
-    def swapped(length, length_sigma, angle, angle_sigma):
+    def swapped(
+        length: Array, length_sigma: Array, angle: Array, angle_sigma: Array
+    ) -> tuple[Array, Array, Array, Array]:
         return angle, angle_sigma, length, length_sigma
 
     moving = np.hypot(*velocity.T) >= LEAST_SPEED
@@ -145,14 +155,14 @@ def _values(
     bow_range, bow_time = bow_crossing(position, velocity, heading)
     crosses = moving & (bow_range > 0) & (bow_time >= 0) & np.isfinite(bow_range)
 
-    def timed(position, velocity):
+    def timed(position: Array, velocity: Array) -> Array:
         return np.stack([cpa_of(position, velocity)[1], *bow_crossing(position, velocity, heading)])
 
     tcpa_sigma, bow_range_sigma, bow_time_sigma = spread(
         timed, position, velocity, covariance, np.stack([tcpa, bow_range, bow_time])
     )
 
-    def where(mask, value):
+    def where(mask: BoolArray, value: Array) -> Array:
         return np.where(mask, value, np.nan)
 
     return np.stack(
@@ -177,7 +187,7 @@ def _values(
     )
 
 
-def _points():
+def _points() -> Array:
     """Points [24, 4] of the degree-5 rule for a standard normal law of four dimensions.
 
     McNamee and Stenger, Numerische Mathematik 10, 1967: at sqrt(3) along every pair of axes, of
@@ -195,7 +205,13 @@ def _points():
 POINTS = _points()
 
 
-def spread(function, position, velocity, covariance, shown):
+def spread(
+    function: Callable[[Array, Array], Array],
+    position: Array,
+    velocity: Array,
+    covariance: Array,
+    shown: Array,
+) -> Array:
     """RMS deviations [K, N] of function(position, velocity) [K, ...] from what is shown [K, N].
 
     Not finite where what is shown is not.
@@ -204,4 +220,5 @@ def spread(function, position, velocity, covariance, shown):
     off = POINTS @ factor.swapaxes(1, 2)  # [N, 24, 4]
     found = function(position[:, None] + off[..., :2], velocity[:, None] + off[..., 2:])
     with np.errstate(invalid='ignore', over='ignore'):
-        return np.sqrt(np.square(found - shown[..., None]).sum(-1) / 36)
+        value: Array = np.sqrt(np.square(found - shown[..., None]).sum(-1) / 36)
+        return value

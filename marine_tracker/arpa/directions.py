@@ -80,7 +80,7 @@ class Places(NamedTuple):
     with_rho: Array
 
 
-def rounded(vector, covariance) -> Round:
+def rounded(vector: Array, covariance: Array) -> Round:
     """Vectors [N, 2] of regular covariance [N, 2, 2]."""
     ee = np.sqrt(covariance[:, 0, 0])
     ne = covariance[:, 0, 1] / ee
@@ -99,7 +99,7 @@ def rounded(vector, covariance) -> Round:
     )
 
 
-def directions(of: Round, low, high, rule) -> Directions:
+def directions(of: Round, low: Array, high: Array, rule: tuple[Array, Array]) -> Directions:
     """Those from low [N] to high [N] rad off the mean's, for z; rule: nodes and weights [Q]."""
     nodes, weights = rule
     half = 0.5 * (high - low)[:, None]
@@ -113,7 +113,7 @@ def directions(of: Round, low, high, rule) -> Directions:
     return Directions(cos, sin, off, rho, density, gain, east / gain, north / gain)
 
 
-def places(position, covariance, of: Round, at: Directions) -> Places:
+def places(position: Array, covariance: Array, of: Round, at: Directions) -> Places:
     """Positions [N, 2] of joint covariance [N, 4, 4] with the vectors `of`."""
     (ee, en, ce, cf), (_, nn, de, df) = covariance.transpose(1, 2, 0)[:2, :, :, None]
     # Regression on z: p = mean + G (z - mean of z) + rest; G = (covariance of p and v) A'^-1.
@@ -139,13 +139,13 @@ def places(position, covariance, of: Round, at: Directions) -> Places:
     )
 
 
-def moments(mean):
+def moments(mean: Array) -> tuple[Array, Array, Array, Array]:
     """E[x^k; mean + x > 0], k = 0..3, of a standard normal x."""
     over, bell = ndtr(mean), np.exp(-0.5 * mean * mean) / np.sqrt(2 * np.pi)
     return over, bell, over - mean * bell, (mean * mean + 2) * bell
 
 
-def polar_sigma(vector, covariance):
+def polar_sigma(vector: Array, covariance: Array) -> tuple[Array, Array]:
     """RMS deviations [N] of the length and [N] rad of the direction of Gaussian vectors.
 
     vector [N, 2]; covariance [N, 2, 2]. Both are counted from the length and direction of
@@ -167,7 +167,7 @@ def polar_sigma(vector, covariance):
     return sigmas[0], sigmas[1]
 
 
-def _integrated(length, unit, of: Round):
+def _integrated(length: Array, unit: Array, of: Round) -> Array:
     """What `polar_sigma` gives, [2, N], by quadrature over the direction."""
     at = directions(of, -of.arc, of.arc, EVEN)
     zeroth, first, second, third = moments(at.rho)

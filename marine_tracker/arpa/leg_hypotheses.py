@@ -59,7 +59,7 @@ class Legs(NamedTuple):
     begun: Array
 
 
-def begin(position, covariance, time, speed_sigma: float) -> Legs:
+def begin(position: Array, covariance: Array, time: Array, speed_sigma: float) -> Legs:
     """Hypotheses from one plot each: position [N, 2] m, covariance [N, 2, 2] m^2, time [N] s.
 
     speed_sigma  m/s, deviation of each component of the velocity before anything is known
@@ -75,7 +75,14 @@ def begin(position, covariance, time, speed_sigma: float) -> Legs:
 
 
 def update(
-    legs: Legs, time, step, position, covariance, stretch, certainty, habits: Habits
+    legs: Legs,
+    time: Array,
+    step: Array,
+    position: Array,
+    covariance: Array,
+    stretch: Array,
+    certainty: Array,
+    habits: Habits,
 ) -> tuple[Legs, Array]:
     """One plot for each of N tracks at `time` [N] s, `step` [N] s after the last.
 
@@ -112,7 +119,9 @@ def update(
     )
 
 
-def _change(columns, weight, begun, now, step, habits: Habits):
+def _change(
+    columns: Array, weight: Array, begun: Array, now: Array, step: Array, habits: Habits
+) -> tuple[Array, Array, Array]:
     """What may have changed during the steps [N] s from the times `now` [N] s on.
 
     Every leg may have turned into a manoeuvre, and the manoeuvre into a new leg.
@@ -131,7 +140,7 @@ def _change(columns, weight, begun, now, step, habits: Habits):
     )
 
 
-def _merge(legs, weight, begun):
+def _merge(legs: Array, weight: Array, begun: Array) -> tuple[Array, Array, Array]:
     """LEGS legs of LEGS + 1, the last one new: the two are merged whose merger costs least.
 
     Only velocities count: where the target is all legs agree.
@@ -161,7 +170,7 @@ def _merge(legs, weight, begun):
     return legs[:, :LEGS], weight[:LEGS], begun[:LEGS]
 
 
-def _stretch(columns, stretch):
+def _stretch(columns: Array, stretch: Array) -> None:
     """Covariances of columns [14, J, N] as they are for positions misjudged by [N, 2, 2], in place.
 
     Straight-line fits scale with the errors of their plots, position and velocity alike.

@@ -9,11 +9,11 @@ import numpy as np
 from scipy.special import ndtr
 
 from ..geometry import wrap_angle
-from ..types import take
-from .directions import EVEN, GAUSS, WIDE, directions, moments, places, rounded
+from ..types import Array, take
+from .directions import EVEN, GAUSS, WIDE, Round, directions, moments, places, rounded
 
 
-def cpa_sigma(position, velocity, covariance, cpa):
+def cpa_sigma(position: Array, velocity: Array, covariance: Array, cpa: Array) -> Array:
     """RMS deviation [N] m of the CPA from the value `cpa` [N] m shown.
 
     position [N, 2] m, velocity [N, 2] m/s of the targets relative to own ship and their
@@ -31,10 +31,13 @@ def cpa_sigma(position, velocity, covariance, cpa):
     square = (miss - cpa[:, None]) ** 2 + sigma**2 - 2 * cpa[:, None] * (folded - miss)
     over, bell, _, _ = moments(at.rho)
     weight = at.density * (at.rho * over + bell)
-    return np.sqrt(np.maximum((weight * square).sum(1) / weight.sum(1), 0.0))
+    found: Array = np.sqrt(np.maximum((weight * square).sum(1) / weight.sum(1), 0.0))
+    return found
 
 
-def danger_probability(position, velocity, covariance, cpa_limit: float, tcpa_limit: float):
+def danger_probability(
+    position: Array, velocity: Array, covariance: Array, cpa_limit: float, tcpa_limit: float
+) -> Array:
     """[N] P(CPA < cpa_limit m and 0 <= TCPA < tcpa_limit s), of the same arguments.
 
     Given the direction, that a target has not passed and is there in time is taken as independent
@@ -70,7 +73,9 @@ def danger_probability(position, velocity, covariance, cpa_limit: float, tcpa_li
     return out
 
 
-def _dangerous(of, position, covariance, cpa_limit):
+def _dangerous(
+    of: Round, position: Array, covariance: Array, cpa_limit: float
+) -> tuple[Array, Array]:
     """From where [N] to where [N], rad off the mean of z, velocities may lead to danger."""
     # The directions that pass own ship within the limit and are not away from it, position errors
     # allowed for.

@@ -7,13 +7,12 @@ through `plot_noise` and `legs`, whatever the estimator is.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..gaussian import linear_modes
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..parameters import GLINT_SIGMA
 from ..tracking.tracker import Report
-from ..types import Array, Plots, put, take
+from ..types import Array, BoolArray, IntArray, Plots, put, take
 from . import leg_hypotheses, plot_noise
 
 STEADY, MANOEUVRING = 0, 1
@@ -62,17 +61,17 @@ class MotionMemory(NamedTuple):
     stationary  [N]      whether the target counts as at rest
     """
 
-    id: NDArray[np.int64]
+    id: IntArray
     first: Array
     time: Array
     scatter: tuple[plot_noise.Scatter, ...]
     legs: leg_hypotheses.Legs
     shown: Array
     noise: Array
-    memory: NDArray[np.int64]
+    memory: IntArray
     since: Array
     still: Array
-    stationary: NDArray[np.bool_]
+    stationary: BoolArray
 
 
 class Motion(NamedTuple):
@@ -90,10 +89,10 @@ class Motion(NamedTuple):
     position: Array
     velocity: Array
     covariance: Array
-    memory: NDArray[np.int64]
+    memory: IntArray
     since: Array
-    steady: NDArray[np.bool_]
-    stationary: NDArray[np.bool_]
+    steady: BoolArray
+    stationary: BoolArray
 
 
 def begin(radars: int = 1) -> MotionMemory:
@@ -121,7 +120,7 @@ def step(
     return _next_plots(memory, rows[~blank], take(plots, ~blank), settings, radar)
 
 
-def at(memory: MotionMemory, time) -> Motion:
+def at(memory: MotionMemory, time: float) -> Motion:
     """The motion of every row at `time`, s: [N] or one for all. `types.take` chooses rows first."""
     bank = linear_modes.straight(memory.noise[None])
     mean, covariance = linear_modes.unpack(
@@ -142,7 +141,7 @@ def at(memory: MotionMemory, time) -> Motion:
     )
 
 
-def _blank(id_, radars: int) -> MotionMemory:
+def _blank(id_: IntArray, radars: int) -> MotionMemory:
     """Rows of tracks that had no plot yet."""
     count = len(id_)
     nothing = np.full(count, np.nan)
@@ -163,7 +162,7 @@ def _blank(id_, radars: int) -> MotionMemory:
     )
 
 
-def _follow(memory: MotionMemory, id_) -> MotionMemory:
+def _follow(memory: MotionMemory, id_: IntArray) -> MotionMemory:
     """The rows of the tracks `id_` [N], ascending; those not known yet are blank."""
     if np.array_equal(memory.id, id_):
         return memory
@@ -173,7 +172,7 @@ def _follow(memory: MotionMemory, id_) -> MotionMemory:
 
 
 def _first_plots(
-    memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int
+    memory: MotionMemory, rows: IntArray, plots: Plots, settings: MotionSettings, radar: int
 ) -> MotionMemory:
     """The rows [K] begin with one plot each."""
     count = len(rows)
@@ -204,7 +203,7 @@ def _first_plots(
 
 
 def _next_plots(
-    memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int
+    memory: MotionMemory, rows: IntArray, plots: Plots, settings: MotionSettings, radar: int
 ) -> MotionMemory:
     """The rows [K] take one more plot each."""
     if not len(rows):
@@ -243,7 +242,9 @@ def _next_plots(
     )
 
 
-def _manoeuvre(before: MotionMemory, hypotheses: leg_hypotheses.Legs, time, lasting: float):
+def _manoeuvre(
+    before: MotionMemory, hypotheses: leg_hypotheses.Legs, time: Array, lasting: float
+) -> tuple[IntArray, Array]:
     """STEADY or MANOEUVRING [N], and since when [N] s, after the times [N] s.
 
     In a turn every moment may be the beginning of a new leg, so one that is younger than `lasting`
@@ -258,7 +259,9 @@ def _manoeuvre(before: MotionMemory, hypotheses: leg_hypotheses.Legs, time, last
     return np.where(turns, MANOEUVRING, STEADY), np.where(turns, since, begun)
 
 
-def _rest(before: MotionMemory, shown, time, settings: MotionSettings):
+def _rest(
+    before: MotionMemory, shown: Array, time: Array, settings: MotionSettings
+) -> tuple[Array, BoolArray]:
     """Since when [N] tracks are still, and whether they count as stationary, after the times [N].
 
     A target comes to rest when its velocity is within 2.4 deviations of 0, and surely slow, for a

@@ -1,13 +1,13 @@
 """NMEA 0183 sentences of targets and own ship, from arrays (IEC 61162-1)."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import KNOT, NAUTICAL_MILE
-from ..types import Array
+from ..types import Array, IntArray
 from .nmea_fields import (
     ANGLE,
     KNOTS,
@@ -44,7 +44,7 @@ class Targets(NamedTuple):
     cpa       [N]  m                     tcpa     [N]  s, negative when past
     """
 
-    number: NDArray[np.int64]
+    number: IntArray
     status: NDArray[np.str_]
     acquired: NDArray[np.str_]
     name: NDArray[np.str_]
@@ -195,7 +195,7 @@ def rsd(
     markers      up to two, each the range m of a VRM and the bearing rad of an EBL
     """
 
-    def pair(range_, bearing):
+    def pair(range_: float, bearing: float) -> tuple[str, str]:
         return figure(range_ / NAUTICAL_MILE, MILES, 3), degrees(bearing)
 
     if len(markers) > 2:
@@ -246,7 +246,7 @@ def hdt(own: OwnShipData, talker: str = 'II') -> str:
     return sentence(talker, 'HDT', (degrees(own.heading), 'T'))
 
 
-def _units(targets: Targets):
+def _units(targets: Targets) -> list[NDArray[Any]]:
     """The columns of the targets that can be told, in NM, rad, knots and minutes."""
     miles, bearing = targets.range / NAUTICAL_MILE, targets.bearing
     told = (miles >= 0) & (miles < MILES) & (np.abs(bearing) <= ANGLE)

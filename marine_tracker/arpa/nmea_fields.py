@@ -10,6 +10,7 @@ from datetime import UTC, datetime, timedelta
 
 import pynmea2
 
+from ..files import shown
 from ..geodesy import wrap_longitude
 
 MILES, KNOTS, MINUTES = 999.999, 999.99, 999.9  # greatest figures that a field takes
@@ -18,7 +19,7 @@ EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 END_OF_TIME = 253_402_300_799.0  # s: the year 9999 ends
 
 
-class RSD(pynmea2.TalkerSentence):
+class RSD(pynmea2.TalkerSentence):  # type: ignore[misc]
     """Radar system data, which pynmea2 lacks; it knows it once this module is imported."""
 
     fields = tuple(
@@ -47,11 +48,14 @@ def sentence(talker: str, kind: str, fields: Iterable[str]) -> str:
     talker and kind as in RA, TTM. ValueError where a name is no such code.
     """
     if not (len(talker) == 2 and talker.isascii() and talker.isalnum() and talker.isupper()):
-        raise ValueError(f'talker is {talker!r}; it must be two capital letters or digits, as RA')
+        raise ValueError(
+            f'talker is {shown(talker)}; it must be two capital letters or digits, as RA'
+        )
     known = pynmea2.TalkerSentence.sentence_types
     if kind not in known:
-        raise ValueError(f'sentence {kind!r} is not known')
-    return known[kind](talker, kind, list(fields)).render()
+        raise ValueError(f'sentence {shown(kind)} is not known')
+    found: str = known[kind](talker, kind, list(fields)).render()
+    return found
 
 
 def figure(value: float, high: float, decimals: int, low: float = 0.0) -> str:

@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import append, take
+from ..types import IntArray, append, take
 from .nmea import LOST, TWO_DIGITS, Targets
 
 
@@ -19,7 +18,7 @@ class Told(NamedTuple):
     """
 
     slots: dict[int, int]
-    numbers: NDArray[np.int64]
+    numbers: IntArray
     targets: Targets
 
 
@@ -31,7 +30,7 @@ class Word(NamedTuple):
     waiting  targets that get no word, as all short numbers are taken
     """
 
-    numbers: NDArray[np.int64]
+    numbers: IntArray
     targets: Targets
     waiting: int
 

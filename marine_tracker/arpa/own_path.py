@@ -80,8 +80,8 @@ def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
         raise ValueError(
             f'own ship is at {own.position} m with {own.velocity} m/s; a trial needs both'
         )
-    speed, course = to_range_bearing(own.velocity)
-    course = course if speed > 0 else own.heading
+    speed, made_good = to_range_bearing(own.velocity)
+    course: float | Array = made_good if speed > 0 else own.heading
     turn, gain = wrap_angle(courses - course), np.broadcast_to(trial.speed - speed, courses.shape)
     turning, gaining = np.abs(turn) / trial.turn_rate, np.abs(gain) / trial.acceleration
     first, last = np.minimum(turning, gaining), np.maximum(turning, gaining)
@@ -96,7 +96,7 @@ def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
     )
     step = np.diff(after)
 
-    def velocity_at(after_delay):
+    def velocity_at(after_delay: Array) -> Array:
         now = course + turn[:, None] * _share(after_delay, turning)
         return (speed + gain[:, None] * _share(after_delay, gaining))[..., None] * unit_vector(now)
 
@@ -113,7 +113,7 @@ def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
     )
 
 
-def _share(time, duration):
+def _share(time: Array, duration: Array) -> Array:
     """The share [C, K] of a change that takes `duration` [C] which is done by the time [C, K]."""
     duration = np.broadcast_to(duration[:, None], time.shape)
     return np.divide(time, duration, out=np.ones_like(time), where=duration > 0).clip(0, 1)

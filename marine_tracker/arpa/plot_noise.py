@@ -90,7 +90,7 @@ def observe(scatter: Scatter, plots: Plots, glint_sigma: float) -> tuple[Scatter
     )
 
 
-def _root(matrix):
+def _root(matrix: Array) -> Array:
     """Lower triangular root [N, 2, 2] of positive definite matrices [N, 2, 2]."""
     root = np.zeros_like(matrix)
     root[:, 0, 0] = np.sqrt(matrix[:, 0, 0])

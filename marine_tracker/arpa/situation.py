@@ -3,10 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import NAUTICAL_MILE
-from ..types import Array, Tracks
+from ..types import Array, BoolArray, CodeArray, IntArray, Tracks
 from .cpa import Approach, OwnMotion
 from .zones import Zones, inside
 
@@ -40,10 +39,10 @@ class Situation(NamedTuple):
     cpa_sigma, tcpa_sigma  [N]  m, s, deviations of CPA and TCPA
     """
 
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    status: NDArray[np.int8]
-    reason: NDArray[np.int8]
+    id: IntArray
+    number: IntArray
+    status: CodeArray
+    reason: CodeArray
     position: Array
     range: Array
     bearing: Array
@@ -51,21 +50,21 @@ class Situation(NamedTuple):
     tcpa: Array
     probability: Array
     nearest: Array
-    danger: NDArray[np.int8]
-    inside: NDArray[np.bool_]
-    guarded: NDArray[np.bool_]
-    excluded: NDArray[np.bool_]
-    harmless: NDArray[np.bool_]
+    danger: CodeArray
+    inside: BoolArray
+    guarded: BoolArray
+    excluded: BoolArray
+    harmless: BoolArray
     cpa_sigma: Array
     tcpa_sigma: Array
 
 
 def look(
     tracks: Tracks,
-    reason,
-    position,
+    reason: CodeArray,
+    position: Array,
     approach: Approach,
-    harmless,
+    harmless: BoolArray,
     zones: Zones,
     own: OwnMotion,
     limits: Limits,
@@ -110,7 +109,7 @@ def nearest(approach: Approach, within: float) -> Array:
     return np.where(np.isfinite(distance), distance, approach.range)
 
 
-def danger(approach: Approach, harmless, limits: Limits) -> NDArray[np.int8]:
+def danger(approach: Approach, harmless: BoolArray, limits: Limits) -> CodeArray:
     """How dangerous [N] each target is; harmless [N] bool.
 
     DANGEROUS: CPA < limit and 0 <= TCPA < limit, as the standards have it, or the probability of
@@ -120,7 +119,7 @@ def danger(approach: Approach, harmless, limits: Limits) -> NDArray[np.int8]:
     whose TCPA is unknown (nan) is judged by the probability.
     """
 
-    def within(share):
+    def within(share: float) -> BoolArray:
         return (
             (approach.cpa < share * limits.cpa)
             & (approach.tcpa >= 0)

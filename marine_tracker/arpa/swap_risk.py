@@ -4,12 +4,15 @@ import numpy as np
 
 from ..geometry import to_range_bearing
 from ..tracking.gate import window_pairs
+from ..types import Array, IntArray
 
 MIXTURES = 0.5 - 0.49 * np.cos(np.linspace(0, np.pi, 15))[:, None]  # denser at the ends
 EASE = 1.25  # gates so many times larger are looked at too
 
 
-def swap_risk(position, covariance, origin, size: float):
+def swap_risk(
+    position: Array, covariance: Array, origin: Array, size: float
+) -> tuple[Array, IntArray]:
     """Overlap [N] of each track's gate with that of another, and the row [N] of that one.
 
     position    [N, 2]     m, where the tracks are expected next
@@ -41,7 +44,7 @@ def swap_risk(position, covariance, origin, size: float):
     if not len(one):
         return overlap, other
 
-    def mixed(part):
+    def mixed(part: Array) -> Array:
         return (1 - MIXTURES) * part[one] + MIXTURES * part[two]
 
     a, b, d = mixed(a), mixed(b), mixed(d)

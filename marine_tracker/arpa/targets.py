@@ -3,10 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..tracking.lifecycle import LOST, MERGED, OUT_OF_RANGE
-from ..types import Array, row_of, take
+from ..types import Array, BoolArray, CodeArray, IntArray, row_of, take
 from .situation import Situation
 
 AUTOMATIC, MANUAL = range(2)
@@ -44,9 +43,9 @@ EVENTS = (
 class Targets(NamedTuple):
     """The targets, one row each: track id, number (0 while acquiring), AUTOMATIC or MANUAL, s."""
 
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    acquired: NDArray[np.int8]
+    id: IntArray
+    number: IntArray
+    acquired: CodeArray
     since: Array
 
 
@@ -59,18 +58,20 @@ class Events(NamedTuple):
     position  [E, 2]  m: of the track, of the click; nan where it is not known
     """
 
-    kind: NDArray[np.int8]
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
+    kind: CodeArray
+    id: IntArray
+    number: IntArray
     position: Array
 
 
-def label(ids, number) -> list[str]:
+def label(ids: IntArray, number: IntArray) -> list[str]:
     """TT07 by its number; Q and the track's id, as Q123, for a target without one."""
     return [f'TT{n:02d}' if n else f'Q{i}' for i, n in zip(ids.tolist(), number.tolist())]
 
 
-def carry_over(targets: Targets, situation: Situation, radius: float, brief: float, now: float):
+def carry_over(
+    targets: Targets, situation: Situation, radius: float, brief: float, now: float
+) -> tuple[CodeArray, Array, Events]:
     """The targets that go on: how [N] acquired (-1: no target), since [N] s; and the events.
 
     radius, brief  acquisition.Settings.click_radius and .brief
@@ -111,7 +112,7 @@ def carry_over(targets: Targets, situation: Situation, radius: float, brief: flo
     )
 
 
-def _heirs(situation: Situation, merged, radius: float) -> list[tuple[int, int]]:
+def _heirs(situation: Situation, merged: BoolArray, radius: float) -> list[tuple[int, int]]:
     """Rows (merged, heir): the track that a merged target [N] lives on in is the nearest one.
 
     A confirmed track is merged into confirmed ones only.
@@ -127,7 +128,7 @@ def _heirs(situation: Situation, merged, radius: float) -> list[tuple[int, int]]
     return heirs
 
 
-def nearest_track(situation: Situation, position, fit, radius: float) -> int:
+def nearest_track(situation: Situation, position: Array, fit: BoolArray, radius: float) -> int:
     """Row of the nearest fit track within the radius of a position, -1 where there is none."""
     rows = fit.nonzero()[0]
     away = np.hypot(*(situation.position[rows] - position).T)
@@ -135,7 +136,7 @@ def nearest_track(situation: Situation, position, fit, radius: float) -> int:
     return int(rows[near[away[near].argmin()]]) if len(near) else -1
 
 
-def at_tracks(kind: int, situation: Situation, rows) -> Events:
+def at_tracks(kind: int, situation: Situation, rows: IntArray) -> Events:
     """The same event of some tracks."""
     return Events(
         np.full(len(rows), kind, np.int8),

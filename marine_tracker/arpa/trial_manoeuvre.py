@@ -7,10 +7,9 @@ tracking, which goes on with the real motion.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import to_range_bearing, wrap_angle
-from ..types import Array, take
+from ..types import Array, BoolArray, IntArray, take
 from .cpa import HAIR, LEAST_SPEED, OwnMotion, cpa_of
 from .miss_distance import danger_probability
 from .motion import Motion
@@ -51,8 +50,8 @@ class SafeCourses(NamedTuple):
     course: Array
     probability: Array
     cpa: Array
-    nearest: NDArray[np.int64]
-    safe: NDArray[np.bool_]
+    nearest: IntArray
+    safe: BoolArray
     sectors: Array
 
 
@@ -149,14 +148,15 @@ def _nearest(
     into = np.minimum(np.maximum(into, 0), length)
     reached = offset + into * relative
     best = np.where(length > 0, _dot(reached, reached), np.inf).argmin(-1)  # [C, N]
-    c, n = np.ogrid[: shape[0], : shape[1]]
+    course, target = np.ogrid[: shape[0], : shape[1]]
 
-    def at(moment, values):
+    def at(moment: int | IntArray, values: Array) -> Array:
         """[C, N, 2] of values [2, C, N, K] at the moments [C, N]."""
-        return values[:, c, n, moment].transpose(1, 2, 0)
+        moved: Array = values[:, course, target, moment]
+        return moved.transpose(1, 2, 0)
 
     there, moving = at(best, reached), at(best, relative)
-    tcpa = path.time[c, best] + into[c, n, best]
+    tcpa = path.time[course, best] + into[course, target, best]
     # Nearest now: the target only goes away, and the past tells when it was nearer.
     gone = tcpa == 0
     moving = np.where(gone[..., None], at((length > 0).argmax(-1), relative), _abeam(moving, there))
@@ -174,12 +174,13 @@ def _nearest(
     return TrialApproach(cpa, np.where(moves, tcpa, np.nan), danger)
 
 
-def _dot(first, second):
+def _dot(first: Array, second: Array) -> Array:
     """Products [...] of vectors [2, ...]."""
-    return first[0] * second[0] + first[1] * second[1]
+    found: Array = first[0] * second[0] + first[1] * second[1]
+    return found
 
 
-def _may_meet(position, velocity, covariance, cpa_limit):
+def _may_meet(position: Array, velocity: Array, covariance: Array, cpa_limit: float) -> BoolArray:
     """Whether [C, N] a target may pass within the limit, by 6 deviations of all that may err.
 
     position, velocity [C, N, 2] relative to own ship, covariance [N, 4, 4]. Few courses meet few
@@ -189,14 +190,15 @@ def _may_meet(position, velocity, covariance, cpa_limit):
     distance, from_own = to_range_bearing(position)
     length, course = to_range_bearing(velocity)
     off = np.abs(wrap_angle(from_own + np.pi - course))
-    return off <= (
+    found: BoolArray = off <= (
         np.arcsin(np.minimum((cpa_limit + place) / np.maximum(distance, 1e-9), 1))
         + np.arcsin(np.minimum(speed / np.maximum(length, 1e-9), 1))
         + np.where((cpa_limit + place >= distance) | (speed >= length), np.pi, 0)
     )
+    return found
 
 
-def _abeam(moving, there):
+def _abeam(moving: Array, there: Array) -> Array:
     """Relative motion [..., 2] m/s at the nearest point [..., 2] m, turned abeam of it.
 
     On a straight stretch it is so. Where the nearest point is a corner of the path, the straight
@@ -209,7 +211,7 @@ def _abeam(moving, there):
     return np.where(distance > 1.0, side * speed * across, moving)
 
 
-def _sectors(safe) -> Array:
+def _sectors(safe: BoolArray) -> Array:
     """[S, 2] rad: first and last course of each run of safe ones around the circle."""
     if safe.all():
         return np.array([[COURSES[0], COURSES[-1]]])

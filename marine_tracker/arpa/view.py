@@ -3,15 +3,14 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..estimators import ACCOUNTS, Account
+from ..estimators import Account, Estimator
 from ..extent.hull_clearance import hull_clearance
 from ..extent.hulls import Shapes
 from ..tracking import lifecycle
 from ..tracking.lifecycle import CONFIRMED
 from ..tracking.tracker import Report
-from ..types import Array, take
+from ..types import Array, BoolArray, CodeArray, IntArray, take
 from . import alarms
 from .alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
 from .arpa import Picture
@@ -49,27 +48,29 @@ class View(NamedTuple):
     """
 
     name: list[str]
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    status: NDArray[np.int8]
-    reason: NDArray[np.int8]
-    acquired: NDArray[np.int8]
+    id: IntArray
+    number: IntArray
+    status: CodeArray
+    reason: CodeArray
+    acquired: CodeArray
     motion: Motion
     approach: Approach
-    harmless: NDArray[np.bool_]
-    dangerous: NDArray[np.bool_]
-    swap_risk: NDArray[np.bool_]
-    hits: NDArray[np.int64]
-    misses: NDArray[np.int64]
+    harmless: BoolArray
+    dangerous: BoolArray
+    swap_risk: BoolArray
+    hits: IntArray
+    misses: IntArray
     age: Array
     account: Account
     hulls: HullView | None = None
 
 
-def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None = None) -> View:
+def view(
+    picture: Picture, report: Report, estimator: Estimator, shapes: Shapes | None = None
+) -> View:
     """The picture's targets with what the tracker's report tells of them.
 
-    estimator: the name of the one that the tracks' state belongs to; shapes: of all the tracks.
+    estimator: the one that the tracks' state belongs to; shapes: of all the tracks.
     """
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
@@ -91,7 +92,7 @@ def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None
         lifecycle.hits(tracks.history, lifecycle.TEN),
         lifecycle.misses_in_a_row(tracks.history),
         picture.time - tracks.first_time,
-        ACCOUNTS[estimator](tracks.state) if estimator in ACCOUNTS else no_account(len(tracks.id)),
+        estimator.account(tracks.state) if estimator.account else no_account(len(tracks.id)),
         None if shapes is None else _hulls(picture, take(shapes, picture.row)),
     )
 
@@ -118,14 +119,14 @@ class Standing(NamedTuple):
     states: dict[str, int]
     fallen: int
     reason: str
-    fallen_at: NDArray[np.bool_]
+    fallen_at: BoolArray
 
 
-def standing(report: Report, estimator: str) -> Standing:
+def standing(report: Report, estimator: Estimator) -> Standing:
     """How the estimator fares with the confirmed tracks of a report."""
-    if estimator not in ACCOUNTS:
+    if estimator.account is None:
         return Standing({}, 0, '', np.zeros(len(report.tracks.id), bool))
-    account = ACCOUNTS[estimator](report.tracks.state)
+    account = estimator.account(report.tracks.state)
     confirmed = report.tracks.status == CONFIRMED
     states = np.bincount(account.state[confirmed], minlength=len(account.states))
     fallen = np.bincount(account.reason[confirmed], minlength=len(account.reasons))[1:]

@@ -16,6 +16,7 @@ from importlib.util import find_spec
 from typing import NamedTuple
 
 from .. import config
+from ..files import write_text
 
 HELP = 'say what is installed, what is missing and what to do'
 
@@ -109,8 +110,7 @@ def run(args) -> int:
         if args.json == '-':
             print(text, end='')
         else:
-            with open(args.json, 'w') as file:
-                file.write(text)
+            write_text(args.json, text)
     return 1 if any(check.required and not check.ok for check in checks) else 0
 
 
@@ -240,7 +240,9 @@ def _graph(listen: float, namespace: str) -> Iterator[Check]:
             'ROS middleware',
             False,
             f'does not start: {why}',
-            f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
+            'set ROS_LOG_DIR to a folder that can be written'
+            if 'logging' in why
+            else f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
             f'({os.environ.get("RMW_IMPLEMENTATION") or "not set"}) and ROS_DOMAIN_ID',
         )
         return

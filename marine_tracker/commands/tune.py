@@ -9,7 +9,7 @@ from ..estimators.gwnn import bank
 from ..evaluation import report
 from ..parameters import VESSEL_CLASSES
 from ..processes import keep_freed_memory
-from ..training import filter_tuning
+from ..training import filter_families, filter_tuning
 from ..training.tuned import TUNED
 from .progress_bar import progress_bar
 
@@ -69,7 +69,7 @@ def _add_arguments(sub, targets, evaluations):
     report.add_arguments(sub)
 
 
-def _shipped(name: str, vessel_class: str) -> dict[str, filter_tuning.Settings]:
+def _shipped(name: str, vessel_class: str) -> dict[str, filter_families.Settings]:
     """The settings that the comparison uses, by what they are tuned for."""
     if name == 'imm':
         return dict(bank.STRONGEST[vessel_class])
@@ -95,13 +95,13 @@ def run(args) -> int:
             args.seed,
             show,
             args.vessel_class,
-            filter_tuning.FAMILIES[args.filter],
+            filter_families.FAMILIES[args.filter],
         )
     fresh = filter_tuning.fresh(FRESH * args.tracks, args.seed, args.vessel_class)
     verdict = filter_tuning.judge(
         found.settings, shipped, rival, args.target, seen, fresh, args.seed
     )
-    settings = filter_tuning.as_text(found.settings)
+    settings = filter_families.as_text(found.settings)
     better = verdict.ratio.high < 1 and verdict.ratio.value < CLEAR
     claim = report.Claim(
         rival,

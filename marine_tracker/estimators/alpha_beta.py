@@ -27,9 +27,9 @@ import numpy as np
 
 from ..gaussian.linear import sandwich
 from ..geometry import to_range_bearing, wrap_angle
-from ..types import Array, Extrapolation, Plots, put, take
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, put, take
 from .alpha_beta_gains import GAINS, WINDOW, Misfit
-from .contract import Estimator, first_velocity
+from .contract import Estimator, Velocity, first_velocity
 from .polar_motion import NEAREST, axes, to_ground, to_polar
 
 # White acceleration, m^2/s^3 each axis. The estimate does not depend on it, only its covariance.
@@ -75,7 +75,7 @@ def alpha_beta(
     """
     gains, straight, shortest = GAINS[mode], mode == 'hf_soft', max(period, SHORTEST)
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> AlphaBetaState:
         count = len(plots.time)
         known = np.full(count, 1.0 if velocity is None else 2.0)
         velocity = first_velocity(velocity, count, max_speed)
@@ -100,11 +100,11 @@ def alpha_beta(
             2 * np.stack([range_sigma, bearing_sigma], -1) ** 2,
         )
 
-    def extrapolate(state, time):
+    def extrapolate(state: AlphaBetaState, time: Array) -> Extrapolation:
         mean, covariance = _predict(state, time, noise, straight)
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: AlphaBetaState, plots: Plots, rows: IntArray) -> AlphaBetaState:
         before = take(state, rows)
         mean, covariance = _predict(before, plots.time, noise, straight)
         polar, by_mean = to_polar(mean, plots.origin)
@@ -156,7 +156,9 @@ def alpha_beta(
     return Estimator(init, extrapolate, update)
 
 
-def _predict(state, time, noise: float, straight: bool):
+def _predict(
+    state: AlphaBetaState, time: Array, noise: float, straight: bool
+) -> tuple[Array, Array]:
     """mean [N, 4] and covariance [N, 4, 4] on the ground at the times [N].
 
     The paper's targets keep radial speed and bearing rate. With `straight` they keep the ground
@@ -178,7 +180,7 @@ def _predict(state, time, noise: float, straight: bool):
     return mean + np.clip(2 - harm, 0.0, 1.0)[:, None] * (ahead - mean), covariance
 
 
-def _moved(mean, covariance, step, noise):
+def _moved(mean: Array, covariance: Array, step: Array, noise: Array) -> tuple[Array, Array]:
     """Two values, then their rates [K, 4], and the covariance after the steps [K] s.
 
     noise  [K, 2]  density of white noise in the rates
@@ -195,7 +197,7 @@ def _moved(mean, covariance, step, noise):
     return out, spread
 
 
-def _measured(plots: Plots):
+def _measured(plots: Plots) -> tuple[Array, Array, Array, Array]:
     """Range m and bearing rad of the plots [K], and the standard deviations of both."""
     distance, bearing = to_range_bearing(plots.position - plots.origin)
     range_sigma, across_sigma = (
@@ -204,7 +206,7 @@ def _measured(plots: Plots):
     return distance, bearing, range_sigma, across_sigma / np.maximum(distance, NEAREST)
 
 
-def _doppler(plots: Plots):
+def _doppler(plots: Plots) -> tuple[BoolArray, Array]:
     """Which plots [K] tell a radial speed, and the radial speeds m/s, 0 where none is told."""
     if plots.radial_speed is None:
         return np.zeros(len(plots.time), bool), np.zeros(len(plots.time))
@@ -212,7 +214,9 @@ def _doppler(plots: Plots):
     return told, np.where(told, plots.radial_speed, 0.0)
 
 
-def _misfit(plots: Plots, polar, before: AlphaBetaState, speed_sigma: float):
+def _misfit(
+    plots: Plots, polar: Array, before: AlphaBetaState, speed_sigma: float
+) -> tuple[BoolArray, Misfit]:
     """Which plots tell a radial speed, and the Misfit of all to what was expected, polar [K, 4]."""
     distance, bearing, range_sigma, bearing_sigma = _measured(plots)
     told, speed = _doppler(plots)
@@ -234,7 +238,9 @@ def _misfit(plots: Plots, polar, before: AlphaBetaState, speed_sigma: float):
     )
 
 
-def _spread_after(spread, m: Misfit, speed_variance, off_speed, shift):
+def _spread_after(
+    spread: Array, m: Misfit, speed_variance: Array, off_speed: Array, shift: Array
+) -> Array:
     """Covariance [K, 4, 4] in polar order after the shifts [K, 4], which are not those of Kalman.
 
     Before the plot the error has covariance P. Given the plot's difference d its mean is -K d and
@@ -249,4 +255,5 @@ def _spread_after(spread, m: Misfit, speed_variance, off_speed, shift):
     gain = np.matmul(np.linalg.inv(cross[:, :, :3] + noise), cross)  # K'
     apart = shift - np.matmul(off[:, None], gain)[:, 0]
     out = spread - np.matmul(gain.swapaxes(1, 2), cross) + apart[:, :, None] * apart[:, None, :]
-    return 0.5 * (out + out.swapaxes(1, 2))
+    found: Array = 0.5 * (out + out.swapaxes(1, 2))
+    return found

@@ -31,24 +31,24 @@ class Misfit(NamedTuple):
     mean_square: Array
 
 
-def rate_gain(position_gain):
+def rate_gain(position_gain: Array) -> Array:
     """beta of alpha by Benedict and Bordner's relation: alpha^2 / (2 - alpha)."""
     return position_gain**2 / (2 - position_gain)
 
 
-def position_gain(rate_gain):
+def position_gain(rate_gain: Array) -> Array:
     """alpha of beta by the same relation, solved for it."""
     return 0.5 * (np.sqrt(rate_gain**2 + 8 * rate_gain) - rate_gain)
 
 
-def _hf(m: Misfit):
+def _hf(m: Misfit) -> tuple[Array, Array, Array, Array]:
     """Paper 002, eq 4 to 6: the speed's share first, for it is measured best."""
     beta_v = -np.expm1(-np.abs(m.speed) / m.speed_sigma)
     alpha_a = -np.expm1(-np.abs(m.bearing) / (GATE_BEARING * m.bearing_sigma))
     return position_gain(beta_v), beta_v, alpha_a, rate_gain(alpha_a)
 
 
-def _hf_soft(m: Misfit):
+def _hf_soft(m: Misfit) -> tuple[Array, Array, Array, Array]:
     """The same with r / (1 + r) over wider scales: what noise alone does counts for less."""
     beta_v, alpha_a = (
         ratio / (1 + ratio)
@@ -60,7 +60,7 @@ def _hf_soft(m: Misfit):
     return position_gain(beta_v), beta_v, alpha_a, rate_gain(alpha_a)
 
 
-def _method1(m: Misfit):
+def _method1(m: Misfit) -> tuple[Array, Array, Array, Array]:
     """Paper 002's first rival: prediction variance over itself and the plot's."""
     alpha_r, alpha_a = (
         square / (square + sigma**2)
@@ -69,7 +69,7 @@ def _method1(m: Misfit):
     return alpha_r, rate_gain(alpha_r), alpha_a, rate_gain(alpha_a)
 
 
-def _method2(m: Misfit):
+def _method2(m: Misfit) -> tuple[Array, Array, Array, Array]:
     """Paper 002's second rival: a straight line through all k plots, whatever they say."""
     k = m.plots
     alpha, beta = 2 * (2 * k - 1) / (k * (k + 1)), 6 / (k * (k + 1))

@@ -1,12 +1,15 @@
-"""What every estimator is: three pure functions over arrays with a leading track axis."""
+"""What every estimator is: three pure functions over arrays with a leading track axis.
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+A fourth tells how it fares, where it can fall back on another.
+"""
+
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array, Extrapolation, Plots
+from ..types import Array, CodeArray, Extrapolation, IntArray, Plots
+
+State: TypeAlias = Any  # of an estimator; nobody else looks into it
 
 
 class Velocity(NamedTuple):
@@ -24,28 +27,6 @@ def first_velocity(velocity: Velocity | None, count: int, max_speed: float) -> V
     return Velocity(np.zeros((count, 2)), np.tile(variance * np.eye(2), (count, 1, 1)))
 
 
-class Estimator(NamedTuple):
-    """A filter bank that runs any number of tracks at once.
-
-    init(plots, velocity=None) -> state
-        One new row for each plot. What is known of the targets' velocities, where something is:
-        `Velocity`; by default they are anywhere within the targets' greatest speed.
-    extrapolate(state, time) -> Extrapolation
-        Every row to its own time [N] s, which may lie before or after the row's last plot;
-        state is untouched.
-    update(state, plots, rows) -> state
-        The K named rows (int [K], each at most once) take one plot each. Rows not named had no
-        plot: their time stays behind and the next `extrapolate` covers the gap.
-
-    State is a NamedTuple of arrays with one row a track (it may nest), to be handled with
-    `types.take`, `append` and `where` only. The functions never write to their arguments.
-    """
-
-    init: Callable[..., Any]
-    extrapolate: Callable[[Any, Array], Extrapolation]
-    update: Callable[[Any, Plots, Any], Any]
-
-
 class Account(NamedTuple):
     """How an estimator that can fall back on another fares with N tracks, for people to read.
 
@@ -59,9 +40,63 @@ class Account(NamedTuple):
     """
 
     states: tuple[str, ...]
-    state: NDArray[np.int8]
+    state: CodeArray
     rho: Array
     j: Array
     j_fallback: Array
     reasons: tuple[str, ...]
-    reason: NDArray[np.int8]
+    reason: CodeArray
+
+
+class Init(Protocol):
+    """One new row of state for each plot."""
+
+    def __call__(self, plots: Plots, velocity: Velocity | None = None) -> State:
+        """The state; see `Estimator`."""
+
+
+class Extrapolate(Protocol):
+    """Where the rows are at their times."""
+
+    def __call__(self, state: State, time: Array) -> Extrapolation:
+        """The extrapolation; see `Estimator`."""
+
+
+class Update(Protocol):
+    """One plot each for the named rows."""
+
+    def __call__(self, state: State, plots: Plots, rows: IntArray) -> State:
+        """The state after the plots; see `Estimator`."""
+
+
+class GiveAccount(Protocol):
+    """How the estimator fares."""
+
+    def __call__(self, state: State) -> Account:
+        """The account; see `Estimator`."""
+
+
+class Estimator(NamedTuple):
+    """A filter bank that runs any number of tracks at once.
+
+    init(plots, velocity=None) -> state
+        One new row for each plot. What is known of the targets' velocities, where something is:
+        `Velocity`; by default they are anywhere within the targets' greatest speed.
+    extrapolate(state, time) -> Extrapolation
+        Every row to its own time [N] s, which may lie before or after the row's last plot;
+        state is untouched.
+    update(state, plots, rows) -> state
+        The K named rows (int [K], each at most once) take one plot each. Rows not named had no
+        plot: their time stays behind and the next `extrapolate` covers the gap.
+
+    account(state) -> Account
+        How the estimator fares with each track; None where it never falls back on another.
+
+    State is a NamedTuple of arrays with one row a track (it may nest), to be handled with
+    `types.take`, `append` and `where` only. The functions never write to their arguments.
+    """
+
+    init: Init
+    extrapolate: Extrapolate
+    update: Update
+    account: GiveAccount | None = None

@@ -21,8 +21,8 @@ import numpy as np
 from ..gaussian.linear import kalman_update
 from ..networks import rough_weights
 from ..networks.rough_network import forward
-from ..types import Array, Extrapolation, append, put, take
-from .contract import Estimator
+from ..types import Array, Extrapolation, IntArray, Plots, append, put, take
+from .contract import Estimator, Velocity
 from .cs_kalman import (
     POSITION,
     POSITION_VELOCITY,
@@ -69,7 +69,7 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
     variance = RAYLEIGH * limit**2
     neurons = weights.network.inner.shape[1]
 
-    def share_of(apart, wide, narrow, noise, step):
+    def share_of(apart: Array, wide: Array, narrow: Array, noise: Array, step: Array) -> Array:
         """O [N, 2] of d, p1, p2 [N, 2, 3], plot variances [N, 2] and steps [N]."""
         total = wide + narrow
         total[..., 0] += 2 * noise
@@ -81,9 +81,10 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
         )
         seen = inputs(np.abs(apart) * unit, (np.sqrt(wide) + np.sqrt(narrow)) * unit, neurons)
         share = forward(weights.network, seen.reshape(-1, *seen.shape[2:])).reshape(-1, 2)
-        return np.minimum(np.maximum(share, LEAST_SHARE), 1.0)
+        found: Array = np.minimum(np.maximum(share, LEAST_SHARE), 1.0)
+        return found
 
-    def predict(state, time):
+    def predict(state: ParallelState, time: Array) -> tuple[Array, Array, Array]:
         """Means [2 N, 6] and covariances [2 N, 6, 6] of F1, then of F2; O [N, 2] of F2's."""
         step = time - state.narrow.time
         count = len(step)
@@ -101,7 +102,7 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
         covariance[count:] += process_noise(q, density * share)
         return mean, covariance, share
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> ParallelState:
         first = single.init(plots, velocity)
         return ParallelState(
             first,
@@ -110,14 +111,14 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
             np.diagonal(plots.covariance, axis1=1, axis2=2).copy(),
         )
 
-    def extrapolate(state, time):
+    def extrapolate(state: ParallelState, time: Array) -> Extrapolation:
         mean, covariance, _ = predict(state, time)
         count = len(time)
         mean = mean[count:].take(POSITION_VELOCITY, 1)
         covariance = covariance[count:].take(POSITION_VELOCITY, 1).take(POSITION_VELOCITY, 2)
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: ParallelState, plots: Plots, rows: IntArray) -> ParallelState:
         before = take(state, rows)
         mean, covariance, share = predict(before, plots.time)
         count = len(plots.time)

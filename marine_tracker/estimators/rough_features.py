@@ -18,6 +18,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from ..networks.rough_weights import Quiet
+from ..types import Array, IntArray
 
 LAMBDA = 0.3
 KAPPA = 3.0
@@ -26,10 +27,10 @@ HIGH = KAPPA * float(chi2.ppf(0.95, 1))
 MOST = HIGH**0.5  # of |d|: harder than hard was not trained
 
 
-def inputs(apart, deviation, neurons: int):
+def inputs(apart: Array, deviation: Array | None, neurons: int) -> Array:
     """Inputs [..., K] for |d| / sqrt(c s) and (sqrt p1 + sqrt p2) / sqrt(c s), both [...]."""
     apart = np.minimum(apart, MOST)
-    if neurons == 1:
+    if deviation is None or neurons == 1:
         bounds = apart[..., None]
     else:
         e = LAMBDA * deviation
@@ -37,7 +38,7 @@ def inputs(apart, deviation, neurons: int):
     return (bounds * bounds - LOW) / (HIGH - LOW)
 
 
-def quiet_variance(quiet: Quiet, gamma, y):
+def quiet_variance(quiet: Quiet, gamma: Array, y: Array) -> Array:
     """c [..., 3] for gamma and alpha T [...]; beyond the table's edges that of the edge."""
     i, across = _place(np.log(gamma), quiet.log_gamma)
     j, along = _place(np.log(y), quiet.log_y)
@@ -47,7 +48,7 @@ def quiet_variance(quiet: Quiet, gamma, y):
     return near * (1 - across) + far * across
 
 
-def _place(value, grid):
+def _place(value: Array, grid: Array) -> tuple[IntArray, Array]:
     """Index of the grid's interval and how far along it, [...] and [..., 1]."""
     # A value that is not a number has a place too: its row is lost anyway.
     place = np.nan_to_num(np.interp(value, grid, np.arange(len(grid))))

@@ -59,7 +59,7 @@ def coarse(wavelet: str, depth: int) -> Array:
     return analysis(wavelet, depth)[: SIZE >> depth]
 
 
-def transition(frequency: float, step) -> Array:
+def transition(frequency: float, step: Array) -> Array:
     """F [B, 6, 6] of the "current" statistical model over the steps [B] s."""
     phi, _ = cs_kalman.model(frequency, step)
     out = np.zeros((len(step), 6, 6))
@@ -70,7 +70,7 @@ def transition(frequency: float, step) -> Array:
     return out
 
 
-def predict(mean, covariance, steps, manoeuvre: Manoeuvre) -> Block:
+def predict(mean: Array, covariance: Array, steps: Array, manoeuvre: Manoeuvre) -> Block:
     """The block of n states ahead of the states [B, 6], [B, 6, 6].
 
     steps [B, n] s, from each state to the next. Mean acceleration and its variance are those of
@@ -90,7 +90,14 @@ def predict(mean, covariance, steps, manoeuvre: Manoeuvre) -> Block:
     return Block(means, parts.swapaxes(2, 3).reshape(count, 6 * size, 6 * size))
 
 
-def correct(block: Block, position, noise, rows, details=None, threshold: float = 0.0) -> Block:
+def correct(
+    block: Block,
+    position: Array,
+    noise: Array,
+    rows: Array,
+    details: Array | None = None,
+    threshold: float = 0.0,
+) -> Block:
     """The block after its plots [B, n, 2] m of covariance [B, n, 2, 2] m^2.
 
     rows     [r, n]  of the transform: the resolutions that are corrected
@@ -99,10 +106,10 @@ def correct(block: Block, position, noise, rows, details=None, threshold: float 
                      covariance is that without them.
     """
     count, size = position.shape[:2]
-    spread = np.zeros((count, size, 2, size, 2))
+    blocks = np.zeros((count, size, 2, size, 2))
     for j in range(size):
-        spread[:, j, :, j] = noise[:, j]
-    spread = spread.reshape(count, 2 * size, 2 * size)
+        blocks[:, j, :, j] = noise[:, j]
+    spread = blocks.reshape(count, 2 * size, 2 * size)
     innovation = position - block.mean[..., POSITION]
     mean = block.mean.reshape(count, -1)
     gain, shift, _ = _gain(block.covariance, innovation, spread, rows)
@@ -123,13 +130,15 @@ def correct(block: Block, position, noise, rows, details=None, threshold: float 
 _OBSERVE = np.eye(6)[list(POSITION)]
 
 
-def _gain(covariance, innovation, spread, rows):
+def _gain(
+    covariance: Array, innovation: Array, spread: Array, rows: Array
+) -> tuple[Array, Array, Array]:
     """H' K [B, 6n, 2r], innovations [B, 2r] at the rows' resolution, and their deviations."""
     states, plots = np.kron(rows, np.eye(6)), np.kron(rows, np.eye(2))
     observe = np.kron(np.eye(len(rows)), _OBSERVE)
     own = states @ covariance @ states.T  # P_i = H P H'
     expected = observe @ own @ observe.T + plots @ spread @ plots.T  # S = C P_i C' + R_i
-    gain = np.linalg.solve(expected, observe @ own).swapaxes(1, 2)  # K
+    gain: Array = np.linalg.solve(expected, observe @ own).swapaxes(1, 2)  # K
     return (
         states.T @ gain,
         innovation.reshape(len(innovation), -1) @ plots.T,
@@ -145,11 +154,11 @@ class Smoothed(NamedTuple):
 
 
 def smooth(
-    mean,
-    covariance,
-    time,
-    position,
-    noise,
+    mean: Array,
+    covariance: Array,
+    time: Array,
+    position: Array,
+    noise: Array,
     manoeuvre: Manoeuvre,
     wavelet: str = 'haar',
     depth: int = COARSEST,

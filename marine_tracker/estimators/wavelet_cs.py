@@ -21,9 +21,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..gaussian.linear import invert_2x2, kalman_update, sandwich, squared_distance
-from ..types import Array, Extrapolation, put, take
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, put, take
 from . import cs_kalman
-from .contract import Estimator
+from .contract import Estimator, Velocity
 from .cs_kalman import POSITION, SHOWN, CsState, Manoeuvre, acceleration_variance
 from .wavelet_block import SIZE
 
@@ -64,7 +64,7 @@ class WaveletState(NamedTuple):
     plots: Array
 
 
-def begin(time, mean, covariance) -> WaveletState:
+def begin(time: Array, mean: Array, covariance: Array) -> WaveletState:
     """New rows of which the states [N, 6], [N, 6, 6] at the times [N] are known, and no plots."""
     rows = len(time)
     return WaveletState(
@@ -89,17 +89,17 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
     """
     plain = cs_kalman.cs_kalman(manoeuvre, max_speed)
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> WaveletState:
         return begin(*plain.init(plots, velocity))._replace(plots=np.ones(len(plots.time)))
 
-    def extrapolate(state, time):
+    def extrapolate(state: WaveletState, time: Array) -> Extrapolation:
         last = newest(state)
         mean, covariance = cs_kalman.predict(
             last.mean, last.covariance, time - last.time, manoeuvre, SHOWN
         )
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: WaveletState, plots: Plots, rows: IntArray) -> WaveletState:
         before = take(state, rows)
         mean, covariance = np.empty((len(rows), 6)), np.empty((len(rows), 6, 6))
         told = np.empty(len(rows), bool)
@@ -123,21 +123,24 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
     return Estimator(init, extrapolate, update)
 
 
-def _push(ring, new):
+def _push(ring: Array, new: Array) -> Array:
     """The oldest of each row of ring [N, m, ...] dropped, new [N, ...] added."""
     return np.concatenate([ring[:, 1:], new[:, None]], 1)
 
 
-def _tells(covariance, noise):
+def _tells(covariance: Array, noise: Array) -> BoolArray:
     """Whether plots of covariance noise [N, 2, 2] tell tracks [N, 6, 6] anything.
 
     A plot that is no number does: it harms its own track, as in every estimator.
     """
     own = covariance[:, 0, 0] + covariance[:, 3, 3]
-    return ~(np.trace(noise, axis1=1, axis2=2) > FAINT * own)
+    found: BoolArray = ~(np.trace(noise, axis1=1, axis2=2) > FAINT * own)
+    return found
 
 
-def _plot(state, plots, manoeuvre):
+def _plot(
+    state: WaveletState, plots: Plots, manoeuvre: Manoeuvre
+) -> tuple[Array, Array, BoolArray]:
     """All resolutions: the Kalman update of the chain that ended last."""
     last = newest(state)
     mean, covariance = cs_kalman.predict(
@@ -150,7 +153,9 @@ def _plot(state, plots, manoeuvre):
     return mean, covariance, told
 
 
-def _block(state, plots, manoeuvre):
+def _block(
+    state: WaveletState, plots: Plots, manoeuvre: Manoeuvre
+) -> tuple[Array, Array, BoolArray]:
     """The coarsest resolution: the oldest chain, corrected by the mean of four innovations."""
     rows = len(plots.time)
     places = np.concatenate([state.position, plots.position[:, None]], 1)
@@ -175,7 +180,9 @@ def _block(state, plots, manoeuvre):
     return mean, 0.5 * (covariance + covariance.swapaxes(1, 2)), told
 
 
-def _predict(state, time, weight, manoeuvre):
+def _predict(
+    state: WaveletState, time: Array, weight: Array, manoeuvre: Manoeuvre
+) -> tuple[Array, Array, Array]:
     """The oldest chain moved through the block that ends at the times [N] s.
 
     weight [N, 4] of the states in their mean m. Returns the last state x [N, 6], the positions
@@ -214,7 +221,7 @@ def _predict(state, time, weight, manoeuvre):
     return x.reshape(rows, 6), expected, both
 
 
-def _shape(frequency, tau, own, behind):
+def _shape(frequency: float, tau: Array, own: Array, behind: BoolArray) -> Array:
     """Gains [N, 3] of position, velocity and acceleration over that of the position.
 
     The paper's limit for blocks of tau [N] s, but never more than the Kalman filter's, and the
@@ -235,7 +242,7 @@ def _shape(frequency, tau, own, behind):
     return np.where(limited[:, None], np.minimum(limit, kalman), kalman)
 
 
-def _steps(frequency, steps):
+def _steps(frequency: float, steps: Array) -> tuple[Array, Array, Array]:
     """F [N, n, 3, 3], q [N, n, 3, 3] and U [N, n, 3] of one axis over the steps [N, n] s."""
     step = steps.ravel()
     (phi0, phi1, phi2), q = cs_kalman.model(frequency, step)

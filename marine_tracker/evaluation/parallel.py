@@ -1,4 +1,4 @@
-"""Parts of an experiment at the same time; what comes out does not depend on where they run."""
+"""Runs the parts of an experiment in parallel. The result does not depend on where they run."""
 
 import multiprocessing
 import os
@@ -11,21 +11,23 @@ from typing import Any, NamedTuple
 from ..processes import THREADS, end_with_parent, keep_freed_memory
 from .result import Progress
 
-# How many processes on this machine (None: one for each processor), or who runs the parts instead.
+# Number of processes on this machine (None: one for each processor), or an executor that runs the
+# parts.
 Workers = int | Executor | None
 
 
 class Job(NamedTuple):
-    """A function of a module, and its arguments: both must pickle."""
+    """A function of a module, and its arguments. Both must be picklable."""
 
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
 
 
 def run(jobs: Sequence[Job], workers: Workers, progress: Progress) -> list[Any]:
-    """What each job returns, in order; what one raises is raised here, and the rest is cancelled.
+    """Returns the result of each job, in order. An exception of a job is raised here; the other
+    jobs are cancelled.
 
-    An executor that is handed in stays open. How many threads its workers use, its owner decides.
+    An executor given by the caller stays open. Its owner decides how many threads its workers use.
     """
     if isinstance(workers, Executor):
         return _run(jobs, workers, progress)
@@ -43,7 +45,7 @@ def run(jobs: Sequence[Job], workers: Workers, progress: Progress) -> list[Any]:
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             for process in set(multiprocessing.active_children()) - others:
-                process.terminate()  # would go on for minutes
+                process.terminate()  # it would run on for minutes
             raise
 
 
@@ -62,7 +64,7 @@ def _run(jobs: Sequence[Job], executor: Executor, progress: Progress) -> list[An
 
 
 def _begin() -> None:
-    """In each process: Ctrl-C ends it without a word, the first process speaks for all."""
+    """In each process: Ctrl-C ends it silently; the main process reports it."""
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     keep_freed_memory()
@@ -70,7 +72,9 @@ def _begin() -> None:
 
 @contextmanager
 def _one_thread_each() -> Iterator[None]:
-    """Processes begun within use one thread each; the library reads that when it is loaded."""
+    """Processes started inside use one thread each. The library reads the setting when it is
+    loaded.
+    """
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, '1'))
     try:

@@ -27,6 +27,8 @@ class RadarSimulatorNode(RunnableNode):
         super().__init__('radar_simulator', **node_arguments)
         (parameters,) = declare(self, RadarSimulatorParameters)
         chosen = scenario.load(parameters.scenario)
+        for remark in chosen.fleet.remarks:
+            self.get_logger().warning(remark)
         step = own_ship_period(parameters.rate)
 
         def revolutions() -> Iterator[Revolution]:

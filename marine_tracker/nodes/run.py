@@ -10,7 +10,8 @@ Exit codes, in doc/nodes.md for users:
 0   stopped as asked, or nothing left to do; closed in order
 1   could not start, with one line on stderr; or failed, with a traceback or a warning on stderr
 14  not closed in time; stderr shows where each thread stood
-The signal itself (-2, -15; 130, 143 in a shell) where it came before Python ran the first line.
+The signal itself (-2, -15; 130, 143 in a shell), or 1 of SIGINT, where it came while Python itself
+was starting, before the first line here.
 """
 
 import importlib
@@ -20,6 +21,7 @@ import sys
 import threading
 
 from ..processes import closing, end_in_time, keep_freed_memory
+from . import arguments, log_folder
 
 NODES = {
     'tracker': 'TrackerNode',
@@ -44,10 +46,14 @@ def run(name: str) -> int:
 
     Returns the exit code, 0 or 1; see the module.
     """
+    code = arguments.answer(name, sys.argv[1:])
+    if code is not None:
+        return code
     on_signals(lambda *_: os._exit(0))  # nothing is open yet; imports take long on a busy machine
     end_in_time()
     # ament looks packages up by this; a virtual environment is a prefix like any other.
     os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
+    log_folder.provide()
     import rclpy
     from rclpy.exceptions import NameValidationException, ParameterException
     from rclpy.executors import SingleThreadedExecutor

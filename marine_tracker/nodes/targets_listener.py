@@ -8,11 +8,13 @@ from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation as implementation
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import PointCloud2
 
+from ..files import shortened
 from ..geometry import KNOT
-from . import topics
+from . import log_folder, topics
 from .base_node import RunnableNode
 from .convert import nanoseconds, odometry_to_own_ship
 from .diagnostics import ERROR, OK, one_line
@@ -49,7 +51,11 @@ class TargetsListener:
     def __init__(self):
         self.picture = Picture()
         self._context = Context()
-        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        log_folder.provide()
+        try:
+            rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        except implementation.RCLError as error:
+            raise ValueError(f'ROS does not start: {shortened(error)}') from error
         self._node = RunnableNode('targets_listener', context=self._context)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)

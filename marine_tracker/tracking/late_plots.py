@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..estimators import Estimator
-from ..types import Plots, Tracks, put, take, where
+from ..estimators.contract import State
+from ..types import Array, IntArray, Plots, Tracks, put, take, where
 
 
 class Update(NamedTuple):
@@ -24,13 +25,13 @@ class Update(NamedTuple):
     plots: Plots
 
 
-def nothing_yet(state, plots: Plots, updates: int) -> tuple[Update, ...]:
+def nothing_yet(state: State, plots: Plots, updates: int) -> tuple[Update, ...]:
     """What N tracks remember: so many updates, none of which has been; any N plots."""
     none = plots._replace(time=np.full(len(plots.time), -np.inf), radial_speed=None)
     return (Update(state, none),) * updates
 
 
-def as_of(tracks: Tracks, time):
+def as_of(tracks: Tracks, time: Array) -> State:
     """The state as it was at the times [N] s: later updates are undone."""
     state = tracks.state
     for update in tracks.past:  # the last comes first
@@ -38,7 +39,9 @@ def as_of(tracks: Tracks, time):
     return state
 
 
-def update(estimator: Estimator, tracks: Tracks, plots: Plots, rows, radar: int) -> Tracks:
+def update(
+    estimator: Estimator, tracks: Tracks, plots: Plots, rows: IntArray, radar: int
+) -> Tracks:
     """The tracks after one plot of the radar for each of the rows [K], wherever it belongs.
 
     A radial speed counts when the plot comes in, not when it is taken again: not all radars

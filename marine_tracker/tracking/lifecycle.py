@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..parameters import TrackerParameters
-from ..types import HISTORY, Array, BoolArray, CodeArray, Tracks
+from ..types import HISTORY, Array, BoolArray, CodeArray, IntArray, Tracks
 from .look import Look
 
 TENTATIVE, CONFIRMED, COASTING, LOST = range(4)
@@ -20,20 +20,24 @@ _COUNT = _BITS.sum(1)
 _SINCE = np.where(_BITS.any(1), _BITS.argmax(1), _HALF)
 
 
-def hits(history, scans: int):
+def hits(history: IntArray, scans: int) -> IntArray:
     """Plots [N] of each history [N] in its last `scans` scans (at most types.HISTORY)."""
     recent = history & ((1 << scans) - 1)
     count = _COUNT[recent & (len(_COUNT) - 1)]
-    return count if scans <= _HALF else count + _COUNT[recent >> _HALF]
+    found: IntArray = count if scans <= _HALF else count + _COUNT[recent >> _HALF]
+    return found
 
 
-def misses_in_a_row(history):
+def misses_in_a_row(history: IntArray) -> IntArray:
     """Scans [N] since the last plot of each history [N], at most types.HISTORY."""
     since = _SINCE[history & (len(_SINCE) - 1)]
-    return np.where(since < _HALF, since, _HALF + _SINCE[history >> _HALF])
+    found: IntArray = np.where(since < _HALF, since, _HALF + _SINCE[history >> _HALF])
+    return found
 
 
-def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters) -> Tracks:
+def record(
+    tracks: Tracks, rows: IntArray, gained: Array, visible: BoolArray, parameters: TrackerParameters
+) -> Tracks:
     """Enter one scan: the tracks `rows` [K] had a plot; visible [N] lay where the radar can see.
 
     gained [K]: what those plots add to the scores (see score.py). A scan in which a track
@@ -52,7 +56,9 @@ def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters)
     )
 
 
-def held_by_another(tracks: Tracks, radar: int, time, track, held):
+def held_by_another(
+    tracks: Tracks, radar: int, time: Array, track: IntArray, held: Array
+) -> BoolArray:
     """Mask [N] of the tracks that another radar sees, while this one has no plot in their gate.
 
     time [N] s of this look; track: tracks that have a plot in the gate; held [R] s, how long a
@@ -65,15 +71,23 @@ def held_by_another(tracks: Tracks, radar: int, time, track, held):
         return np.zeros(len(time), bool)
     empty = np.ones(len(time), bool)
     empty[track] = False
-    return (
+    found: BoolArray = (
         empty
         & (tracks.status != TENTATIVE)
         & (tracks.radar != radar)
         & (time - tracks.last_time < held[tracks.radar])
     )
+    return found
 
 
-def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now: float):
+def judge(
+    tracks: Tracks,
+    parameters: TrackerParameters,
+    hit: BoolArray,
+    beyond: BoolArray,
+    drift: Array,
+    now: float,
+) -> tuple[CodeArray, CodeArray]:
     """Status [N] and reason [N] of a loss, by the named rules.
 
     hit [N] had a plot in this scan, or of another radar lately; beyond [N] lies outside the range

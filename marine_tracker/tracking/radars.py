@@ -15,11 +15,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from .. import yaml_file
-from ..files import shown
+from ..files import shortened, shown
 from ..parameters import TrackerParameters
 from ..types import Scan
 
 TOPIC = 'radar/plots'
+MAX_RADARS = 20
+MAX_NAME = 200  # characters
 # Parameters that a radar may have for itself.
 OWN = (
     'range_sigma_m',
@@ -58,10 +60,13 @@ def radars_of(parameters: TrackerParameters) -> tuple[Radar, ...]:
         raise ValueError(
             f'radars are {shown(items)}; they must be a list of mappings, each with topic'
         )
+    if len(items) > MAX_RADARS:
+        raise ValueError(f'there are {len(items)} radars; there may be {MAX_RADARS}')
     radars = tuple(_radar(item, place, parameters) for place, item in enumerate(items, 1))
     for what, values in (('name', [r.name for r in radars]), ('topic', [r.topic for r in radars])):
         if len(set(values)) < len(values):
-            raise ValueError(f'radars have the {what}s {", ".join(values)}; each must differ')
+            told = shortened(', '.join(values))
+            raise ValueError(f'radars have the {what}s {told}; each must differ')
     return radars
 
 
@@ -83,7 +88,7 @@ def fused(of_each: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dict[st
 def merged(*radars: Iterable[Scan]) -> Iterator[Scan]:
     """The scans of several radars as a tracker takes them: each when it ends."""
 
-    def of(radar, scans):
+    def of(radar: int, scans: Iterable[Scan]) -> Iterator[Scan]:
         return (scan._replace(radar=radar) for scan in scans)
 
     return heapq.merge(*(of(*pair) for pair in enumerate(radars)), key=lambda scan: scan.end)
@@ -101,11 +106,17 @@ def held_updates(radars: tuple[Radar, ...]) -> int:
     )
 
 
-def _radar(item, place: int, parameters: TrackerParameters) -> Radar:
+def _radar(item: Any, place: int, parameters: TrackerParameters) -> Radar:
     if not isinstance(item, dict) or not isinstance(item.get('topic'), str):
         raise ValueError(f'radar {place} is {shown(item)}; it must be a mapping with a topic')
     topic, own = item['topic'], {k: v for k, v in item.items() if k not in ('topic', 'name')}
-    name = str(item.get('name', topic.removesuffix(TOPIC).strip('/') or topic))
+    name = item.get('name', topic.removesuffix(TOPIC).strip('/') or topic)
+    name = name if isinstance(name, str) else shown(name)
+    for what, text in (('topic', topic), ('name', name)):
+        if len(text) > MAX_NAME:
+            raise ValueError(
+                f'radar {place}: {what} is {shown(text)}; it may have {MAX_NAME} characters'
+            )
     for key in own:
         if key not in OWN:
             raise ValueError(f'radar {name} has {key}; it may have topic, name, {", ".join(OWN)}')

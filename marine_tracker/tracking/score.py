@@ -54,4 +54,5 @@ def first_score(
     away = max_speed * (now.time - before.time)
     noise = np.sqrt(np.linalg.det(before.covariance + now.covariance))
     area = np.pi * away**2 + 2 * np.pi * noise
-    return np.log(detection_probability / (density * area))
+    found: Array = np.log(detection_probability / (density * area))
+    return found

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import Scan
+from ..types import Array, Scan
 
 
 class Sweep(NamedTuple):
@@ -19,7 +19,7 @@ class Sweep(NamedTuple):
     period: float
     bearing0: float
 
-    def time_at(self, bearing):
+    def time_at(self, bearing: Array) -> Array:
         """s, when the beam passes the bearings [...] rad."""
         if self.period == 0:
             return np.full(np.shape(bearing), self.start)

@@ -117,7 +117,7 @@ def test_what_ais_lacks_is_a_one_line_error(capsys, folder, ais):
     for arguments, message in (
         ([tracks, '--ais', str(ais)], 'does not tell where on Earth it is'),
         ([tracks, tracks], '2 track files are given; without --ais it must be one'),
-        ([tracks, '--ais', 'none.csv', '--origin-deg', '55', '7'], 'none.csv cannot be read'),
+        ([tracks, '--ais', 'none.csv', '--origin-deg', '55', '7'], 'none.csv does not exist'),
         (
             [tracks, '--ais', str(ais), '--origin-deg', '55', '7', '--cutoff', '-1'],
             'cutoff_m is -1.0; it must be a number, above 0',

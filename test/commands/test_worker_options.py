@@ -57,8 +57,9 @@ def test_figures_of_a_cluster_are_those_of_one_process(scheduler, tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(600)
 def test_an_experiment_has_the_same_figures_on_a_cluster(scheduler, tmp_path):
-    assert same_figures(['experiments', 'two_radars', '--runs', '3'], scheduler, tmp_path)
+    assert same_figures(['experiments', 'two_radars', '--runs', '2'], scheduler, tmp_path)
 
 
 def test_both_workers_take_part_in_one_thread_each(scheduler, options):

@@ -195,8 +195,8 @@ def test_what_is_wrong_is_named_with_its_file_and_line(folder, file, text, messa
 
 
 def test_a_file_that_is_not_text_is_an_error(folder):
-    (folder / 'plots.csv').write_bytes(b'\xff\xfe\x00\x01')
-    with pytest.raises(ValueError, match='plots.csv cannot be read as CSV'):
+    (folder / 'plots.csv').write_bytes(b'\x89PNG\r\n')
+    with pytest.raises(ValueError, match='plots.csv, line 1: the byte 0x89 is not UTF-8'):
         csv_folder.read(folder)
 
 

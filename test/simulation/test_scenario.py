@@ -283,7 +283,7 @@ def test_detectable_is_between_blind_and_maximum_range(make_scenario):
             'own_ship.vessel names an AIS vessel, but the scenario has no',
         ),
         ({'own_ship': [1]}, 'own_ship is [1]; it must be a mapping'),
-        ({'ais': {'file': 'nowhere.csv'}}, 'nowhere.csv cannot be read'),
+        ({'ais': {'file': 'nowhere.csv'}}, 'nowhere.csv does not exist'),
     ],
 )
 def test_wrong_scenarios_are_refused_by_name_value_and_limit(tmp_path, values, text):

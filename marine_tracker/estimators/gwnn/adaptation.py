@@ -8,6 +8,7 @@ few plots. It helps where something stays wrong for long, as a bias of the radar
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...networks import wavelet_network as net
 from ...types import Array
@@ -39,7 +40,7 @@ def begin(count: int, network: net.Network, learning: bool) -> Adapted:
     return Adapted(zero, zero.copy(), zero.copy())
 
 
-def units_of(network: net.Network, inputs, outputs: slice):
+def units_of(network: net.Network, inputs: NDArray[np.floating], outputs: slice) -> Array:
     """The hidden units [N, 2, C] of four outputs: position at once, then per scan ahead."""
     group = net.group_size(network.layout)
     layout = network.layout._replace(outputs=4)
@@ -50,18 +51,19 @@ def units_of(network: net.Network, inputs, outputs: slice):
     return np.concatenate([out[:, :2], out[:, 2:]], 2)
 
 
-def _asked(adapted: Adapted, scans):
+def _asked(adapted: Adapted, scans: Array) -> Array:
     """The units' values [N, 2, C] as they count so many scans ahead [N]."""
     half = adapted.units.shape[2] // 2
     return adapted.units * np.where(np.arange(2 * half) < half, 1.0, scans[:, None])[:, None]
 
 
-def correction(adapted: Adapted, scans):
+def correction(adapted: Adapted, scans: Array) -> Array:
     """What the tracks have learned to add to the position [2, N], sigma."""
-    return (_asked(adapted, scans) * adapted.weights).sum(2).T
+    found: Array = (_asked(adapted, scans) * adapted.weights).sum(2).T
+    return found
 
 
-def learn(adapted: Adapted, residual, scans, units) -> Adapted:
+def learn(adapted: Adapted, residual: Array, scans: Array, units: Array) -> Adapted:
     """After plots whose residuals were [2, N] sigma, so many scans ahead; units for the next.
 
     Normalised gradient, with the momentum of paper 000: that of a neuron is its share in the

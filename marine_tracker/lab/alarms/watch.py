@@ -1,6 +1,6 @@
-"""A watch on the bridge: a scene through tracker and ARPA, and an operator who acknowledges.
+"""Runs a scene through tracker and ARPA, with an operator who acknowledges the alarms.
 
-Beside it stands the truth: when each ship was a danger, from how all really moved.
+The truth is computed beside it: when each ship was a danger, from the true motion of all ships.
 """
 
 from typing import NamedTuple
@@ -19,19 +19,19 @@ from ...simulation.scenario import Scenario
 from ...types import Array
 
 REACTION = 20.0  # s from an alarm to its acknowledgement
-ITS_OWN = 300.0  # m, a target no farther from a ship is that ship
+ITS_OWN = 300.0  # m; a target at most this far from a ship is that ship
 NOBODY = -1
 
 
 class Watch(NamedTuple):
-    """What T ships were in K scans, and the A alarms of danger that sounded.
+    """T ships over K scans, and the A danger alarms that sounded.
 
     time       [K]     s, ends of the scans
-    dangerous  [K, T]  CPA and TCPA were truly below the limits
-    cpa        [K, T]  m, true; nan while a ship is not there
+    dangerous  [K, T]  the true CPA and TCPA were below the limits
+    cpa        [K, T]  m, true; nan while the ship does not exist
     alarmed    [K, T]  an alarm was active for the ship, acknowledged or not
     sounded    [A]     s, when an alarm became unacknowledged
-    ship       [A]     of which ship, counted from 0; NOBODY: of a target that is no ship
+    ship       [A]     index of the ship; NOBODY: the target is not a ship
     """
 
     time: Array
@@ -43,9 +43,10 @@ class Watch(NamedTuple):
 
 
 def keep(scenario: Scenario, seed: int, swing: float = 0.0, **parameters) -> Watch:
-    """The scenario from its beginning to its end.
+    """Runs the scenario from beginning to end.
 
-    swing  s, of own ship's yaw: her true velocity is that of so long a time; 0: that of the moment
+    swing  s, period of own ship's yaw: her true velocity is the mean over one period; 0: the
+    velocity at the moment
     parameters  of the ARPA
     """
     settings = from_mapping(TrackerParameters, scenario.tracker_parameters())
@@ -58,7 +59,7 @@ def keep(scenario: Scenario, seed: int, swing: float = 0.0, **parameters) -> Wat
     cpa = np.full(shape, np.nan)
     sounded: list[float] = []
     whose: list[int] = []
-    heard: dict[int, float] = {}  # track: s, when its alarm sounded that waits to be seen
+    heard: dict[int, float] = {}  # track number -> s, when its alarm sounded; not acknowledged yet
     for k, (scan, _) in enumerate(radar.simulate(scenario, seed)):
         now = time[k] = scan.end
         truth, own = scenario.truth_at(now), _own_ship(scenario, now, swing)
@@ -97,7 +98,9 @@ def keep(scenario: Scenario, seed: int, swing: float = 0.0, **parameters) -> Wat
 
 
 def _own_ship(scenario: Scenario, time: float, swing: float) -> tuple[Array, Array]:
-    """Own ship's true position [2] m and velocity [2] m/s, of a whole swing if she yaws."""
+    """Own ship's true position [2] m and velocity [2] m/s; the velocity is the mean over one swing
+    if she yaws.
+    """
     if not swing:
         own = scenario.own_ship_at(time)
         return own.position[0], own.velocity[0]

@@ -12,20 +12,20 @@ OWN_SPEED = 12.0  # kn, course north
 LIMIT = 0.5  # NM
 # Course deg and speed kn of the ships, and the minute of their closest approach.
 SHIPS = ((180, 13, 13), (225, 10, 15), (265, 15, 17), (100, 11, 19), (5, 20, 22), (2, 4, 24))
-SHARES = (0.6, 0.8, 0.9, 1.1, 1.2, 1.4)  # CPA over the limit
+SHARES = (0.6, 0.8, 0.9, 1.1, 1.2, 1.4)  # CPA divided by the CPA limit
 MINUTES = 26
 
 
 def passing(amplitude: float, period: float, turn: int) -> Scenario:
-    """The scene: own ship yaws by `amplitude` deg to either side every `period` s.
+    """The scene: own ship yaws by `amplitude` deg to either side, with a period of `period` s.
 
-    turn  which of SHARES falls to which ship, and to which side of own ship
+    turn  shifts which of SHARES each ship gets, and the side of own ship on which she passes
     """
     duration = 60.0 * MINUTES
     own: dict[str, Any] = {'course_deg': 0.0, 'speed_kn': OWN_SPEED}
     share = 1.0
     if amplitude:
-        # Evenly from side to side; the first and the last swing are half of one.
+        # Swings evenly from side to side. The first and the last swing are half swings.
         rate = 4 * amplitude / period
         halves = int(2 * duration / period) + 1
         angles = [amplitude] + [2 * amplitude * (-1) ** (k + 1) for k in range(halves)]
@@ -60,5 +60,5 @@ def passing(amplitude: float, period: float, turn: int) -> Scenario:
 
 
 def shares(turn: int) -> list[float]:
-    """True CPA over the limit of each ship."""
+    """True CPA of each ship, divided by the CPA limit."""
     return [SHARES[(k + turn) % len(SHARES)] for k in range(len(SHIPS))]

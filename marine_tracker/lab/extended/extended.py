@@ -1,9 +1,9 @@
-"""Extended targets: outlines by Gaussian processes with noisy input, beside a random matrix.
+"""Extended targets: outlines by Gaussian processes with noisy input, compared with a random matrix.
 
-The scenario of paper 004: outlines of three shapes, about 3 to 6 m, seen for 100 s as points with a
-deviation of 1 m; 0.8 a frame, which is next to nothing, and 0.8 a metre of outline. Then a ship of
-200 m whose near side is seen, handed over from a random matrix. 100 runs take some two minutes on
-two processors.
+The scenario of paper 004: outlines of three shapes, about 3 to 6 m in size, seen for 100 s as
+points with a deviation of 1 m. The mean number of points is 0.8 a frame (very few), or 0.8 a metre
+of outline. Then a ship of 200 m whose near side is seen, handed over from a random matrix to a
+Gaussian process. 100 runs take about two minutes on two processors.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ RUNS = 100
 
 
 def run(runs: int, seed: int, progress: Progress = silent, workers: Workers = None) -> Result:
-    """All variants in all cases, the claims of the paper, and the pictures."""
+    """Runs all variants in all cases; returns figures, the claims of the paper, and pictures."""
     paper, ship = plan(runs, seed)
     found = dict(
         zip([*paper, *ship], parallel.run([*paper.values(), *ship.values()], workers, progress))

@@ -1,8 +1,8 @@
-"""All about the wavelet network: its own paper's figures, and how the estimator compares.
+"""The wavelet network: the figures of its own paper, and how the estimator compares with others.
 
-The first part is `gwnn_paper`: Figs 1 to 5 and eq 20-23 of paper 000, of at most 40 seeds. The
-second is `gwnn_monte_carlo`: the estimator `gwnn` beside CS-Kalman, CV, IMMs and plain tanh units
-on ships and small craft; 300 runs of both take about three minutes on two processors.
+The first part is `gwnn_paper`: Figs 1 to 5 and eq 20-23 of paper 000, with at most 40 seeds. The
+second part is `monte_carlo`: the estimator `gwnn` compared with CS-Kalman, CV, IMMs and plain tanh
+units, on ships and small craft. 300 runs of both take about three minutes on two processors.
 """
 
 from pathlib import Path

@@ -1,7 +1,7 @@
-"""Ships as hulls: how long they are found to be, where their centre is, and land left out.
+"""Ships as hulls: their estimated length and centre, and land that is left out.
 
-A ship that passes at 1 and 2 km, with cells of a short and of a long pulse; one close by, with and
-without an outline; and the scenarios `hulls` and `coast` with and without extents. Ten runs take
+One ship that passes at 1 and 2 km, with cells of a short and of a long pulse; one close by, with
+and without an outline; the scenarios `hulls` and `coast` with and without extents. Ten runs take
 about three minutes.
 """
 
@@ -25,7 +25,7 @@ CLOSE = [Case(200, 1000.0, aspect, FINE) for aspect in (45.0, 90.0, 120.0)]
 
 
 def run(runs: int, seed: int, progress: Progress = silent) -> Result:
-    """All parts; the demands are those of the prototype."""
+    """All parts. The limits are those of the prototype."""
     done, whole = 0, 2 * len(LENGTHS) * len(DISTANCES) * len(ASPECTS) + 2 * len(CLOSE) + 5
 
     def one_more():
