@@ -70,7 +70,7 @@ def view(
 ) -> View:
     """The picture's targets with the data of the tracker's report.
 
-    estimator: the name of the one to which the tracks' state belongs; shapes: of all the tracks.
+    estimator: the one to which the tracks' state belongs; shapes: of all the tracks.
     """
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
