@@ -4,8 +4,10 @@ Degrees on WGS 84, north and east positive. Longitudes go in as -180 to 180 and 
 [-180, 180). Those of 180 to 360 are refused, because in AIS reports 181 means "not known".
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +19,7 @@ FARTHEST = 2.0e7  # m: half way round the Earth, less 4 km
 
 
 @cache
-def _earth():
+def _earth() -> Any:
     """WGS 84. pyproj is loaded on first use, because a tracker alone does not need it."""
     from pyproj import Geod
 
@@ -54,7 +56,7 @@ class LocalFrame:
     latitude: ArrayLike
     longitude: ArrayLike
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _refuse_elsewhere(self.latitude, self.longitude)
 
     def to_local(self, latitude: ArrayLike, longitude: ArrayLike) -> Array:
@@ -78,7 +80,7 @@ class LocalFrame:
         return latitude, wrap_longitude(longitude)
 
 
-def _each(solve, *values: ArrayLike) -> list[Array]:
+def _each(solve: Callable[..., Any], *values: ArrayLike) -> list[Array]:
     """What solve gives for the values, broadcast; numpy's numbers for plain ones."""
     return [
         np.asarray(one)[()]

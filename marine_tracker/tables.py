@@ -2,14 +2,14 @@
 
 import codecs
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 import numpy as np
 
-from .files import regular, shortened, shown
-from .types import Array
+from .files import Place, regular, shortened, shown
+from .types import Array, IntArray
 
 MAX_LINE = 100_000  # characters
 
@@ -65,7 +65,7 @@ class Table(NamedTuple):
             )
         return values
 
-    def integers(self, name: str):
+    def integers(self, name: str) -> IntArray:
         """A column [R] as whole numbers, int64 (`3` and `3.0` are the same)."""
         values = self.numbers(name, low=-(2.0**53), high=2.0**53)
         wrong = values != np.rint(values)
@@ -87,7 +87,7 @@ class Rows(NamedTuple):
     rows: Iterator[tuple[int, list[str]]]
 
 
-def rows(path, *, broken: str = 'strict') -> Rows:
+def rows(path: Place, *, broken: str = 'strict') -> Rows:
     """The rows of a CSV file, one by one: UTF-8, with or without byte order mark, or UTF-16.
 
     broken  what is made of bytes that are no text: an error, or with 'replace' a sign for each
@@ -104,7 +104,7 @@ def rows(path, *, broken: str = 'strict') -> Rows:
     return Rows(header, found)
 
 
-def read(path, required=()) -> Table:
+def read(path: Place, required: Sequence[str] = ()) -> Table:
     """The table in a CSV file (see `rows`).
 
     Raises ValueError as `rows` does, for a column of `required` that is missing, and for a line
@@ -161,7 +161,7 @@ def _rows(path: Path, broken: str) -> Iterator[tuple[int, list[str]]]:
         ) from error
 
 
-def _lines(file, path: Path) -> Iterator[str]:
+def _lines(file: IO[str], path: Path) -> Iterator[str]:
     """Lines, none of them without end."""
     number = 0
     while line := file.readline(MAX_LINE + 1):

@@ -154,12 +154,16 @@ def advance(
         alerts.state,
     ).astype(np.int8)
     changed = state != alerts.state
-    ends = (state == NORMAL) & ((not rule.remembered) | gone | over | (due & (level == CLEAR)))
+    forgotten = (not rule.remembered) | gone | over | (due & ~active & (level == CLEAR))
     told = alerts._replace(
         state=state,
         since=np.where(changed, now, alerts.since),
         turn=np.where(changed | (due & ~active), np.nan, turn),
-        until=np.where(ends | (state == ACTIVE_UNACKNOWLEDGED), np.nan, alerts.until),
+        until=np.where(
+            np.where(state == NORMAL, forgotten, state == ACTIVE_UNACKNOWLEDGED),
+            np.nan,
+            alerts.until,
+        ),
     )
     fresh = (changed & ~gone).nonzero()[0]
     if len(fresh):

@@ -57,7 +57,7 @@ class NmeaOutputParameters:
     sentences: str = parameter(
         'RMC HDT OSD TTM',
         'Sentences to send, of RMC, HDT, OSD, RSD, TTM, TLL. OpenCPN wants no '
-        'TLL beside TTM: it would reckon course and speed anew from it.',
+        'TLL with TTM: it would compute course and speed from TLL again.',
     )
     udp: str = parameter(
         '127.0.0.1:10110',
