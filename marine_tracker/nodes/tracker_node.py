@@ -1,12 +1,12 @@
 """The tracker as a node: plots and own ship in, tracks out. The core does the work.
 
-What comes in is screened (tracking/intake.py): what is bad is rejected, counted by a named reason
-on /diagnostics and logged once; the tracks live on. See there for how jumps of the clock and of
-own ship are taken.
+Input is screened (tracking/intake.py). Bad input is rejected, counted on /diagnostics by a named
+reason, and logged once. The tracks stay. intake.py also describes how jumps of the clock and of own
+ship are handled.
 
-`tracks` and `extrapolations` show confirmed and coasting tracks, `tracks_cloud` all with their
-status. In `tracks` each is stamped with the time the beam passed it. `targets` and `markers` show
-those that were acquired (operator.py); a lost one stands once more in `targets`, as STALE.
+`tracks` and `extrapolations` show confirmed and coasting tracks; `tracks_cloud` shows all tracks
+with their status. In `tracks` each one has the time at which the beam passed it. `targets` and
+`markers` show acquired tracks (operator.py). A lost target is once more in `targets`, as STALE.
 """
 
 import time

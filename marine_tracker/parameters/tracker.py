@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from .description import check, parameter
 
 VESSEL_CLASSES = ('ship', 'small_craft')
-# m: how far the point of a target that echoes strays from its middle, each axis, by vessel class.
+# m: deviation of a target's echoing point from its middle, each axis, by vessel class.
 GLINT_SIGMA = {'ship': 25.0, 'small_craft': 0.0}
 EXTENTS = ('none', 'random_matrix', 'gp')
 
@@ -229,5 +229,5 @@ class TrackerParameters:
 
     @property
     def glint_sigma(self) -> float:
-        """m: glint_sigma_m, or where that is below 0 that of the vessel class."""
+        """m: glint_sigma_m; if that is below 0, the value of the vessel class."""
         return GLINT_SIGMA[self.vessel_class] if self.glint_sigma_m < 0 else self.glint_sigma_m
