@@ -5,8 +5,10 @@ from scipy.optimize import linear_sum_assignment
 
 from ..types import Array
 from .gate import Pairs
+from .sparse_assignment import best_pairs
 
 FEW = 32  # tracks; a matrix of so few is solved sooner than it is taken apart
+LARGE = 250_000  # tracks times plots of a component, beyond which no matrix is made: 2 MB
 
 
 def gain(pairs: Pairs, size: float) -> Array:
@@ -27,7 +29,8 @@ def associate(track, plot, gain, tracks: int, plots: int):
 
     Most pairs compete with nothing, and most others are one track with several plots or one plot
     with several tracks: these are settled at once. What remains falls into connected components;
-    each is solved exactly (Jonker-Volgenant), so the whole is the global optimum.
+    each is solved exactly, the small ones as matrices (Jonker-Volgenant), the large ones as graphs,
+    so the whole is the global optimum.
     """
     plot_of = np.full(tracks, -1, np.int64)
     plots_of_track = np.bincount(track, minlength=tracks)
@@ -78,7 +81,9 @@ def _solve(track, plot, gain):
 
 
 def _assign(row, column, gain, pairs, height: int, width: int):
-    """Of the pairs of one small problem, those of the optimal assignment (Jonker-Volgenant)."""
+    """Of the pairs of one component, those of the optimal assignment."""
+    if height * width > LARGE:
+        return pairs[best_pairs(row, column, gain, height, width)]
     worth = np.zeros((height, width))
     which = np.full((height, width), -1)
     worth[row, column], which[row, column] = gain, pairs
@@ -90,8 +95,9 @@ def _components(row, column, rows: int, columns: int):
     """Connected components of a bipartite graph with the edges (row [P], column [P]).
 
     Returns the smallest row of its component for each row and each column, by passing it on
-    until nothing changes. The graphs here are many and tiny: a few rounds, a sixth of the time
-    that a sparse-graph routine spends on its set-up.
+    until nothing changes; a row also takes over what the row it points to points to, so long chains
+    take few rounds too. The graphs here are many and tiny: a sixth of the time that a sparse-graph
+    routine spends on its set-up.
     """
     of_row = np.arange(rows)
     while True:
@@ -99,6 +105,7 @@ def _components(row, column, rows: int, columns: int):
         np.minimum.at(of_column, column, of_row[row])
         lower = of_row.copy()
         np.minimum.at(lower, row, of_column[column])
+        lower = lower[lower]
         if np.array_equal(lower, of_row):
             return of_row, of_column
         of_row = lower
