@@ -21,7 +21,8 @@ def swap_risk(position, covariance, origin, size: float):
     1 they overlap; inf and -1 where no other is near. It is the greatest value of
     l (1 - l) d' [(1 - l) A + l B]^-1 d over 0 < l < 1 (Perram and Wertheim 1985, "Statistical
     mechanics of hard ellipsoids", J. Comput. Phys. 58), taken on a grid: at most some per cent too
-    small, which errs towards the risk.
+    small, which errs towards the risk. In a crowd only the nearest others are looked at
+    (tracking.pair_budget).
     """
     count = len(position)
     overlap, other = np.full(count, np.inf), np.full(count, -1)
@@ -33,7 +34,9 @@ def swap_risk(position, covariance, origin, size: float):
     half_width = np.where(
         far < distance, np.arcsin(np.minimum(far / np.maximum(distance, 1e-9), 1.0)), np.pi
     )
-    one, two = window_pairs(distance - far, distance + far, bearing, half_width, distance, bearing)
+    one, two, _ = window_pairs(
+        distance, distance - far, distance + far, bearing, half_width, distance, bearing
+    )
     apart = position[one] - position[two]
     close = np.hypot(*apart.T) < EASE * (reach[one] + reach[two])
     close &= (reach[one] > reach[two]) | ((reach[one] == reach[two]) & (one < two))

@@ -68,6 +68,7 @@ class Report(NamedTuple):
     plot: IntArray
     reason: CodeArray
     begun: Plots
+    left_out: int
 
 
 class Tracker:
@@ -129,7 +130,7 @@ class Tracker:
 
         # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
         expected = expect(ahead, lone, scan, speed)
-        pairs = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
+        pairs, left_out = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
         pairs = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
         pairs, starts = split(pairs, count)
 
@@ -171,7 +172,7 @@ class Tracker:
             scan.own_ship.position[-1],
             memory.next_id + len(first),
             next_number,
-        ), Report(seen.time, tracks, seen.predicted, plot_of, reason, begun)
+        ), Report(seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """The memory of another tracker, made fit for this one's estimator; no track is lost.
