@@ -64,6 +64,7 @@ class Seen(NamedTuple):
     shores    how many were land
     own       [2] m, own ship in the middle of the scan
     map       of the land, this scan included
+    left_out  pairs of cells that were not compared, because a crowd has too many
     """
 
     cells: Plots
@@ -72,6 +73,7 @@ class Seen(NamedTuple):
     shores: int
     own: Array
     map: LandMap
+    left_out: int
 
 
 class Extents:
@@ -117,7 +119,7 @@ class Extents:
         along = unit_vector(cells.bearing)
         width = (self.beam_width * cells.range)[:, None] * np.stack([along[:, 1], -along[:, 0]], -1)
         land = land_map.learn(memory.land, cells.position, width)
-        found = cluster(
+        found, left_out = cluster(
             cells,
             p.range_resolution_m,
             self.beam_width,
@@ -126,7 +128,8 @@ class Extents:
         dry = found.land | ((found.size > LONGEST) & (found.gate < 0))
         chosen = (~dry).nonzero()[0]
         plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan)
-        return scan._replace(plots=plots), Seen(cells, found, chosen, int(dry.sum()), own, land)
+        seen = Seen(cells, found, chosen, int(dry.sum()), own, land, left_out)
+        return scan._replace(plots=plots), seen
 
     def step(
         self, memory: ExtentsMemory, seen: Seen, ids, time, plot, estimate: Extrapolation

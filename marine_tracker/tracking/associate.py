@@ -8,7 +8,9 @@ from .gate import Pairs
 from .sparse_assignment import best_pairs
 
 FEW = 32  # tracks; a matrix of so few is solved sooner than it is taken apart
-LARGE = 250_000  # tracks times plots of a component, beyond which no matrix is made: 2 MB
+# Tracks times plots of a component beyond which it is solved as a graph; and, should that take more
+# than so many looks at a pair, as a matrix after all, unless it had more than so many places.
+LARGE, PATIENCE, HUGE = 250_000, 10, 25_000_000
 
 
 def gain(pairs: Pairs, size: float) -> Array:
@@ -83,9 +85,12 @@ def _solve(track, plot, gain):
 def _assign(row, column, gain, pairs, height: int, width: int):
     """Of the pairs of one component, those of the optimal assignment."""
     if height * width > LARGE:
-        return pairs[best_pairs(row, column, gain, height, width)]
+        patience = PATIENCE if height * width <= HUGE else np.inf
+        best = best_pairs(row, column, gain, height, width, patience)
+        if best is not None:
+            return pairs[best]
     worth = np.zeros((height, width))
-    which = np.full((height, width), -1)
+    which = np.full((height, width), -1, np.int32)
     worth[row, column], which[row, column] = gain, pairs
     taken = which[linear_sum_assignment(worth, maximize=True)]
     return taken[taken >= 0]

@@ -106,7 +106,9 @@ def window_pairs(distance, low, high, bearing, half_width, plot_range, plot_bear
     return track[inside], plot[inside], left_out
 
 
-def gate(expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, size: float) -> tuple[Pairs, int]:
+def gate(
+    expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, size: float
+) -> tuple[Pairs, int]:
     """Pairs of expected targets and plots inside the chi-square gate; and how many are left out,
     beyond the budget.
 

@@ -7,6 +7,8 @@ that is left then looks for the cheapest chain of changes that frees a plot for 
 track that goes without, by Dijkstra's method on what the plots cost (Jonker and Volgenant 1987).
 Chains are short, so it matters little that this part is Python, and matrices of tracks by plots are
 never made. Prices end such that no change gains anything: the assignment is the global optimum.
+Where hundreds contest the same few plots chains are long: there a matrix is solved sooner, and the
+search gives up when it is told to.
 """
 
 from heapq import heappop, heappush
@@ -18,11 +20,14 @@ from ..types import Array, IntArray
 ROUNDS = 4  # of the auction; more settle hardly any
 
 
-def best_pairs(row: IntArray, column: IntArray, gain: Array, rows: int, columns: int) -> IntArray:
+def best_pairs(
+    row: IntArray, column: IntArray, gain: Array, rows: int, columns: int, patience: float = np.inf
+) -> IntArray | None:
     """Of the pairs [P], those of the assignment with the largest total gain; in no order.
 
     row, column  [P]  of each pair; each row below `rows` and column below `columns` has one
     gain         [P]  > 0, over leaving row and column alone
+    patience     looks at a pair, on average, after which it gives up: None
     """
     if rows > columns:  # the fewer search, the shorter are the chains
         row, column, rows, columns = column, row, columns, rows
@@ -30,8 +35,8 @@ def best_pairs(row: IntArray, column: IntArray, gain: Array, rows: int, columns:
     row, column, gain = row[order], column[order], gain[order]
     start = row.searchsorted(np.arange(rows + 1))
     price, held = _auction(row, column, gain, start[:-1], columns)
-    held = _augment(row, column, gain, start, price, held)
-    return order[held[held >= 0]]
+    found = _augment(row, column, gain, start, price, held, patience * len(gain))
+    return None if found is None else order[found[found >= 0]]
 
 
 def _auction(
@@ -67,9 +72,16 @@ def _auction(
 
 
 def _augment(
-    row: IntArray, column: IntArray, gain: Array, start: IntArray, price: Array, held: IntArray
-) -> IntArray:
-    """The pair that each row holds, or -1, after every row without one has searched."""
+    row: IntArray,
+    column: IntArray,
+    gain: Array,
+    start: IntArray,
+    price: Array,
+    held: IntArray,
+    looks: float,
+) -> IntArray | None:
+    """The pair that each row holds, or -1, after every row without one has searched; None after
+    so many looks at pairs."""
     best = np.maximum.reduceat(gain - price[column], start[:-1])
     searching = ((held < 0) & (best > 0)).nonzero()[0].tolist()
     owner = np.full(len(price), -1)
@@ -84,7 +96,10 @@ def _augment(
         done: dict[int, float] = {}
         heap: list[tuple[float, int]] = []
         here, so_far = root, 0.0
+        if looks < 0:
+            return None
         while True:
+            looks -= starts[here + 1] - starts[here]
             for pair in range(starts[here], starts[here + 1]):
                 goods = columns[pair]
                 if goods in done:

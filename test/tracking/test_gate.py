@@ -177,7 +177,9 @@ def test_the_gate_holds_the_targets_plot_as_often_as_promised():
             np.zeros((count, 2)),
         )
         plots = locate(polar, own, 15.0, 0.0087)
-        (track, plot, _, _), _ = gate(targets, plots, Sweep(0.0, 0.0, 0.0), noise(), gate_size(0.99))
+        (track, plot, _, _), _ = gate(
+            targets, plots, Sweep(0.0, 0.0, 0.0), noise(), gate_size(0.99)
+        )
         hits += np.count_nonzero(track == plot)
     assert abs(hits / 20_000 - 0.99) < 0.003
 
