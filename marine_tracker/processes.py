@@ -3,6 +3,7 @@
 import contextlib
 import ctypes
 import os
+import resource
 import signal
 
 PR_SET_PDEATHSIG = 1  # sys/prctl.h
@@ -38,3 +39,8 @@ def keep_freed_memory() -> bool:
     except (AttributeError, OSError):  # not the GNU C library
         return False
     return bool(mallopt(M_TRIM_THRESHOLD, KEEP) and mallopt(M_MMAP_THRESHOLD, KEEP // 2))
+
+
+def peak_memory_mb() -> float:
+    """MB: the most memory that this process has had so far. Linux counts in kB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

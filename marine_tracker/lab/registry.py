@@ -8,6 +8,7 @@ from types import ModuleType
 from . import marine_table
 from .alpha_beta import alpha_beta
 from .compare import compare
+from .dense import dense
 from .extended import extended
 from .gwnn import gwnn, monte_carlo
 from .gwnn_paper import gwnn_paper
@@ -28,4 +29,5 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'extended': extended,
     'hulls': hulls,
     'compare': compare,
+    'dense': dense,
 }

@@ -17,6 +17,7 @@ SECTORS = 16
 MEMORY = 20  # scans
 # One plot in twenty scans over a whole ring: what an empty sea is taken to hold, at least.
 LEAST_IN_RING = 0.05
+CROWD = 50.0  # plots a scan in one cell, beyond which they are no sample of its ring
 
 _EDGES = NEAREST * 2.0 ** (np.arange(RINGS + 1) / RINGS_AN_OCTAVE)
 _EDGES[0] = 0.0
@@ -57,10 +58,11 @@ def density(clutter: ClutterMap, range_, bearing):
 
     The cell's own count or its ring's mean, whichever is more: a cell has seen too few plots to
     be trusted where it is emptier than its ring. The ring's mean is set right for its start
-    at 0 (it is known after a few scans), the cell's is not.
+    at 0 (it is known after a few scans), the cell's is not. A cell adds no more than CROWD to it: a
+    crowd in one place, such as a rain cell, says nothing of the other side of the ring.
     """
     count = clutter.plots.reshape(RINGS, SECTORS)
     known = 1 - (1 - 1 / MEMORY) ** max(clutter.scans, 1)
-    ring = np.maximum(count.sum(1) / known, LEAST_IN_RING)
+    ring = np.maximum(np.minimum(count, CROWD).sum(1) / known, LEAST_IN_RING)
     here = np.maximum(count * SECTORS, ring[:, None]) / _RING_AREA[:, None]
     return here.ravel()[_cell(range_, bearing)]

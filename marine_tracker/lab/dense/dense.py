@@ -5,7 +5,6 @@ one after the other, and go again. Each case has a process of its own, whose gre
 told; so is the CPU time of its slowest scan, and how many ships still have the track they had.
 """
 
-import resource
 import time
 from typing import NamedTuple
 
@@ -14,7 +13,7 @@ import numpy as np
 from ...evaluation import parallel, report
 from ...evaluation.result import Progress, Result, silent
 from ...geometry import unit_vector
-from ...processes import keep_freed_memory
+from ...processes import keep_freed_memory, peak_memory_mb
 from ...service import Service, service_for
 from ...tracking.lifecycle import LOST
 from ...types import Array, OwnShip, PolarPlots, Scan
@@ -60,12 +59,16 @@ def run(
     if scans < 1:
         raise ValueError(f'--scans is {scans}; it must be at least 1')
     cases = [(name, count) for name in PATTERNS for count in counts]
-    seeds = range(seed, seed + runs)
-    found = [
-        # One process after the other: they would take the time from each other.
-        [parallel.run([_job(*case, one, estimator, extent, scans)], 1, silent)[0] for one in seeds]
-        for case in _told(cases, progress)
-    ]
+    found: list[list[Case]] = []
+    for done, (name, count) in enumerate(cases):
+        progress(done, len(cases))
+        of_case: list[Case] = []
+        for one in range(seed, seed + runs):
+            # One process after the other: they would take the time from each other.
+            job = parallel.Job(measure, (name, count, one, estimator, extent, scans))
+            of_case += parallel.run([job], 1, silent)
+        found.append(of_case)
+    progress(len(cases), len(cases))
     figures = []
     for (name, count), of_case in zip(cases, found, strict=True):
         title = f'{count} plots, {name}'
@@ -80,17 +83,6 @@ def run(
             report.Figure(f'{title}: pairs left out', max(case.left_out for case in of_case)),
         ]
     return Result(figures)
-
-
-def _told(cases, progress):
-    for done, case in enumerate(cases):
-        progress(done, len(cases))
-        yield case
-    progress(len(cases), len(cases))
-
-
-def _job(name, count, seed, estimator, extent, scans):
-    return parallel.Job(measure, (name, count, seed, estimator, extent, scans))
 
 
 def measure(
@@ -120,8 +112,7 @@ def measure(
         left_out += output.report.left_out
         place = place + PERIOD * velocity
     now = _tracks_of(service, memory, place, (BEFORE + scans + AFTER) * PERIOD)
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return Case(peak, slowest, int(np.sum((now == numbers) & (now > 0))), left_out)
+    return Case(peak_memory_mb(), slowest, int(np.sum((now == numbers) & (now > 0))), left_out)
 
 
 def _ships(rng: np.random.Generator, crowd: Array) -> tuple[Array, Array]:
