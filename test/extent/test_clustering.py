@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from marine_tracker.extent import clustering
 from marine_tracker.extent.clustering import Gates, cluster, in_gates
 from marine_tracker.geometry import to_range_bearing, wrap_angle
 from marine_tracker.types import Plots
@@ -140,3 +141,40 @@ def test_gates_move_with_their_targets():
 def test_no_cells_no_clusters():
     cells = plots(np.empty((0, 2)))
     assert len(cluster(cells, DEPTH, BEAM, in_gates(cells, gate([0, 0], 9, 9)))[0].cells) == 0
+
+
+@pytest.mark.parametrize('middle', [(900.0, 300.0), (0.0, 5000.0)])
+def test_in_a_crowd_the_clusters_are_those_of_all_pairs(middle, monkeypatch):
+    """Three crowds too far apart to touch, one over north; two gates share one of them."""
+    rng = np.random.default_rng(6)
+    places = np.asarray(middle) + np.concatenate(
+        [[shift, 0] + rng.uniform(-30, 30, (150, 2)) for shift in (-500, 0, 500)]
+    )
+    cells = plots(places)
+    place = in_gates(cells, gate([np.add(middle, (-8, 0)), np.add(middle, (8, 0))], 12, 7))
+    expected, none = cluster(cells, DEPTH, BEAM, place)
+    monkeypatch.setattr(clustering, 'LINKS', 2000)
+    found, left_out = cluster(cells, DEPTH, BEAM, place)
+    assert none == 0 and left_out > 2000
+    assert sets(found.of_cell) == sets(expected.of_cell)
+    assert len(expected.cells) >= 4
+    np.testing.assert_array_equal(found.crowded, expected.crowded)
+
+
+def test_cells_at_one_place_are_one_cluster(monkeypatch):
+    monkeypatch.setattr(clustering, 'LINKS', 50)
+    cells = plots(np.tile([700.0, -900.0], (600, 1)))
+    found, left_out = cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))
+    assert found.cells.tolist() == [600]
+    assert left_out > 300_000  # 2 lists of 179,700 pairs
+
+
+def test_gates_are_looked_through_in_parts_to_the_same_end(monkeypatch):
+    rng = np.random.default_rng(7)
+    cells = plots(rng.uniform(500, 900, (90, 2)))
+    gates = gate(rng.uniform(500, 900, (12, 2)), 80, 30)
+    whole = in_gates(cells, gates)
+    monkeypatch.setattr(clustering, 'AT_ONCE', 100)
+    for part, all_at_once in zip(in_gates(cells, gates), whole):
+        np.testing.assert_array_equal(part, all_at_once)
+    assert len(np.unique(whole.gate)) > 5
