@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import locate, own_ship_at, polar_to_position, to_range_bearing, unit_vector
@@ -228,23 +229,30 @@ def one_a_ship(gates: Gates, velocity_covariance, young) -> tuple[Gates, NDArray
     are one hull in two pieces, unless both are known for long; young [H] tells which are not. The
     gate of the older track, which comes first, grows over both; the other gets no more plots.
     """
-    apart = gates.middle[:, None] - gates.middle
-    way = np.hypot(*np.moveaxis(apart, -1, 0))
-    inverse, _ = invert_2x2(gates.area)
-    # From the middle of each row's gate to its edge, towards each column's.
-    edge = way / np.sqrt(np.maximum(squared_distance(apart, inverse[:, None]), 1e-12))
-    differ = gates.velocity[:, None] - gates.velocity
-    certain, _ = invert_2x2(velocity_covariance[:, None] + velocity_covariance)
-    one = np.triu(
-        (way <= edge + edge.T)
+    area = gates.area.copy()
+    if len(area) < 2:
+        return gates, np.arange(len(area))
+    farthest = 2 * np.sqrt(np.linalg.eigvalsh(area)[:, -1].max())
+    pairs = cKDTree(gates.middle).query_pairs(farthest * (1 + 1e-9), output_type='ndarray')
+    older, younger = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))].T
+    apart = gates.middle[older] - gates.middle[younger]
+    way = np.hypot(*apart.T)
+    inverse, _ = invert_2x2(area)
+    # From the middle of each one's gate to its edge, towards the other's.
+    edge, others = (
+        way / np.sqrt(np.maximum(squared_distance(apart, inverse[rows]), 1e-12))
+        for rows in (older, younger)
+    )
+    differ = gates.velocity[older] - gates.velocity[younger]
+    certain, _ = invert_2x2(velocity_covariance[older] + velocity_covariance[younger])
+    one = (
+        (way <= edge + others)
         & (squared_distance(differ, certain) < ALIKE)
         & (np.square(differ).sum(-1) < DRIFT**2)
-        & (young[:, None] | young),
-        1,
-    )
-    area = gates.area.copy()
-    for older, younger in zip(*one.nonzero()):
-        reach = 1 + edge[younger, older] / max(way[older, younger], 1.0)
-        area[older] += reach**2 * np.outer(apart[older, younger], apart[older, younger])
-    kept = (~one.any(0)).nonzero()[0]
+        & (young[older] | young[younger])
+    ).nonzero()[0]
+    for pair in one:
+        reach = 1 + others[pair] / max(way[pair], 1.0)
+        area[older[pair]] += reach**2 * np.outer(apart[pair], apart[pair])
+    kept = np.setdiff1d(np.arange(len(area)), younger[one])
     return take(gates._replace(area=area), kept), kept
