@@ -6,7 +6,7 @@ import os
 import sys
 from importlib import metadata
 
-from .processes import one_thread
+from .processes import one_thread, stop_on_sigterm
 
 COMMANDS = (
     'demo',
@@ -39,6 +39,8 @@ def main(arguments: list[str] | None = None) -> int:
     """Run a command line; returns the exit code: 0 well, 1 found wanting, 2 bad usage or input."""
     argv = sys.argv[1:] if arguments is None else arguments
     one_thread()
+    if arguments is None:
+        stop_on_sigterm()
     try:
         args = _parser(argv).parse_args(argv)
         return args.run(args)

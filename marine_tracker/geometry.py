@@ -9,7 +9,6 @@ from .types import OwnShip, Plots, PolarPlots
 
 NAUTICAL_MILE = 1852.0  # m
 KNOT = NAUTICAL_MILE / 3600.0  # m/s
-EARTH_RADIUS = 6371008.8  # m, mean
 
 
 def wrap_bearing(angle):
@@ -104,23 +103,3 @@ def locate(polar: PolarPlots, own_ship: OwnShip, range_sigma: float, bearing_sig
         covariance,
         polar.radial_speed,
     )
-
-
-def local_from_geodetic(latitude_deg, longitude_deg, origin_latitude_deg, origin_longitude_deg):
-    """East and north [..., 2] m of geodetic positions near an origin, on a sphere."""
-    north = np.radians(np.subtract(latitude_deg, origin_latitude_deg)) * EARTH_RADIUS
-    east = (
-        np.radians(np.subtract(longitude_deg, origin_longitude_deg))
-        * EARTH_RADIUS
-        * np.cos(np.radians(origin_latitude_deg))
-    )
-    return np.stack([east, north], -1)
-
-
-def geodetic_from_local(position, origin_latitude_deg, origin_longitude_deg):
-    """Latitude [...] and longitude [...] in degrees of local positions [..., 2] m."""
-    latitude = origin_latitude_deg + np.degrees(position[..., 1] / EARTH_RADIUS)
-    longitude = origin_longitude_deg + np.degrees(
-        position[..., 0] / (EARTH_RADIUS * np.cos(np.radians(origin_latitude_deg)))
-    )
-    return latitude, longitude

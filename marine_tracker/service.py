@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arpa.arpa import OWN_AT_REST, Arpa, ArpaMemory, Picture
+from .arpa.anchor import AT_REST
+from .arpa.arpa import Arpa, ArpaMemory, Picture
 from .arpa.view import Standing, standing
 from .estimators import Estimator
 from .extent.extents import Extents, ExtentsMemory
@@ -39,7 +40,7 @@ class Tracking(NamedTuple):
     scan      as the tracker took it: with extents one plot a cluster
     report    of the tracker
     estimate  N rows, at the report's times
-    shapes    N rows: sizes and headings; None with extent off
+    shapes    N rows: sizes and headings; None with extent none
     """
 
     scan: Scan
@@ -141,6 +142,6 @@ def course_over_ground(own_ship: OwnShip) -> float:
     """rad: own ship's course over ground in its last sample, which stands for her heading where no
     compass is heard; nan where she makes no way."""
     velocity: Array = own_ship.velocity[-1]
-    if np.hypot(*velocity) < OWN_AT_REST:
+    if np.hypot(*velocity) < AT_REST:
         return float('nan')
     return float(np.arctan2(*velocity))

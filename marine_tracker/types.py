@@ -139,7 +139,7 @@ class Tracks(NamedTuple):
     bearing     [N]  rad from own ship when last swept: tells when the beam will pass again
     state       estimator state, N rows
     radar       [N]  which radar had the last plot; None with one radar
-    past        the last updates (tracking.order.Update), the last first; () with one radar
+    past        the last updates (tracking.late_plots.Update), the last first; () with one radar
     """
 
     id: NDArray[np.int64]

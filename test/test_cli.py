@@ -88,7 +88,7 @@ def test_ctrl_c_ends_quietly_with_130(tmp_path):
         process.kill()
 
 
-@pytest.mark.parametrize('missing', ['numpy', 'yaml'])
+@pytest.mark.parametrize('missing', ['numpy', 'ruamel'])
 def test_without_a_package_it_says_so_and_doctor_still_runs(command, tmp_path, missing):
     (tmp_path / f'{missing}.py').write_text(
         f'raise ModuleNotFoundError("No module named {missing!r}", name={missing!r})'

@@ -5,17 +5,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..gaussian.linear import invert_2x2, squared_distance
-from ..geometry import KNOT, NAUTICAL_MILE, locate, polar_to_position, unit_vector
+from ..geometry import KNOT, NAUTICAL_MILE, polar_to_position, unit_vector
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
+from ..tracking.noise import noise_of
 from ..tracking.radars import radars_of
 from ..tracking.tracker import Report
 from ..types import Array, OwnShip, Scan, Tracks, append, row_of, take
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
+from .anchor import at_anchor, harmless
 from .cpa import Approach, OwnMotion, approach
 from .motion import Motion
 from .own_motion import lately, own_motion, sea_stabilised
@@ -47,7 +48,7 @@ class Picture(NamedTuple):
     motion    T rows, as stabilised: course and speed through the water where a current is given
     approach  T rows
     past      past positions of all tracks
-    at_rest   [T]  neither the target, as far as is known, nor own ship makes way
+    harmless  [T]  own ship lies at anchor and the target does not surely come nearer
     danger    [T]  one of situation.SAFE, NEARLY, DANGEROUS
     overlap   [T]  of the gate with that of another track: below 1 they may be swapped
     events    what happened to targets in this scan
@@ -62,22 +63,12 @@ class Picture(NamedTuple):
     motion: Motion
     approach: Approach
     past: PastPositions
-    at_rest: NDArray[np.bool_]
+    harmless: NDArray[np.bool_]
     danger: NDArray[np.int8]
     overlap: Array
     events: Events
     alerts: Alerts
     changed: Alerts
-
-
-OWN_AT_REST = 0.25  # m/s, below which own ship makes no way
-BY_CHANCE = 11.8  # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
-
-
-def makes_way(moving: Motion) -> NDArray[np.bool_]:
-    """Whether [N] tracks surely move over ground; a new one at anchor shows some speed by noise."""
-    inverse, _ = invert_2x2(moving.covariance[:, 2:, 2:])
-    return ~moving.stationary & (squared_distance(moving.velocity, inverse) > BY_CHANCE)
 
 
 class Arpa:
@@ -99,7 +90,7 @@ class Arpa:
         self.acquisition = acquisition.AcquisitionSettings(
             p.acquisition, p.max_targets, p.click_radius_m, p.click_wait_s
         )
-        self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s)
+        self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s, limits=self.limits)
         self.motion = motion.PRESETS[tracker.vessel_class]._replace(
             speed_sigma=0.5 * tracker.max_target_speed_mps
         )
@@ -132,71 +123,51 @@ class Arpa:
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
-        bearing_sigma = np.radians(radar.bearing_sigma_deg)
         samples = lately(memory.own, scan.own_ship, now)
         own = own_motion(samples, now, heading)
 
         # motion: course and speed from a memory of their own
-        plots = locate(scan.plots, scan.own_ship, radar.range_sigma_m, bearing_sigma)
+        plots = noise_of(radar, scan).locate(scan)
         remembered = motion.step(memory.motion, report, plots, self.motion, scan.radar)
         moving = motion.at(remembered, now)
-        past = past_positions.step(
-            memory.past,
-            tracks.id,
-            tracks.first_time,
-            moving.position,
-            moving.velocity,
-            own.position,
-            own.velocity,
-            now,
-        )
+        past = past_positions.step(memory.past, tracks.id, tracks.first_time, moving, own, now)
 
         # cpa: how the tracks pass own ship
-        at_rest = ~makes_way(moving) & (np.hypot(*own.velocity) < OWN_AT_REST)
+        own, no_danger = self._anchored(samples, moving, own, now)
         moving, own = sea_stabilised(moving, own, self.current)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
-            tracks, report.reason, moving.position, passing, at_rest, self.zones, own, self.limits
+            tracks, report.reason, moving.position, passing, no_danger, self.zones, own, self.limits
         )
 
         # acquisition: which of them are targets
-        before = memory.acquisition.targets
         acquired, events = acquisition.step(memory.acquisition, self.acquisition, seen, now)
-
-        # alarms
-        overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        target = acquisition.how_acquired(acquired, tracks.id) >= 0
-        fallen = int(np.sum(fallen & target & (tracks.status == CONFIRMED)))
-        alive, changed = alarms.step(
-            memory.alerts,
-            self.alarms,
-            seen,
-            acquired,
-            events,
-            self.zones,
-            alarms.Tracking(self.acquisition.capacity, fallen, overlap, other),
-            now,
-        )
-
-        lost = tracks.id[tracks.status == LOST]
-        targets = append(acquired.targets, take(before, np.isin(before.id, lost)))
-        targets = take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+        targets = _shown(acquired, memory.acquisition, tracks)
         row = row_of(tracks.id, targets.id)
-        return ArpaMemory(samples, remembered, acquired, alive, past), Picture(
-            now,
-            own,
-            row,
-            targets,
-            take(moving, row),
-            take(passing, row),
-            past,
-            at_rest[row],
-            seen.danger[row],
-            overlap[row],
-            events,
-            alive,
-            changed,
+
+        # alarms: those after the scan, and those that changed
+        overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
+        fallen = _fallen(fallen, acquired, tracks)
+        tracking = alarms.Tracking(self.acquisition.capacity, fallen, overlap, other)
+        alarm = alarms.step(
+            memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
+
+        # the picture: the rows of the targets
+        moving, passing = take(moving, row), take(passing, row)
+        told = no_danger[row], seen.danger[row], overlap[row], events, *alarm
+        return (
+            ArpaMemory(samples, remembered, acquired, alarm[0], past),
+            Picture(now, own, row, targets, moving, passing, past, *told),
+        )
+
+    def _anchored(
+        self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float
+    ) -> tuple[OwnMotion, NDArray[np.bool_]]:
+        """Own ship, at rest where she lies at anchor; the tracks [N] that are no danger then."""
+        if not at_anchor(samples, own, now, self.parameters.own_ship_status):
+            return own, np.zeros(len(moving.position), bool)
+        return own._replace(velocity=np.zeros(2)), harmless(moving, own)
 
     def _approach(
         self, moving: Motion, own: OwnMotion, acquired: Acquisition, tracks: Tracks
@@ -232,3 +203,16 @@ class Arpa:
         )
         other[rows] = np.where(found >= 0, np.append(rows, -1)[found], -1)
         return overlap, other
+
+
+def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Targets:
+    """The targets, those that were lost in this scan among them, in the order of their numbers."""
+    lost = np.isin(before.targets.id, tracks.id[tracks.status == LOST])
+    targets = append(acquired.targets, take(before.targets, lost))
+    return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+
+
+def _fallen(fallen, acquired: Acquisition, tracks: Tracks) -> int:
+    """How many confirmed targets have fallen back, of the tracks `fallen` [N], or all or none."""
+    target = acquisition.how_acquired(acquired, tracks.id) >= 0
+    return int(np.sum(fallen & target & (tracks.status == CONFIRMED)))

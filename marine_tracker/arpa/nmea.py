@@ -27,14 +27,15 @@ GROUND, WATER = 'P', 'W'  # references of OSD: position fixes; a log through the
 NORTH_UP, HEAD_UP, COURSE_UP = 'N', 'H', 'C'
 LENGTH = 82  # IEC 61162-1: characters of a sentence, $ and CR LF included
 NAME = 20  # OpenCPN: characters of a target's name
-NUMBERS = range(1, 100)  # target numbers of two digits; 00 is left to "none"
+TWO_DIGITS, THREE_DIGITS = 99, 999  # greatest target numbers: by the standard; as OpenCPN reads
+NUMBERS = range(1, THREE_DIGITS + 1)  # 0 is left to "none"
 NEAREST = 0.001  # NM; OpenCPN takes a range of 0 for a target switched off
 
 
 class Targets(NamedTuple):
     """N targets as TTM and TLL tell them; nan for a figure that is not known.
 
-    number    [N]  of two digits, 1 to 99 (see nmea_targets.slots)
+    number    [N]  1 to 99, or to 999 where receivers take that (see nmea_targets.slots)
     status    [N]  LOST, ACQUIRING or TRACKING
     acquired  [N]  AUTOMATIC, MANUAL or REPORTED; '' for not said
     name      [N]  text
@@ -276,7 +277,7 @@ def _named(talker: str, kind: str, fields: list[str], at: int, name: str) -> str
 
 def _check(targets: Targets) -> None:
     for name, known, allowed in (
-        ('number', NUMBERS, '1 to 99'),
+        ('number', NUMBERS, '1 to 999'),
         ('status', (LOST, ACQUIRING, TRACKING), 'L, Q, T'),
         ('acquired', (AUTOMATIC, MANUAL, REPORTED, ''), 'A, M, R'),
     ):

@@ -10,6 +10,8 @@ from datetime import UTC, datetime, timedelta
 
 import pynmea2
 
+from ..geodesy import wrap_longitude
+
 MILES, KNOTS, MINUTES = 999.999, 999.99, 999.9  # greatest figures that a field takes
 ANGLE = 4 * math.pi  # rad; more is no bearing
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -66,7 +68,7 @@ def position(latitude: float, longitude: float) -> tuple[str, str, str, str]:
     """Degrees as ddmm.mmmm, N or S, dddmm.mmmm, E or W; four empty fields for no such place."""
     if not (abs(latitude) <= 90 and abs(longitude) <= 360):
         return '', '', '', ''
-    longitude = (longitude + 180) % 360 - 180
+    longitude = wrap_longitude(longitude)
     parts = []
     for angle, width, signs in ((latitude, 2, 'NS'), (longitude, 3, 'EW')):
         whole, minutes = divmod(round(abs(angle) * 600_000), 600_000)  # of 1/10000 minute

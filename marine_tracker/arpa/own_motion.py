@@ -6,22 +6,24 @@ from ..geometry import own_ship_at
 from ..types import Array, OwnShip, append, take
 from .cpa import OwnMotion
 from .motion import Motion
+from .yaw import HISTORY, mean_velocity
 
-WINDOW = 10.0  # s of samples that own ship's velocity is smoothed over
+WINDOW = 10.0  # s of samples that own ship's velocity is smoothed over while she manoeuvres
 LEAST_SIGMA = 0.01  # m/s, of own velocity: few samples may agree by chance
 
 
 def lately(before: OwnShip, now: OwnShip, end: float) -> OwnShip:
     """The samples that count at the time `end`, s: those of the scan, and of scans before it."""
-    return append(take(before, (before.time > end - WINDOW) & (before.time < now.time[0])), now)
+    return append(take(before, (before.time > end - HISTORY) & (before.time < now.time[0])), now)
 
 
 def own_motion(samples: OwnShip, time: float, heading: float, window: float = WINDOW) -> OwnMotion:
     """Own ship over ground at `time`, s, from the samples of the `window` s before.
 
-    Velocity is a straight-line fit in time, so a steady turn does not lag; its covariance is that
-    of the fit to the samples' scatter. The position is that from which plots are placed, hence
-    without error of its own. heading rad, true. ValueError where there is no sample.
+    Where she goes on as before, velocity is what she makes good without her yaw (see `yaw`). Where
+    she manoeuvres it is a straight-line fit in time, so a steady turn does not lag; its covariance
+    is that of the fit to the samples' scatter. The position is that from which plots are placed,
+    hence without error of its own. heading rad, true. ValueError where there is no sample.
     """
     if not len(samples.time):
         raise ValueError('own ship has no sample; at least one is needed')
@@ -29,7 +31,11 @@ def own_motion(samples: OwnShip, time: float, heading: float, window: float = WI
     near = (samples.time > time - window) & (samples.time <= time)
     covariance = np.zeros((4, 4))
     covariance[2:, 2:] = LEAST_SIGMA**2 * np.eye(2)
-    if near.sum() >= 4:
+    on_the_whole = mean_velocity(samples, time)
+    if on_the_whole is not None:
+        velocity = on_the_whole[0]
+        covariance[2:, 2:] += on_the_whole[1]
+    elif near.sum() >= 4:
         ahead = samples.time[near] - time
         design = np.stack([np.ones_like(ahead), ahead], 1)
         inverse = np.linalg.pinv(design.T @ design)

@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
+from ..geodesy import wrap_longitude
 from ..types import Array
 from .nmea import LOST, Targets
 
@@ -49,7 +50,7 @@ def deltas(
         targets.status.tolist(),
         targets.name.tolist(),
         np.asarray(latitude).tolist(),
-        np.asarray(longitude).tolist(),
+        wrap_longitude(np.asarray(longitude)).tolist(),
         *(column.tolist() for column in targets[-4:]),
     ):
         speed, course, cpa, tcpa = figures

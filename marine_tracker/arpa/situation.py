@@ -36,6 +36,8 @@ class Situation(NamedTuple):
     danger              [N]     SAFE, NEARLY or DANGEROUS
     inside              [N, Z]  in which zones it lies
     guarded, excluded   [N]     lies in a guard zone, in an exclusion zone; in both is excluded
+    harmless            [N]     as `look` was told
+    cpa_sigma, tcpa_sigma  [N]  m, s, deviations of CPA and TCPA
     """
 
     id: NDArray[np.int64]
@@ -53,6 +55,9 @@ class Situation(NamedTuple):
     inside: NDArray[np.bool_]
     guarded: NDArray[np.bool_]
     excluded: NDArray[np.bool_]
+    harmless: NDArray[np.bool_]
+    cpa_sigma: Array
+    tcpa_sigma: Array
 
 
 def look(
@@ -60,15 +65,15 @@ def look(
     reason,
     position,
     approach: Approach,
-    at_rest,
+    harmless,
     zones: Zones,
     own: OwnMotion,
     limits: Limits,
 ) -> Situation:
     """The situation of the N tracks of a tracker's report, which has their `reason` [N] too.
 
-    position [N, 2] m and approach (N rows) are theirs, now; at_rest [N]: neither the target nor
-    own ship makes way (see `danger`).
+    position [N, 2] m and approach (N rows) are theirs, now; harmless [N]: own ship lies
+    at anchor and the target does not surely come nearer (see `danger`).
     """
     mask = inside(zones, position, own.position, own.heading)
     excluded = np.any(mask & ~zones.guard, axis=1)
@@ -84,10 +89,13 @@ def look(
         approach.tcpa,
         approach.danger_probability,
         nearest(approach, limits.tcpa),
-        danger(approach, at_rest, limits),
+        danger(approach, harmless, limits),
         mask,
         np.any(mask & zones.guard, axis=1) & ~excluded,
         excluded,
+        harmless,
+        approach.cpa_sigma,
+        approach.tcpa_sigma,
     )
 
 
@@ -102,14 +110,14 @@ def nearest(approach: Approach, within: float) -> Array:
     return np.where(np.isfinite(distance), distance, approach.range)
 
 
-def danger(approach: Approach, at_rest, limits: Limits) -> NDArray[np.int8]:
-    """How dangerous [N] each target is; at_rest [N] bool.
+def danger(approach: Approach, harmless, limits: Limits) -> NDArray[np.int8]:
+    """How dangerous [N] each target is; harmless [N] bool.
 
     DANGEROUS: CPA < limit and 0 <= TCPA < limit, as the standards have it, or the probability of
     that is at least LIKELY, whatever the values themselves. NEARLY, not enough to raise an alarm
     but to keep one: the same with limits WIDER times, or a probability of at least UNLIKELY.
-    SAFE: the rest, and those at rest while own ship is at rest: they meet by noise only. A
-    target whose TCPA is unknown (nan) is judged by the probability.
+    SAFE: the rest, and the harmless ones, which meet an anchored own ship by noise only. A target
+    whose TCPA is unknown (nan) is judged by the probability.
     """
 
     def within(share):
@@ -125,4 +133,4 @@ def danger(approach: Approach, at_rest, limits: Limits) -> NDArray[np.int8]:
         DANGEROUS,
         np.where(within(WIDER) | (probability >= UNLIKELY), NEARLY, SAFE),
     )
-    return np.where(at_rest, SAFE, level).astype(np.int8)
+    return np.where(harmless, SAFE, level).astype(np.int8)

@@ -20,6 +20,13 @@ from .motion import Motion
 from .targets import label
 
 
+class HullView(NamedTuple):
+    """shapes: of N targets; clearance [N] m: how near own ship comes to their hulls."""
+
+    shapes: Shapes
+    clearance: Array
+
+
 class View(NamedTuple):
     """N targets at one moment: those with a number in its order, then those being acquired.
 
@@ -31,14 +38,14 @@ class View(NamedTuple):
     acquired    [N]  AUTOMATIC or MANUAL
     motion      N rows, at the end of the scan
     approach    N rows
-    at_rest     [N]  neither the target nor own ship makes way
+    harmless    [N]  own ship lies at anchor and the target does not surely come nearer
     dangerous   [N]  a danger alarm is active
     swap_risk   [N]  the gate overlaps that of another track
     hits        [N]  plots in the last 10 scans
     misses      [N]  scans since the last plot
     age         [N]  s since the first plot
     account     how the estimator fares with them, N rows; without words where it gives none
-    hulls       their sizes, N rows; None with extent off
+    hulls       their sizes, N rows; None with extent none
     """
 
     name: list[str]
@@ -49,21 +56,14 @@ class View(NamedTuple):
     acquired: NDArray[np.int8]
     motion: Motion
     approach: Approach
-    at_rest: NDArray[np.bool_]
+    harmless: NDArray[np.bool_]
     dangerous: NDArray[np.bool_]
     swap_risk: NDArray[np.bool_]
     hits: NDArray[np.int64]
     misses: NDArray[np.int64]
     age: Array
     account: Account
-    hulls: 'HullView | None' = None
-
-
-class HullView(NamedTuple):
-    """shapes: of N targets; clearance [N] m: how near own ship comes to their hulls."""
-
-    shapes: Shapes
-    clearance: Array
+    hulls: HullView | None = None
 
 
 def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None = None) -> View:
@@ -85,7 +85,7 @@ def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None
         targets.acquired,
         picture.motion,
         picture.approach,
-        picture.at_rest,
+        picture.harmless,
         np.isin(targets.id, alerts.id[active]),
         picture.overlap < 1,
         lifecycle.hits(tracks.history, lifecycle.TEN),

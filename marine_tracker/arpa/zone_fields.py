@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from ..files import shown
 from ..geometry import NAUTICAL_MILE
 from ..types import Array
 
 KEYS = ('name', 'kind', 'range_nm', 'range_m', 'bearing_deg', 'corners_nm', 'corners_m', 'fixed_to')
 UNITS = {'nm': NAUTICAL_MILE, 'm': 1.0}
+LONGEST_NAME = 80  # characters
 MAX_CORNERS = 1000
 FARTHEST = 200 * NAUTICAL_MILE  # m, limit of ranges and corners
 
@@ -28,6 +30,11 @@ def name_of(item: Any, index: int, taken: list[str]) -> str:
     if not isinstance(name, str) or not name.strip():
         raise ValueError(f'zone {index + 1} has no name')
     name = name.strip()
+    if len(name) > LONGEST_NAME:
+        raise ValueError(
+            f'zone {index + 1} has a name of {len(name)} characters; it must have at most '
+            f'{LONGEST_NAME}, for alarms repeat it'
+        )
     if name in taken:
         raise ValueError(f'two zones have the name {name}')
     for key in item:
@@ -134,9 +141,3 @@ def _crosses_itself(corners: Array) -> bool:
     parts = begin * end < 0
     (x, y), (next_x, next_y) = corners.T, np.roll(corners, -1, 0).T
     return bool((parts & parts.T).any()) or not x @ next_y - y @ next_x
-
-
-def shown(value: Any) -> str:
-    """The value as an error tells it, not too long."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + '...'

@@ -17,9 +17,10 @@ import hashlib
 from typing import NamedTuple
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
+from .. import yaml_file
+from ..files import shown
 from ..geometry import to_range_bearing, unit_vector, wrap_bearing
 from ..types import Array
 from . import zone_fields
@@ -81,15 +82,10 @@ def parse(text: str) -> Zones:
 
     ValueError names the zone, the key, the value and what it may be.
     """
-    try:
-        # Every scalar stays text: bearings are written 045, which YAML takes for octal.
-        items = yaml.load(text, Loader=yaml.BaseLoader)
-    except yaml.YAMLError as error:
-        raise ValueError(f'zones are not YAML: {error}') from error
-    items = items or []
+    items = yaml_file.parse(text, 'parameter zones', as_text=True) or []
     if not isinstance(items, list):
         raise ValueError(
-            f'zones are {zone_fields.shown(items)}; they must be a list of '
+            f'zones are {shown(items)}; they must be a list of '
             'mappings, each with name, kind and range_nm or corners_m'
         )
     if len(items) > MAX_ZONES:

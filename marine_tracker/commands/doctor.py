@@ -16,6 +16,7 @@ from importlib.util import find_spec
 from typing import NamedTuple
 
 from .. import config
+from ..files import write_text
 
 HELP = 'say what is installed, what is missing and what to do'
 
@@ -26,13 +27,15 @@ REQUIRED = {
     'numpy': 'numpy',
     'scipy': 'scipy',
     'pywt': 'PyWavelets',
-    'yaml': 'PyYAML',
+    'ruamel.yaml': 'ruamel.yaml',
     'rich': 'rich',
     'pynmea2': 'pynmea2',
+    'pyproj': 'pyproj',
 }
 OPTIONAL = {
     'matplotlib': ('matplotlib', 'to draw plots'),
     'stonesoup': ('stonesoup', 'bench compares with it'),
+    'distributed': ('distributed', 'to run experiments on a cluster'),
 }
 SHIPPED = ('tracker.yaml', 'scenarios', 'fastdds_local.xml')
 PROFILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
@@ -107,8 +110,7 @@ def run(args) -> int:
         if args.json == '-':
             print(text, end='')
         else:
-            with open(args.json, 'w') as file:
-                file.write(text)
+            write_text(args.json, text)
     return 1 if any(check.required and not check.ok for check in checks) else 0
 
 
@@ -160,12 +162,12 @@ def _python() -> Check:
 
 
 def _module(module: str, package: str, advice: str, *, required: bool) -> Check:
-    if find_spec(module) is None:
-        return Check(package, False, 'not installed', advice, required)
     try:
         importlib.import_module(module)
     except Exception as error:  # a broken installation raises whatever it likes
-        return Check(package, False, f'cannot be imported: {_words(error)}', advice, required)
+        absent = isinstance(error, ModuleNotFoundError) and module.startswith(str(error.name))
+        found = 'not installed' if absent else f'cannot be imported: {_words(error)}'
+        return Check(package, False, found, advice, required)
     return Check(package, True, _version(package), '', required)
 
 
@@ -238,7 +240,9 @@ def _graph(listen: float, namespace: str) -> Iterator[Check]:
             'ROS middleware',
             False,
             f'does not start: {why}',
-            f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
+            'set ROS_LOG_DIR to a folder that can be written'
+            if 'logging' in why
+            else f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
             f'({os.environ.get("RMW_IMPLEMENTATION") or "not set"}) and ROS_DOMAIN_ID',
         )
         return

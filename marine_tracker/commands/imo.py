@@ -13,7 +13,6 @@ plots, and a limit that not even the line meets is told but not demanded. A thou
 parts keep two processors busy for some twenty minutes, longer with more estimators.
 """
 
-import os
 import sys
 
 import numpy as np
@@ -23,6 +22,7 @@ from ..conformance.accuracy import A823, MINUTES, Outcome, a823_trial
 from ..estimators import ESTIMATORS
 from ..evaluation import report
 from ..parameters import TrackerParameters
+from . import worker_options
 from .progress_bar import progress_bar
 
 HELP = 'measure it under the test conditions of the IMO'
@@ -51,24 +51,19 @@ def add_arguments(parser) -> None:
         help='also write the report as a page with pictures (needs matplotlib)',
     )
     parser.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
-    parser.add_argument(
-        '--processes',
-        type=int,
-        default=os.cpu_count() or 1,
-        metavar='N',
-        help='processes at once; they change nothing but the time (default %(default)s)',
-    )
+    worker_options.add_arguments(parser)
     report.add_arguments(parser)
 
 
 def run(args) -> int:
     """Print the figures; 1 where one misses its limit."""
-    for name, least in (('runs', 1), ('seed', 0), ('processes', 1)):
+    for name, least in (('runs', 1), ('seed', 0)):
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
     estimators = ALL if args.estimator == 'all' else (args.estimator,)
     parts = [part for part in PARTS if part in (args.part or PARTS)]
-    results = measure(estimators, parts, args.runs, args.seed, args.processes)
+    with worker_options.workers(args) as workers:
+        results = measure(estimators, parts, args.runs, args.seed, workers)
     title = f'IMO test conditions, {", ".join(estimators)}: {args.runs} runs, seed {args.seed}'
     if args.html:
         written = page.write(args.html, results, title, args.seed)
@@ -81,7 +76,7 @@ def run(args) -> int:
     )
 
 
-def measure(estimators, parts, runs, seed, processes) -> figures.Results:
+def measure(estimators, parts, runs, seed, workers) -> figures.Results:
     """The parts that were asked for."""
     found = figures.Results(estimators, {}, {})
     if 'accuracy' in parts:
@@ -93,18 +88,16 @@ def measure(estimators, parts, runs, seed, processes) -> figures.Results:
                 runs,
                 seed,
                 progress,
-                processes,
+                workers,
             )
         found = found._replace(steady=dict(zip(keys, outcomes)))
     if 'manoeuvres' in parts:
         numbers = list(A823[3])
         trials = [trial for number in numbers for trial in manoeuvres.own_turns(number)]
         with progress_bar('own ship turns') as progress:
-            outcomes = accuracy.run(
-                trials, estimators, -(-runs // 4), seed + 1, progress, processes
-            )
+            outcomes = accuracy.run(trials, estimators, -(-runs // 4), seed + 1, progress, workers)
         with progress_bar('targets turn') as progress:
-            turns = manoeuvres.target_turns(estimators, runs, seed, progress, processes)
+            turns = manoeuvres.target_turns(estimators, runs, seed, progress, workers)
         found = found._replace(
             turns=turns,
             own_turns={
@@ -115,9 +108,9 @@ def measure(estimators, parts, runs, seed, processes) -> figures.Results:
     if 'encounters' in parts:
         with progress_bar('encounters') as progress:
             found = found._replace(
-                encounters=encounters.run(estimators, -(-runs // 100), seed, progress, processes)
+                encounters=encounters.run(estimators, -(-runs // 100), seed, progress, workers)
             )
     if 'loss' in parts:
         with progress_bar('loss') as progress:
-            found = found._replace(kept=loss.run(estimators, runs, seed, progress, processes))
+            found = found._replace(kept=loss.run(estimators, runs, seed, progress, workers))
     return found

@@ -40,6 +40,12 @@ def run(args) -> int:
     return args.action(args)
 
 
+def _tell(loaded):
+    for remark in loaded.fleet.remarks:
+        print(remark, file=sys.stderr)
+    return loaded
+
+
 def _list(args):
     rows = []
     for name in scenario.shipped():
@@ -65,12 +71,13 @@ def _check(args):
             print(error, file=sys.stderr)
             wrong = 1
         else:
+            _tell(loaded)
             print(f'{file}: ok, {len(loaded.fleet.names)} targets, {loaded.scans} scans')
     return wrong
 
 
 def _show(args):
-    loaded = scenario.load(args.scenario)
+    loaded = _tell(scenario.load(args.scenario))
     print(loaded.name + (f': {loaded.description}' if loaded.description else ''))
     for line in _conditions(loaded):
         print(f'  {line}')
@@ -89,7 +96,7 @@ def _show(args):
 
 
 def _write(args):
-    loaded = scenario.load(args.scenario)
+    loaded = _tell(scenario.load(args.scenario))
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
     csv_folder.write(
@@ -108,8 +115,9 @@ def _notes(loaded):
     sigma = np.radians(loaded.tracker_parameters()['bearing_sigma_deg']) * loaded.radar.max_range
     near = float(round(max(50.0, 2 * sigma)))
     notes: dict[str, Any] = {'seen_within_m': near, 'cutoff_m': 2 * near, 'uncooperative': False}
-    if loaded.fleet.origin is not None:
-        notes['origin'] = list(loaded.fleet.origin)
+    origin = loaded.fleet.origin
+    if origin is not None:
+        notes['origin'] = [origin.latitude, origin.longitude]
     return notes
 
 

@@ -1,9 +1,8 @@
 """The options by which a command's user sets the tracker's parameters."""
 
-import yaml
-
+from .. import yaml_file
 from ..estimators import ESTIMATORS
-from ..parameters import TrackerParameters, from_mapping, read_yaml_mapping
+from ..parameters import TrackerParameters, from_mapping
 
 
 def add_arguments(parser) -> None:
@@ -33,11 +32,8 @@ def parameters(args, from_source: dict) -> TrackerParameters:
     for text in args.set:
         name, equals, value = text.partition('=')
         if not equals:
-            raise ValueError(f'--set {text}: it must be NAME=VALUE')
-        try:
-            values[name.strip()] = yaml.safe_load(value)
-        except yaml.YAMLError:
-            raise ValueError(f'--set {text}: its value is not YAML') from None
+            raise ValueError(f'--set {text[:60]}: it must be NAME=VALUE')
+        values[name.strip()] = yaml_file.parse(value, f'--set {name.strip()}')
     if args.estimator:
         values['estimator'] = args.estimator
     return from_mapping(TrackerParameters, values)
@@ -45,7 +41,7 @@ def parameters(args, from_source: dict) -> TrackerParameters:
 
 def _read(path) -> dict:
     """A flat mapping, or what `ros__parameters` holds for the tracker in a node's YAML."""
-    values = read_yaml_mapping(path)
+    values = yaml_file.read_mapping(path)
     of_nodes = {
         name: node['ros__parameters']
         for name, node in values.items()

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 from ..evaluation import report
+from ..files import write_text
 from ..networks import gwnn_weights, rough_weights, wavelet_network
 from ..parameters import VESSEL_CLASSES
 from ..processes import keep_freed_memory
@@ -21,7 +22,7 @@ file beside it tells how it came about.
 
 With --scenario the radar is the scenario's, and the tracks of its targets are learned besides;
 with --kinds the vessels move as a file of your own says (its form stands in
-marine_tracker/evaluation/own_waters.py).
+marine_tracker/training/custom_traffic.py).
 """
 ROUGH = """Train the network of `cs_rough_nn`, or that of `cs_bp_nn`.
 
@@ -127,7 +128,7 @@ def _out(name: str) -> Path:
 
 
 def _describe(out: Path, manifest) -> None:
-    out.with_suffix('.json').write_text(json.dumps(manifest, indent=1) + '\n')
+    write_text(out.with_suffix('.json'), json.dumps(manifest, indent=1) + '\n')
 
 
 def _train_rough(args) -> int:

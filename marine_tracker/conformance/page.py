@@ -1,4 +1,4 @@
-"""The IMO report as a page of HTML with its pictures beside it."""
+"""Writes the IMO report as an HTML page with its pictures."""
 
 from collections.abc import Sequence
 from html import escape
@@ -8,6 +8,7 @@ import numpy as np
 
 from ..evaluation.report import Figure, number
 from ..evaluation.result import draw
+from ..files import write_text
 from .figures import Results, figures, lines
 from .pictures import pictures
 
@@ -23,7 +24,7 @@ demanded."""
 
 
 def write(folder, results: Results, title: str, seed: int) -> Path:
-    """Write index.html and pictures into the folder, which is made; the page's path."""
+    """Writes index.html and pictures into the folder, which is created; returns the page's path."""
     drawn = draw(folder, pictures(results, seed))
     parts = [
         f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>',
@@ -36,7 +37,7 @@ def write(folder, results: Results, title: str, seed: int) -> Path:
     parts += ['<h2>All else</h2>', _table(rest)]
     parts += [f'<p><img src="{file.name}" alt="{file.stem}"></p>' for file in drawn]
     page = Path(folder) / 'index.html'
-    page.write_text('\n'.join(parts) + '\n')
+    write_text(page, '\n'.join(parts) + '\n')
     return page
 
 

@@ -1,10 +1,10 @@
-"""Cells that touch make one cluster: one target, or several close together, or land.
+"""Groups cells that touch into clusters. A cluster is one target, several close together, or land.
 
-Two cells touch when they lie within LINK cells of each other in range and in bearing, or within
-GAP, for fine cells tell the parts of a ship apart. Where hulls are expected, of targets already
-tracked, their gates come first: a cell inside one belongs to it, whatever it touches, so a hull
-that breaks up stays one cluster, ships side by side stay two, and a ship that passes close to land
-is not drawn into it.
+Two cells touch if they lie within LINK cells of each other in range and in bearing. They also touch
+if they lie within GAP, because fine cells separate the parts of a ship. The gates of tracked
+targets, where hulls are expected, come first: a cell inside a gate belongs to it, whatever it
+touches. So a hull that breaks up stays one cluster, ships side by side stay two, and a ship that
+passes close to land is not merged with it.
 """
 
 from typing import NamedTuple
@@ -22,7 +22,7 @@ from .smear import smear
 LINK = 1.5  # range resolutions, and beam widths
 GAP = 40.0  # m
 TURN = 2 * np.pi
-REACH = 225.0  # m from a hull's middle: so far what touches it is still its own
+REACH = 225.0  # m from a hull's middle; touching cells up to here still belong to the hull
 LINKS = 500_000  # pairs of cells that touch; where there are more, not all are listed
 AT_ONCE = 1_000_000  # pairs of a gate and a cell that are looked at together
 
@@ -45,14 +45,14 @@ class Gates(NamedTuple):
 class Clusters(NamedTuple):
     """C clusters; `of_cell` [M] is the cluster of each cell.
 
-    time       [C]        s, mean of the cells'
+    time       [C]        s, mean over the cells
     position   [C, 2]     m, east and north: the centroid
     scatter    [C, 2, 2]  m^2, sum over the cells of d d' with d from the centroid
-    cells      [C]        how many
+    cells      [C]        number of cells
     noise      [C, 2, 2]  m^2, R of a single cell
     size       [C]        m, between the farthest cells along the longer of two axes
     amplitude  [C]        dB, of the strongest cell
-    gate       [C]        which hull's gate it belongs to, -1 for none
+    gate       [C]        the hull whose gate it belongs to, -1 for none
     crowded    [C]        it touches another cluster, so its cells may not be its own
     land       [C]        most of its cells lie on land
     """
@@ -71,8 +71,11 @@ class Clusters(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where M cells lie: `gate` [M] of a hull that each is in, -1 for none; `off` [M] m from the
-    middle of that hull, or of the nearest; `land` [M] on land."""
+    """Where M cells lie.
+
+    gate [M]: the hull whose gate the cell is in, -1 for none; off [M] m from the middle of that
+    hull, or of the nearest; land [M]: the cell is on land.
+    """
 
     gate: NDArray[np.int64]
     off: Array
@@ -91,7 +94,7 @@ def cluster(
 
 
 def _links(cells, range_resolution, beam_width, gate):
-    """Pairs of cells that touch, [P] each, over north as well; and how many more there were."""
+    """Pairs of cells that touch, [P] each, also across north; and how many more there were."""
     if len(cells.range) < 2:
         return *np.zeros((2, 0), np.int64), 0
     turn = TURN / (LINK * beam_width)
@@ -129,7 +132,7 @@ def _touching(places, reach, norm, turn, gate):
 
 
 def in_gates(cells: Plots, gates: Gates) -> Place:
-    """Where the cells [M] lie among the gates; of land nothing is known."""
+    """Where the cells [M] lie among the gates. `land` is False for all."""
     dry = np.zeros(len(cells.time), bool)
     if not len(gates.time):
         return Place(np.full(len(dry), -1), np.full(len(dry), np.inf), dry)
@@ -152,10 +155,10 @@ def _nearest_gate(cells, gates, inverse):
 
 
 def _groups(first, second, place):
-    """A label [M] of each cell's cluster; and whether [M] it touches another cluster.
+    """A label [M] of each cell's cluster, and whether [M] that cluster touches another one.
 
-    Cells of a gate are one cluster. What touches a single gate, is not land and does not reach too
-    far off is part of that hull too.
+    Cells in one gate are one cluster. Cells outside belong to a hull too if they touch only its
+    gate, are not land and do not reach too far.
     """
     gate, count = place.gate, len(place.gate)
     same = gate[first] == gate[second]
@@ -173,7 +176,7 @@ def _groups(first, second, place):
         return group[:count], crowded[:count]
     one, other = first[~same], second[~same]
     swap = gate[one] < 0
-    one, other = np.where(swap, other, one), np.where(swap, one, other)  # `one` in a gate
+    one, other = np.where(swap, other, one), np.where(swap, one, other)  # let `one` be in a gate
     hull, part = group[one], group[other]
     reach = np.zeros(len(group))
     np.maximum.at(reach, group[:count], place.off)
@@ -190,7 +193,7 @@ def _groups(first, second, place):
 
 
 def _mostly(land, group, groups):
-    """Of which groups more than half the cells are land."""
+    """The groups of which more than half the cells are land."""
     return np.bincount(group, land, groups) > 0.5 * np.bincount(group, minlength=groups)
 
 

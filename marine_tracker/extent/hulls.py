@@ -1,10 +1,10 @@
-"""Length, beam and heading of the tracked targets: random matrix first, an outline close by.
+"""Length, beam and heading of the tracked targets: first by random matrix, later by an outline.
 
-One row a target, whatever it is; the point tracker is authoritative for where targets are and
-which cluster is whose. A row starts with a random matrix. It goes over to a Gaussian-process
-outline once SCANS clusters of CELLS cells on average have come and the smear is small against the
-beam; it goes back when the outline contradicts the course or its cells. A scan without a
-cluster, or with one that touches another, leaves size and outline as they are.
+There is one row for each target. The point tracker decides where targets are and which cluster
+belongs to which. A row starts with a random matrix. It changes to a Gaussian-process outline when
+SCANS clusters with CELLS cells on average have come, and the smear is small compared with the beam.
+It changes back if the outline contradicts the course or its cells. A scan without a cluster, or
+with one that touches another, leaves size and outline unchanged.
 """
 
 from typing import NamedTuple
@@ -25,25 +25,25 @@ from .ship_outline import SHIP, SLENDER, from_random_matrix, off_course
 
 BY_RANDOM_MATRIX, BY_GAUSSIAN_PROCESS = 0, 1  # methods
 SCANS, CELLS, SMEAR = 10, 10.0, 0.4  # for an outline: scans; mean cells; smear over half beam
-OFF_COURSE = np.radians(15)  # of an outline's heading: it is wrong
-NIS = 3.0  # mean nu^2 / S of an outline's cells: they contradict it
-EDGE_CELLS = 6  # of the lit edge that an outline needs to start
-RECENT = 5.0  # scans that the means of cells and NIS remember
+OFF_COURSE = np.radians(15)  # between outline's heading and course; above this the heading is wrong
+NIS = 3.0  # mean nu^2 / S of an outline's cells; above this they contradict it
+EDGE_CELLS = 6  # cells of the lit edge that an outline needs to start
+RECENT = 5.0  # scans, memory of the means of cells and NIS
 FIRST_WEIGHT = 6.0  # of a random matrix's first cluster
-LOST_TOUCH = 16.0  # squared distance of the random matrix from the track
-SLOW = 1.0  # m/s: slower, a course says little about the heading
+LOST_TOUCH = 16.0  # squared distance of a random matrix from its track; above it is reset
+SLOW = 1.0  # m/s; at a lower speed the course says little about the heading
 
 
 class Hulls(NamedTuple):
-    """What is known of N targets.
+    """The memory of N targets.
 
     id       [N]  of the track
     matrix   N rows
-    outline  N rows, of no meaning where the method is RANDOM_MATRIX; None where never asked for
+    outline  N rows, without meaning where the method is RANDOM_MATRIX; None if not asked for
     method   [N]  RANDOM_MATRIX or OUTLINE
     scans    [N]  clusters since the start, or since an outline failed
-    cells    [N]  mean number of cells of late
-    nis      [N]  mean nu^2 / S of the outline's cells of late, about 1
+    cells    [N]  mean number of cells in recent scans
+    nis      [N]  mean nu^2 / S of the outline's cells in recent scans, about 1
     """
 
     id: NDArray[np.int64]
@@ -58,14 +58,14 @@ class Hulls(NamedTuple):
 class Shapes(NamedTuple):
     """N targets as they are shown.
 
-    extended            [N]  the target is longer than what pulse and beam make of a point
+    extended            [N]  the target is longer than pulse and beam make a point
     length, length_sd   [N]  m
     beam                [N]  m, an upper bound where the method is RANDOM_MATRIX
-    heading             [N]  rad clockwise from north; of an axis the half that course points to
+    heading             [N]  rad clockwise from north; of an axis, the end nearer to the course
     heading_sd          [N]  rad
     source              [N]  of the heading: index into SOURCES
     method              [N]  RANDOM_MATRIX or OUTLINE
-    outline             [N, CORNERS, 2]  m, east and north of where the tracker has the target
+    outline             [N, CORNERS, 2]  m, east and north of the tracker's position
     """
 
     extended: NDArray[np.bool_]
@@ -100,7 +100,7 @@ _AROUND = 2 * np.pi / CORNERS * np.arange(CORNERS)
 
 
 def begin(outlines: bool) -> Hulls:
-    """No targets yet; outlines: whether there may be some."""
+    """No targets yet. outlines: whether outlines are used."""
     none = np.zeros(0)
     matrix = random_matrix.start(
         none,
@@ -130,11 +130,11 @@ def step(
     edge: Edge | None,
     own_ship,
 ) -> Hulls:
-    """One scan.
+    """Processes one scan.
 
-    ids [N] of the tracks, time [N] s when the beam passed them, estimate of the point tracker
-    then; taken [N]: the cluster of each, -1 for none; edge of the clusters, None for no
-    outlines; own_ship [2] m.
+    ids [N] of the tracks; time [N] s when the beam passed them; estimate of the point tracker then;
+    taken [N]: the cluster of each, -1 for none; edge of the clusters, None if outlines are not
+    used; own_ship [2] m.
     """
     new = ~np.isin(ids, before.id)
     hulls = append(
@@ -162,12 +162,12 @@ def step(
 
 
 def take_clusters(clusters: Clusters, rows) -> Clusters:
-    """The chosen clusters; of_cell is left as it is."""
+    """The chosen clusters. of_cell is not changed."""
     return take(clusters._replace(of_cell=clusters.cells), rows)._replace(of_cell=clusters.of_cell)
 
 
 def first_extent(scatter, count, noise):
-    """A first guess of X [K, 2, 2] m^2 from one cluster each: what the noise leaves."""
+    """A first guess of X [K, 2, 2] m^2 from one cluster each: its spread without the noise."""
     spread = scatter / count[:, None, None] - noise
     value, vector = np.linalg.eigh(spread)
     value = np.maximum(value, 0.25 * np.linalg.eigvalsh(noise)) / random_matrix.SHIP.spread
@@ -176,7 +176,7 @@ def first_extent(scatter, count, noise):
 
 def _start(ids, estimate, clusters, taken, outlines):
     count = len(ids)
-    # A track that was there before extents were asked for may have no cluster.
+    # A track that began before extents were switched on may have no cluster.
     none = taken < 0
     own = take_clusters(clusters if len(clusters.cells) else NOTHING, taken)
     scatter = np.where(none[:, None, None], 0.0, own.scatter)
@@ -218,9 +218,9 @@ def _no_outline(count):
 
 
 def _keep_touch(matrix, rows, own, estimate):
-    """The matrices, those of the named rows that lost touch with their track set on it again.
+    """The matrices; of the named rows, those far from their track are reset to it.
 
-    A random matrix goes straight on; the track knows manoeuvres.
+    A random matrix moves straight on, but the track follows manoeuvres.
     """
     ahead = take(matrix, rows)
     off = own.position - ahead.mean[:, :2]
@@ -238,7 +238,7 @@ def _keep_touch(matrix, rows, own, estimate):
 
 
 def _outlines(hulls, time, rows, taken, own, edge, own_ship):
-    """The outlines of the rows that may have one: predicted, started, updated, given up."""
+    """The outlines of the rows that may have one: predicted, started, updated or given up."""
     matrix, outline = hulls.matrix, hulls.outline
     noise, cells = np.zeros_like(matrix.extent), np.zeros(len(time), np.int64)
     noise[rows] = own.noise
@@ -296,9 +296,10 @@ def _padded(edge, chosen):
 def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
     """Length, beam and axis of the random matrices; noise [N, 2, 2] m^2, R of a single cell.
 
-    A radar shows cells wherever an echo reaches, and they count alike: those of a hull lie evenly
-    over its length L and F = FRINGE deviations of R beyond either end, not as a sum of both. So a
-    random matrix, which takes R off in squares, is left with about L^2 + 4 L F; here F goes.
+    A radar shows a cell wherever an echo reaches, and all cells count the same. So the cells of a
+    hull lie evenly over its length L plus F = FRINGE deviations of R at either end. The random
+    matrix subtracts R as a variance, which leaves about L^2 + 4 L F. This function removes the F
+    term.
     """
     found = random_matrix.measures(matrix, noise, size=BOX_SPREAD)
     line = unit_vector(found.axis)
@@ -307,9 +308,9 @@ def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
 
 
 def shapes(hulls: Hulls, noise, position) -> Shapes:
-    """What is shown of the targets.
+    """The shapes of the targets as they are shown.
 
-    noise [N, 2, 2] m^2, R of a single cell where each is; position [N, 2] m of the point tracker.
+    noise [N, 2, 2] m^2, R of a single cell at each target; position [N, 2] m of the point tracker.
     """
     matrix, found = hulls.matrix, size(hulls.matrix, noise)
     velocity = matrix.mean[:, 2:]

@@ -1,4 +1,4 @@
-"""What outlines measure, and how far they are from a true star-convex one."""
+"""Measures of outlines, and their errors against a true star-convex outline."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from .gaussian_process import FIRST_RADIUS, HEADING, GpState
 from .radial_function import Contour, radius
 from .random_matrix import Measures, RandomMatrixState
 
-AROUND = np.arange(360) * np.pi / 180  # rad: where outlines are looked at
+AROUND = np.arange(360) * np.pi / 180  # rad: angles at which outlines are evaluated
 
 
 class Outline(NamedTuple):
@@ -27,11 +27,11 @@ class Outline(NamedTuple):
 
 
 class Error(NamedTuple):
-    """How far estimated outlines are from the truth, one row a target.
+    """Errors of estimated outlines, one row a target.
 
     rmse         [N]  m, over the angles of f
-    mahalanobis  [N]  about sqrt(M) for M angles where the covariance is right
-    coverage     [N]  part of the angles at which the truth is within 3 deviations
+    mahalanobis  [N]  about sqrt(M) for M angles if the covariance is right
+    coverage     [N]  share of the angles at which the truth is within 3 deviations
     """
 
     rmse: Array
@@ -40,7 +40,7 @@ class Error(NamedTuple):
 
 
 def of_gaussian_process(state: GpState, prior: Contour, angle=AROUND) -> Outline:
-    """At the angles [A] rad clockwise from the bow."""
+    """The outline at the angles [A] rad clockwise from the bow."""
     at = _radius(state, prior, angle)
     variance = _form(at.weight, _outline_covariance(state)) + at.variance
     return Outline(
@@ -97,10 +97,11 @@ def error(state: GpState, prior: Contour, truth) -> Error:
 
 
 def shape_error(points, centre, heading, true_radius):
-    """RMS m [N] of polygons [N, A, 2] m off the true outline, along rays from its true centre.
+    """RMS distance m [N] of polygons [N, A, 2] m from the true outline, along rays from its true
+    centre.
 
-    centre [N, 2] m and heading [N] rad of the truth; true_radius(angle [N, A]) m. Errors of place
-    and heading count: what an estimate without a heading can be compared by.
+    centre [N, 2] m and heading [N] rad of the truth; true_radius(angle [N, A]) m. Errors of
+    position and heading count. So it can compare estimates that have no heading.
     """
     distance, bearing = to_range_bearing(points - centre[:, None])
     off = distance - true_radius(bearing - heading[:, None])

@@ -1,7 +1,8 @@
-"""How far a radar's pulse and beam smear a point echo: the noise of a single cell's place.
+"""How far a radar's pulse and beam smear a point echo: the position noise of a single cell.
 
-A cell stands anywhere in what pulse and beam light up at once, weighed by their shapes. The
-factors are the deviations of cells about a point target at 25 dB, over resolution and beam width.
+A cell can stand anywhere in the area that pulse and beam light up at once, weighted by their
+shapes. The factors are the deviations of cells about a point target at 25 dB, divided by range
+resolution and beam width.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
-"""Small matrices, many at once: what the Kalman filters share.
+"""Operations on many small matrices at once, shared by the Kalman filters.
 
-Shapes lead with any axes [...]; H picks the two position entries of a state.
+Shapes may have any leading axes [...]. H picks the two position entries of a state.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ def invert_2x2(matrix):
 def sandwich(matrix, symmetric):
     """A P A' [..., m, m] for A [..., m, n] and symmetric P [..., n, n].
 
-    The transpose is laid out anew: a product with a transposed view takes twice the time.
+    The transpose is copied: a product with a transposed view takes twice the time.
     """
     half = np.matmul(matrix, symmetric)
     return np.matmul(matrix, np.ascontiguousarray(half.swapaxes(-1, -2)))
@@ -44,9 +44,11 @@ def kalman_update(mean, covariance, innovation, noise, position):
 
 
 def weighted_fusion(first, first_noise, second, second_noise):
-    """Two measurements of one place as one: positions [..., 2] m and covariances [..., 2, 2] m^2.
+    """Combines two measurements of one position: positions [..., 2] m and covariances [..., 2, 2]
+    m^2.
 
-    Weighted by their accuracy. A Kalman update with the result is that with both in turn.
+    Weighted by their accuracy. A Kalman update with the result equals updates with both, one after
+    the other.
     """
     gain = np.matmul(first_noise, invert_2x2(first_noise + second_noise)[0])
     return (

@@ -1,11 +1,11 @@
-"""Linear-Gaussian modes of motion, many at once: what `imm` and the bank of `gwnn` are made of.
+"""Linear-Gaussian modes of motion, many at once: the basis of `imm` and of the bank of `gwnn`.
 
-A mode is constant velocity or a coordinated turn, with the state [e n ve vn]. All J modes of all
-N tracks are worked on together, as *columns* [14, J, N]: the four means, then the ten different
-entries of the covariance, row by row (`PACKED`). Whole-array sums and products of such columns
-cost a tenth of what stacks of 4 x 4 matrix products do.
+A mode is constant velocity or a coordinated turn, with the state [e n ve vn]. All J modes of all N
+tracks are computed together, as *columns* [14, J, N]: the four means, then the ten different
+entries of the covariance, row by row (`PACKED`). Sums and products of whole columns cost a tenth of
+products of stacked 4 x 4 matrices.
 
-Modes may belong to several chains (IMM filters): `Chain` says which and how they change.
+Modes may belong to several chains (IMM filters). `Chain` says which modes, and how they change.
 """
 
 from collections.abc import Callable
@@ -16,16 +16,16 @@ from numpy.typing import NDArray
 
 from ..types import Array
 
-# Entry [i, j] of a covariance by its place among the ten packed ones, and the other way round.
+# Entry [i, j] of a covariance by its index among the ten packed ones, and the reverse.
 ROW, COLUMN = np.triu_indices(4)
 PACKED = ROW * 4 + COLUMN
 UNPACKED = np.zeros((4, 4), int)
 UNPACKED[ROW, COLUMN] = UNPACKED[COLUMN, ROW] = np.arange(10)
-LEAST_WEIGHT = 1e-12  # no mode is ruled out for ever
+LEAST_WEIGHT = 1e-12  # keeps every mode possible
 
 
 class Chain(NamedTuple):
-    """Modes that one target passes between.
+    """Modes that a target changes between.
 
     modes  a slice of the bank's modes
     over   function of steps [N] s to the transition matrices [N, J, J]
@@ -36,13 +36,14 @@ class Chain(NamedTuple):
 
 
 class Bank(NamedTuple):
-    """The modes of a bank; those in no chain are filters of their own.
+    """The modes of a bank. A mode in no chain is a filter of its own.
 
     noise      [J, 1]  m^2/s^3, density of the white acceleration of each axis
     turn_rate  [J, 1]  rad/s, clockwise positive; 0 for constant velocity
     chains     the IMM filters among them
-    rates      [U, 1]  rad/s, the different sizes of turn_rate; size [J]: which of them each mode's
-               is. A sine costs as much as twenty products: modes that turn alike share theirs.
+    rates      [U, 1]  rad/s, the different absolute values of turn_rate
+    size       [J]     index into rates for each mode; modes with equal rates share a sine, which
+    costs as much as twenty products
     """
 
     noise: Array
@@ -71,13 +72,13 @@ def transition_power(stay, period, entered=None):
     """A mode chain in continuous time: function of steps [N] s to transition matrices [N, J, J].
 
     stay     [J]  probability to be in the same mode `period` s later
-    entered  [J]  how readily each mode is entered when another is left; all alike by default
+    entered  [J]  relative probability of each mode when another one is left; equal by default
     """
     stay = np.asarray(stay, float)
     count = len(stay)
     share = np.ones(count) if entered is None else np.asarray(entered, float)
-    # A chain of this form is reversible: rescaled, its matrix is symmetric. Of that one, modes
-    # alike, whose eigenvalues coincide, do no harm. The floor is for modes that are never left.
+    # Such a chain is reversible: after rescaling, its matrix is symmetric. A symmetric matrix
+    # allows equal eigenvalues, which equal modes have. The floor is for modes that are never left.
     rate = np.maximum(1 - stay, 1e-12) / np.maximum(share.sum() - share, 1e-12)
     matrix = np.sqrt(np.outer(rate * share, rate * share))
     np.fill_diagonal(matrix, stay)
@@ -101,7 +102,7 @@ def transition_power(stay, period, entered=None):
 
 
 def stationary(chain: Chain):
-    """The law [J] of a chain left alone for ever."""
+    """The stationary distribution [J] of a chain."""
     return chain.over(np.array([1e6]))[0, 0]
 
 
@@ -127,7 +128,7 @@ def rows_of(columns):
 
 
 def _shares(chain: Chain, weight, step):
-    """Mode probabilities after the step, and the shares [N, to, from] each mode is mixed of.
+    """Mode probabilities after the step, and the mixing weights [N, to, from] of each mode.
 
     step [N] s, or [1] for all.
     """
@@ -138,10 +139,10 @@ def _shares(chain: Chain, weight, step):
 
 
 def mix(bank: Bank, rows, weight, step):
-    """Columns [14, J, N] and weights [N, J] after the mode changes of the steps [N] s.
+    """Columns [14, J, N] and weights [N, J] after the mode changes over the steps [N] s.
 
     Takes rows [N, J, 14]. Blom and Bar-Shalom, IEEE T-AC 33(8), 1988, eq 7-9, in second moments:
-    those of a mixture are the mixture of those of its parts.
+    the moments of a mixture are the mixture of the moments of its parts.
     """
     columns = columns_of(rows)
     centre = columns[:4, :1].copy()  # keeps the squares small
@@ -165,7 +166,7 @@ def _add_squares(columns, add):
 
 
 def mix_means(bank: Bank, mean, weight, step):
-    """As `mix`, of the means alone: [N, J, 4] before and after. step [N] s, or [1] for all."""
+    """As `mix`, for the means only: [N, J, 4] before and after. step [N] s, or [1] for all."""
     mean, weight = mean.copy(), weight.copy()
     for chain in bank.chains:
         weight[:, chain.modes], share = _shares(chain, weight[:, chain.modes], step)
@@ -174,7 +175,7 @@ def mix_means(bank: Bank, mean, weight, step):
 
 
 def _turn(bank: Bank, step):
-    """sin and cos [J, N] of the angles turned; metres along and across per m/s of velocity."""
+    """sin and cos [J, N] of the turn angles; metres along and across per m/s of velocity."""
     angle = bank.rates * step
     sin, cos = np.sin(angle), np.cos(angle)
     none = bank.rates == 0
@@ -227,10 +228,11 @@ def move(bank: Bank, columns, step):
 
 
 def innovate(columns, plot, noise):
-    """Innovations [2, J, N], their squared distances [J, N] and their inverse covariances' parts.
+    """Innovations [2, J, N], their squared distances [J, N] and the parts of their inverse
+    covariances.
 
-    plot [2, N] m; noise [3, N] m^2: its covariance's ee, en, nn. The parts are ee, en, nn and
-    the determinant of S, each [J, N].
+    plot [2, N] m; noise [3, N] m^2: its covariance's ee, en, nn. The parts are ee, en, nn and the
+    determinant of S, each [J, N].
     """
     de, dn = plot[0] - columns[0], plot[1] - columns[1]
     see, sen, snn = columns[4] + noise[0], columns[5] + noise[1], columns[8] + noise[2]
@@ -258,7 +260,7 @@ def correct(columns, plot, noise):
 
 
 def reweigh(weight, score):
-    """Mode probabilities [J, N] of one chain after plots of the log-likelihoods [J, N]."""
+    """Mode probabilities [J, N] of one chain after plots with the log-likelihoods [J, N]."""
     weight = weight * np.exp(score - score.max(0)) + LEAST_WEIGHT
     return weight / weight.sum(0)
 

@@ -19,11 +19,13 @@ from ..arpa.nmea import (
     Targets,
     as_acquired,
 )
-from ..geometry import KNOT, NAUTICAL_MILE, bearing_from_yaw, geodetic_from_local, to_range_bearing
+from ..geodesy import LocalFrame
+from ..geometry import KNOT, NAUTICAL_MILE, bearing_from_yaw, to_range_bearing
 from ..types import Array
 from .convert import nanoseconds, odometry_to_own_ship, yaw_of
 
 NAMED = re.compile(r'(TT|Q)([0-9]{1,9})')
+LONGEST_NAME = 80  # characters; no sentence holds more
 STATUS = {'LOST': LOST, 'ACQUIRING': ACQUIRING}  # all others are tracked
 FIGURES = {
     'range_nm': NAUTICAL_MILE,
@@ -39,7 +41,8 @@ def read_targets(message: DiagnosticArray) -> Targets:
     """The targets of a message on `targets`, with their own numbers; nan for what it lacks.
 
     TT07 has the number 7; Q123, which is being acquired and has none yet, -123. Entries that are
-    no target are passed over.
+    no target are passed over. Names are cut to LONGEST_NAME: all rows of an array of texts take
+    the room of the longest.
     """
     rows = []
     for entry in message.status:
@@ -52,7 +55,7 @@ def read_targets(message: DiagnosticArray) -> Targets:
                 int(named[2]) * (1 if named[1] == 'TT' else -1),
                 STATUS.get(entry.message, TRACKING),
                 MANUAL if values.get('acquired') == MANUAL else AUTOMATIC,
-                values.get('name') or entry.name,
+                values.get('name', '')[:LONGEST_NAME] or entry.name,
                 *(_figure(values.get(key, ''), unit) for key, unit in FIGURES.items()),
             )
         )
@@ -77,39 +80,36 @@ def _figure(text: str, unit: float) -> float:
     return value if math.isfinite(value) else math.nan
 
 
-def read_origin(text: str) -> tuple[float, float] | None:
-    """The parameter origin: latitude and longitude in degrees; None where it is empty."""
+def read_origin(text: str) -> LocalFrame | None:
+    """The frame `map` by the parameter origin, latitude and longitude; None where it is empty."""
     if not text.strip():
         return None
     try:
         latitude, longitude = map(float, text.replace(',', ' ').split())
-    except ValueError:
-        latitude = longitude = math.nan
-    if not (abs(latitude) <= 90 and abs(longitude) <= 180):
+        return LocalFrame(latitude, longitude)
+    except ValueError as error:
         raise ValueError(
-            f'parameter origin is {text!r}; it must be latitude and longitude in '
-            'degrees, as "54.1 10.9"'
-        )
-    return latitude, longitude
+            f'parameter origin is {text!r}; it must be latitude and longitude in degrees, from '
+            '-90 to 90 and from -180 to 180, as "54.1 10.9"'
+        ) from error
 
 
 class Anchor(NamedTuple):
-    """A place known both in `map`, position [2] m, and on earth, degrees."""
+    """A place known both in `map`, position [2] m, and on Earth: the frame about it."""
 
     position: Array
-    latitude: float
-    longitude: float
+    frame: LocalFrame
 
 
 class OwnShipInput:
     """Own ship as last heard.
 
-    origin  latitude and longitude of the origin of `map`; None: fixes tell where own ship is
+    origin  the frame `map`; None: fixes tell where own ship is
     """
 
-    def __init__(self, origin: tuple[float, float] | None):
+    def __init__(self, origin: LocalFrame | None):
         self._from_fixes = origin is None
-        self.anchor = None if origin is None else Anchor(np.zeros(2), *origin)
+        self.anchor = None if origin is None else Anchor(np.zeros(2), origin)
         self.time_ns: int | None = None  # of the last odometry
         self._position = self._velocity = np.full(2, np.nan)
         self._heading = math.nan
@@ -132,7 +132,7 @@ class OwnShipInput:
             return False
         if self._from_fixes and self.time_ns is not None:
             at = self.position(nanoseconds(message.header.stamp))
-            self.anchor = Anchor(at, message.latitude, message.longitude)
+            self.anchor = Anchor(at, LocalFrame(message.latitude, message.longitude))
         return True
 
     def position(self, time_ns: int) -> Array:
@@ -146,16 +146,28 @@ class OwnShipInput:
         if self.time_ns is None:
             return OwnShipData()
         speed, course = to_range_bearing(self._velocity)
-        latitude, longitude = self.place(self.position(time_ns))
+        latitude, longitude = self._place(time_ns)
         return OwnShipData(
             float(latitude), float(longitude), float(speed), float(course), self._heading
         )
 
-    def place(self, position) -> tuple[Array, Array]:
-        """Degrees of latitude and longitude [...] of positions [..., 2] m; nan if not known."""
-        if self.anchor is None:
-            nowhere = np.full(np.shape(position)[:-1], np.nan)
+    def target_places(self, time_ns: int, offset) -> tuple[Array, Array]:
+        """Latitude and longitude [...] deg at offsets [..., 2] m from own ship; nan if not known.
+
+        The offset is laid off from own ship over the Earth, with y true north there, and not in
+        `map`, where north is true on the meridian of the origin only. So a receiver that lays
+        off range and bearing (TTM) from own ship (RMC) finds the target where TLL puts it, however
+        far own ship is from the origin. At the origin both ways are the same; a target 10 NM off
+        own ship, who is 22 NM east of the origin at 54 N, would stand 160 m aside in `map`.
+        """
+        own = self._place(time_ns)
+        if not np.isfinite(own).all():
+            nowhere = np.full(np.shape(offset)[:-1], np.nan)
             return nowhere, nowhere
-        return geodetic_from_local(
-            position - self.anchor.position, self.anchor.latitude, self.anchor.longitude
-        )
+        return LocalFrame(*own).to_geodetic(offset)
+
+    def _place(self, time_ns: int) -> tuple[Array, Array]:
+        """Own ship's latitude and longitude, deg; nan if not known."""
+        if self.anchor is None:
+            return np.array(np.nan), np.array(np.nan)
+        return self.anchor.frame.to_geodetic(self.position(time_ns) - self.anchor.position)

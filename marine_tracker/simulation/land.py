@@ -1,4 +1,4 @@
-"""Land: shores as scatterers at rest, of which the radar sees the nearest in each direction."""
+"""Land: shores as scatterers at rest. In each direction the radar sees only the nearest shore."""
 
 import math
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from .fields import Section
 SHORE_KEYS = 'name corners_m|corners_nm closed snr_db'
 SNR_DB = 30.0
 MAX_COORDINATE = 200_000.0  # m
-SECTORS = 1800  # of the horizon, in each of which the nearest shore is looked for
+SECTORS = 1800  # number of sectors of the horizon; the nearest shore is found in each
 
 
 class Shore(NamedTuple):
@@ -90,7 +90,7 @@ def lit(offset: Array, edge: Array, depth: float):
     """Which of the scatterers at offsets [S, 2] m from the radar are not hidden by nearer land.
 
     edge   [E, 2]  m, offsets of points along all shores, close to each other
-    depth  m behind an edge from which on it hides what is farther
+    depth  m behind an edge; what is farther is hidden
     """
     nearest = np.full(SECTORS, np.inf)
     distance, sector = _polar(edge)

@@ -10,11 +10,12 @@ What a radar leaves out is that of the tracker's parameter of the same name.
 
 import dataclasses
 import heapq
+import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-import yaml
-
+from .. import yaml_file
+from ..files import shown
 from ..parameters import TrackerParameters
 from ..types import Scan
 
@@ -50,14 +51,13 @@ def radars_of(parameters: TrackerParameters) -> tuple[Radar, ...]:
 
     ValueError names the radar, the key, the value and what it may be.
     """
-    try:
-        items = yaml.safe_load(parameters.radars)
-    except yaml.YAMLError as error:
-        raise ValueError(f'radars are not YAML: {error}') from error
+    items = yaml_file.parse(parameters.radars, 'parameter radars')
     if items is None:
         return (Radar('', TOPIC, parameters),)
     if not isinstance(items, list) or not items:
-        raise ValueError(f'radars are {items!r}; they must be a list of mappings, each with topic')
+        raise ValueError(
+            f'radars are {shown(items)}; they must be a list of mappings, each with topic'
+        )
     radars = tuple(_radar(item, place, parameters) for place, item in enumerate(items, 1))
     for what, values in (('name', [r.name for r in radars]), ('topic', [r.topic for r in radars])):
         if len(set(values)) < len(values):
@@ -77,7 +77,7 @@ def fused(of_each: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dict[st
         {'topic': f'{name}/{TOPIC}', **{key: one[key] for key in OWN if key in one}}
         for name, one in zip(names, of_each, strict=True)
     ]
-    return {**together, 'radars': yaml.safe_dump(items, sort_keys=False)}
+    return {**together, 'radars': json.dumps(items)}
 
 
 def merged(*radars: Iterable[Scan]) -> Iterator[Scan]:
@@ -103,7 +103,7 @@ def held_updates(radars: tuple[Radar, ...]) -> int:
 
 def _radar(item, place: int, parameters: TrackerParameters) -> Radar:
     if not isinstance(item, dict) or not isinstance(item.get('topic'), str):
-        raise ValueError(f'radar {place} is {item!r}; it must be a mapping with a topic')
+        raise ValueError(f'radar {place} is {shown(item)}; it must be a mapping with a topic')
     topic, own = item['topic'], {k: v for k, v in item.items() if k not in ('topic', 'name')}
     name = str(item.get('name', topic.removesuffix(TOPIC).strip('/') or topic))
     for key in own:

@@ -88,7 +88,7 @@ class Tracker:
     def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
         # Clusters tell what their middle strays.
         self.parameters = (
-            parameters if parameters.extent == 'off' else replace(parameters, glint_sigma_m=0.0)
+            parameters if parameters.extent == 'none' else replace(parameters, glint_sigma_m=0.0)
         )
         self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
         radars = radars_of(self.parameters)

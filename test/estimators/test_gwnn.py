@@ -420,6 +420,9 @@ class TestWeights:
             ({'fusion_bias': lambda a: a + 1}, 'checksum does not match'),
             ({'fusion_bias': None}, 'right arrays: fusion_bias'),
             ({'manifest': {'format': 99}}, 'format 99'),
+            ({'manifest': {'layouts': None}}, 'the layout of fusion is None'),
+            ({'manifest': {'layouts': {'fusion': [2, 3]}}}, r'the layout of fusion is \[2, 3\]'),
+            ({'manifest': {'layouts': {'fusion': ['x'] * 4}}}, 'the layout of fusion is'),
         ],
     )
     def test_tampering_is_noticed(self, weights, tmp_path, change, message):
