@@ -16,7 +16,7 @@ def test_a_pattern_has_as_many_plots_as_asked(name):
     assert np.isfinite(one).all()
 
 
-@pytest.mark.parametrize(('name', 'extent'), [('two clouds', 'off'), ('ball', 'gp')])
+@pytest.mark.parametrize(('name', 'extent'), [('two clouds', 'none'), ('ball', 'gp')])
 def test_ten_thousand_plots_fit_into_memory_and_targets_elsewhere_are_kept(name, extent):
     """In a process of its own, whose memory is measured; all pairs would take 18 GB and 1.6 GB."""
     job = parallel.Job(dense.measure, (name, 10000, 3, 'imm', extent, 2))
@@ -32,7 +32,7 @@ def test_without_a_crowd_nothing_is_left_out():
 
 @pytest.mark.slow
 @pytest.mark.timeout(1800)
-@pytest.mark.parametrize('extent', ['off', 'gp'])
+@pytest.mark.parametrize('extent', ['none', 'gp'])
 def test_all_figures_are_met(extent):
     found = dense.run(1, 2, extent=extent)
     assert not [figure for figure in found.figures if figure.ok is False]

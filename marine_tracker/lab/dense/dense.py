@@ -23,7 +23,7 @@ HELP = 'up to 10,000 false plots in one place: memory, time of a scan, targets e
 RUNS = 1
 OPTIONS = {
     'estimator': {'default': 'gwnn', 'help': 'filter of the tracker (default gwnn)'},
-    'extent': {'default': 'off', 'help': 'off, random_matrix or gp (default off)'},
+    'extent': {'default': 'none', 'help': 'none, random_matrix or gp (default none)'},
     'scans': {'type': int, 'default': 2, 'help': 'scans with a crowd, one after another'},
 }
 COUNTS = 1000, 2000, 5000, 10000
@@ -51,7 +51,7 @@ def run(
     seed: int,
     progress: Progress = silent,
     estimator: str = 'gwnn',
-    extent: str = 'off',
+    extent: str = 'none',
     scans: int = 2,
     counts: tuple[int, ...] = COUNTS,
 ) -> Result:
@@ -86,7 +86,7 @@ def run(
 
 
 def measure(
-    name: str, count: int, seed: int, estimator: str = 'gwnn', extent: str = 'off', scans: int = 2
+    name: str, count: int, seed: int, estimator: str = 'gwnn', extent: str = 'none', scans: int = 2
 ) -> Case:
     """One case, in this process: its greatest memory is that of all it has ever done."""
     keep_freed_memory()
