@@ -8,6 +8,7 @@ parts run.
 from types import ModuleType
 
 from . import marine_table
+from .alarms import alarms
 from .alpha_beta import alpha_beta
 from .compare import compare
 from .dense import dense
@@ -32,4 +33,5 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'hulls': hulls,
     'compare': compare,
     'dense': dense,
+    'alarms': alarms,
 }

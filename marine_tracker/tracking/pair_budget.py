@@ -49,7 +49,7 @@ def nearest(
     """
     depth, width = np.median(along), np.median(aside)
 
-    def places(range_, bearing) -> Array:
+    def places(range_: Array, bearing: Array) -> Array:
         scaled = range_ / depth
         around = np.minimum(scaled, 1 / width)
         order = np.linspace(0, EVEN, len(range_))
