@@ -5,6 +5,7 @@ import ctypes
 import faulthandler
 import fcntl
 import os
+import resource
 import signal
 import sys
 from typing import NoReturn
@@ -93,3 +94,8 @@ def keep_freed_memory() -> bool:
     except (AttributeError, OSError):  # not the GNU C library
         return False
     return bool(mallopt(M_TRIM_THRESHOLD, KEEP) and mallopt(M_MMAP_THRESHOLD, KEEP // 2))
+
+
+def peak_memory_mb() -> float:
+    """MB: the most memory that this process has had so far. Linux counts in kB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

@@ -115,6 +115,7 @@ class Service:
         if seen is not None:
             known = extents.step(known, seen, report.tracks.id, report.time, report.plot, estimate)
             shapes = extents.shapes(known, seen, estimate)
+            report = report._replace(left_out=report.left_out + seen.left_out)
         return (
             memory._replace(tracker=tracks, extents=known),
             Tracking(scan, report, estimate, shapes),

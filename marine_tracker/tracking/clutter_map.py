@@ -17,6 +17,7 @@ SECTORS = 16
 MEMORY = 20  # scans
 # One plot in twenty scans over a whole ring: the least density assumed, for an empty sea.
 LEAST_IN_RING = 0.05
+CROWD = 50.0  # plots a scan in one cell, beyond which they are no sample of its ring
 
 _EDGES = NEAREST * 2.0 ** (np.arange(RINGS + 1) / RINGS_AN_OCTAVE)
 _EDGES[0] = 0.0
@@ -60,10 +61,12 @@ def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
     It is the cell's own count or its ring's mean, whichever is larger: if a cell is emptier than
     its ring, it has too few plots to be trusted. The ring's mean is corrected for its start at 0
     (it is known after a few scans); the cell's is not.
+    A cell adds at most CROWD plots to its ring's mean: a crowd in one place, such as a rain cell,
+    says nothing of the other side of the ring.
     """
     count = clutter.plots.reshape(RINGS, SECTORS)
     known = 1 - (1 - 1 / MEMORY) ** max(clutter.scans, 1)
-    ring = np.maximum(count.sum(1) / known, LEAST_IN_RING)
+    ring = np.maximum(np.minimum(count, CROWD).sum(1) / known, LEAST_IN_RING)
     here = np.maximum(count * SECTORS, ring[:, None]) / _RING_AREA[:, None]
     found: Array = here.ravel()[_cell(range_, bearing)]
     return found

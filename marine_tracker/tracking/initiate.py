@@ -58,14 +58,15 @@ def pair_up(
 def _greedy(first: IntArray, second: IntArray, cost: Array, room: int) -> tuple[IntArray, IntArray]:
     """One-to-one pairs, at most `room`, cheapest first."""
     order = np.argsort(cost, kind='stable')
-    pairs = list(zip(first[order].tolist(), second[order].tolist(), strict=True))
     taken_first: set[int] = set()
     taken_second: set[int] = set()
-    keep = []
-    for a, b in pairs:
+    keep: list[tuple[int, int]] = []
+    for a, b in zip(first[order].tolist(), second[order].tolist()):
+        if len(keep) == room:
+            break
         if a not in taken_first and b not in taken_second:
             taken_first.add(a)
             taken_second.add(b)
             keep.append((a, b))
-    chosen = np.array(keep[:room], np.int64).reshape(-1, 2)
+    chosen = np.array(keep, np.int64).reshape(-1, 2)
     return chosen[:, 0], chosen[:, 1]

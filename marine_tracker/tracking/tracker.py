@@ -69,6 +69,7 @@ class Report(NamedTuple):
     plot: IntArray
     reason: CodeArray
     begun: Plots
+    left_out: int
 
 
 class Tracker:
@@ -131,7 +132,7 @@ class Tracker:
 
         # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
         expected = expect(ahead, lone, scan, speed)
-        pairs = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
+        pairs, left_out = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
         pairs = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
         pairs, starts = split(pairs, count)
 
@@ -173,7 +174,7 @@ class Tracker:
             scan.own_ship.position[-1],
             memory.next_id + len(first),
             next_number,
-        ), Report(seen.time, tracks, seen.predicted, plot_of, reason, begun)
+        ), Report(seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """Takes over the memory of another tracker for this one's estimator. No track is lost.
