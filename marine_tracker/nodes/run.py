@@ -28,6 +28,7 @@ NODES = {
     'radar_simulator': 'RadarSimulatorNode',
     'recording_player': 'RecordingPlayerNode',
     'nmea_output': 'NmeaOutputNode',
+    'ppi_display': 'PpiDisplayNode',
 }
 LONGEST = 600  # characters of why a node cannot start
 ASKED = (signal.SIGINT, signal.SIGTERM)
@@ -122,6 +123,11 @@ def recording_player() -> int:
 def nmea_output() -> int:
     """The exit code of the NMEA output."""
     return run('nmea_output')
+
+
+def ppi_display() -> int:
+    """The exit code of the PPI."""
+    return run('ppi_display')
 
 
 if __name__ == '__main__':
