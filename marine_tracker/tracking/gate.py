@@ -14,7 +14,7 @@ from ..geometry import to_range_bearing, wrap_angle, wrap_bearing
 from ..types import Array, IntArray, Plots, take
 from .expected import Expected
 from .noise import Noise
-from .pair_budget import fullest, nearest
+from .pair_budget import budget, fullest, nearest
 from .sweep import Sweep
 
 TURN = 2 * np.pi
@@ -95,14 +95,16 @@ def window_pairs(
         key, order = np.concatenate([key, key + TURN]), np.concatenate([order, order])
     begin = key.searchsorted(start, 'left')
     count = key.searchsorted(stop, 'right') - begin
-    of_track = np.bincount(track, count, len(bearing)).astype(np.int64)
-    full, most = fullest(of_track)
-    count = np.where(full[track], 0, count)
+    rows, most, left_out = np.zeros(0, np.int64), 0, 0
+    if count.sum() > budget(len(bearing)):
+        of_track = np.bincount(track, count, len(bearing)).astype(np.int64)
+        full, most = fullest(of_track)
+        rows, left_out = full.nonzero()[0], int((of_track[full] - most).sum())
+        count = np.where(full[track], 0, count)
     track = track.repeat(count)
     place = np.arange(len(track)) - (count.cumsum() - count - begin).repeat(count)
-    plot, left_out = order[place], 0
-    if full.any():
-        rows, left_out = full.nonzero()[0], int((of_track[full] - most).sum())
+    plot = order[place]
+    if len(rows):
         middles = distance[rows], bearing[rows], 0.5 * (high - low)[rows], half_width[rows]
         few, near = nearest(*middles, plot_range, plot_bearing, most)
         few = rows[few]
