@@ -2,14 +2,14 @@
 
 import codecs
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 import numpy as np
 
-from .files import regular, shortened, shown
-from .types import Array
+from .files import Place, regular, shortened, shown
+from .types import Array, IntArray
 
 MAX_LINE = 100_000  # characters
 
@@ -30,7 +30,7 @@ class Table(NamedTuple):
         return len(self.line)
 
     def where(self, row: int) -> str:
-        """The row's place, as an error names it."""
+        """The row's place, for an error message."""
         return f'{shortened(self.path)}, line {self.line[row]}'
 
     def numbers(
@@ -39,7 +39,7 @@ class Table(NamedTuple):
         """A column [R] as finite numbers between `low` and `high`.
 
         missing  an empty cell, or `nan`, is allowed and becomes nan
-        Raises ValueError for the first cell that is none.
+        Raises ValueError for the first cell that is not such a number.
         """
         cells = self.columns[name]
         values = np.empty(len(cells))
@@ -65,7 +65,7 @@ class Table(NamedTuple):
             )
         return values
 
-    def integers(self, name: str):
+    def integers(self, name: str) -> IntArray:
         """A column [R] as whole numbers, int64 (`3` and `3.0` are the same)."""
         values = self.numbers(name, low=-(2.0**53), high=2.0**53)
         wrong = values != np.rint(values)
@@ -79,19 +79,19 @@ class Table(NamedTuple):
 class Rows(NamedTuple):
     """A CSV file that is being read.
 
-    names  of the columns, without blanks around them, as those of the cells
-    rows   (line of the file, cells), each when it is asked for; blank lines are passed over
+    names  of the columns, without blanks around them; so are the cells
+    rows   (line of the file, cells), read on demand; blank lines are skipped
     """
 
     names: list[str]
     rows: Iterator[tuple[int, list[str]]]
 
 
-def rows(path, *, broken: str = 'strict') -> Rows:
+def rows(path: Place, *, broken: str = 'strict') -> Rows:
     """The rows of a CSV file, one by one: UTF-8, with or without byte order mark, or UTF-16.
 
-    broken  what is made of bytes that are no text: an error, or with 'replace' a sign for each
-    Raises ValueError for a file that is missing, empty, no regular file or not text, and for a
+    broken  for bytes that are not text: 'strict' is an error, 'replace' puts a sign for each
+    Raises ValueError for a file that is missing, empty, not a regular file or not text, and for a
     column named twice.
     """
     path = Path(path)
@@ -104,7 +104,7 @@ def rows(path, *, broken: str = 'strict') -> Rows:
     return Rows(header, found)
 
 
-def read(path, required=()) -> Table:
+def read(path: Place, required: Sequence[str] = ()) -> Table:
     """The table in a CSV file (see `rows`).
 
     Raises ValueError as `rows` does, for a column of `required` that is missing, and for a line
@@ -161,7 +161,7 @@ def _rows(path: Path, broken: str) -> Iterator[tuple[int, list[str]]]:
         ) from error
 
 
-def _lines(file, path: Path) -> Iterator[str]:
+def _lines(file: IO[str], path: Path) -> Iterator[str]:
     """Lines, none of them without end."""
     number = 0
     while line := file.readline(MAX_LINE + 1):

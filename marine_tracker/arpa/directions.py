@@ -1,13 +1,13 @@
-"""Uncertain vectors by direction: exact where a Jacobian is not.
+"""Distributions of uncertain vectors, by direction: exact where a Jacobian is not.
 
-Range and bearing, course and speed, CPA: all follow from vectors that are Gaussian in east and
-north, and none is near Gaussian itself once the vector is no longer than its error (a ship at
-rest, a target close by, a CPA of nothing). Seen along one direction, though, all is Gaussian and in
-closed form, so one integral over the direction remains.
+Range and bearing, course and speed, and CPA all come from vectors that are Gaussian in east and
+north. They are not nearly Gaussian themselves if the vector is not much longer than its error: a
+ship at rest, a target close by, a CPA near 0. But for a given direction everything is Gaussian and
+in closed form. So only one integral over the direction remains.
 
-The direction is counted where the vector's errors are round: v = A z, z Gaussian of unit
-covariance, A A' the covariance of v. There the density of the direction is a bell as wide as the
-length of the mean of z is short, whatever the shape of the errors.
+The direction is measured where the vector's errors are round: v = A z, z Gaussian of unit
+covariance, A A' the covariance of v. There the density of the direction is a bell whose width
+depends only on the length of the mean of z: the shorter the mean, the wider the bell.
 """
 
 from typing import NamedTuple
@@ -18,8 +18,9 @@ from scipy.special import ndtr
 from ..types import Array, take
 
 NODES = 32
-EVEN = (np.arange(NODES) + 0.5) * 2 / NODES - 1, np.full(NODES, 2 / NODES)  # bells, full turns
-GAUSS = np.polynomial.legendre.leggauss(NODES)  # what ends at an edge
+# Rules of nodes and weights: EVEN for bells and full turns.
+EVEN = (np.arange(NODES) + 0.5) * 2 / NODES - 1, np.full(NODES, 2 / NODES)
+GAUSS = np.polynomial.legendre.leggauss(NODES)  # for intervals that end at an edge
 BENT = 0.1  # of the deviation along a vector: where the arc of the deviation across
 # bends by less, a Jacobian is as good, and cheaper
 WIDE = 5.0  # deviations beyond which a Gaussian is held to be over
@@ -31,7 +32,7 @@ class Round(NamedTuple):
     ee, ne, nn   [N]  the entries of A, lower triangular: v = [ee z0, ne z0 + nn z1]
     length       [N]  of the mean of z
     angle        [N]  rad, of the mean of z, from its first axis to its second
-    arc          [N]  rad: z never points farther off that angle; pi where it may point anywhere
+    arc          [N]  rad: largest angle between z and its mean; pi if z may point anywhere
     """
 
     ee: Array
@@ -65,9 +66,10 @@ class Directions(NamedTuple):
 
 
 class Places(NamedTuple):
-    """A Gaussian position p beside v, given v's direction; all [N, Q].
+    """A Gaussian position p given the direction of v; all [N, Q].
 
-    A target that keeps the direction will miss by `miss`, and has -`along` to go to its CPA.
+    A target that keeps the direction will pass at distance `miss`, and has -`along` to go to its
+    CPA.
     miss, miss_variance    m, m^2: p across the direction, positive to starboard
     along, along_variance  m, m^2: p along it
     with_rho               m: covariance of `along` and rho
@@ -81,7 +83,7 @@ class Places(NamedTuple):
 
 
 def rounded(vector: Array, covariance: Array) -> Round:
-    """Vectors [N, 2] of regular covariance [N, 2, 2]."""
+    """Rounds vectors [N, 2] with invertible covariance [N, 2, 2]."""
     ee = np.sqrt(covariance[:, 0, 0])
     ne = covariance[:, 0, 1] / ee
     nn = np.sqrt(covariance[:, 1, 1] - ne * ne)
@@ -100,7 +102,9 @@ def rounded(vector: Array, covariance: Array) -> Round:
 
 
 def directions(of: Round, low: Array, high: Array, rule: tuple[Array, Array]) -> Directions:
-    """Those from low [N] to high [N] rad off the mean's, for z; rule: nodes and weights [Q]."""
+    """Directions from low [N] to high [N] rad relative to the mean of z; rule: nodes and weights
+    [Q].
+    """
     nodes, weights = rule
     half = 0.5 * (high - low)[:, None]
     turn = 0.5 * (high + low)[:, None] + half * nodes
@@ -148,8 +152,8 @@ def moments(mean: Array) -> tuple[Array, Array, Array, Array]:
 def polar_sigma(vector: Array, covariance: Array) -> tuple[Array, Array]:
     """RMS deviations [N] of the length and [N] rad of the direction of Gaussian vectors.
 
-    vector [N, 2]; covariance [N, 2, 2]. Both are counted from the length and direction of
-    `vector` itself, which is what is shown.
+    vector [N, 2]; covariance [N, 2, 2]. Both are counted from the length and direction of `vector`
+    itself, because that is shown.
     """
     length = np.hypot(*vector.T)
     unit = vector / np.maximum(length, 1e-300)[:, None]
@@ -168,7 +172,7 @@ def polar_sigma(vector: Array, covariance: Array) -> tuple[Array, Array]:
 
 
 def _integrated(length: Array, unit: Array, of: Round) -> Array:
-    """What `polar_sigma` gives, [2, N], by quadrature over the direction."""
+    """The result of `polar_sigma`, [2, N], by quadrature over the direction."""
     at = directions(of, -of.arc, of.arc, EVEN)
     zeroth, first, second, third = moments(at.rho)
     weight = at.rho * zeroth + first  # E[rho; rho > 0]

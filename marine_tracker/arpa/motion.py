@@ -1,7 +1,7 @@
-"""Course, speed and position of every track, from a memory of its own: what vectors and CPA use.
+"""Course, speed and position of every track from a memory of its own, for vectors and CPA.
 
-The tracker's estimator extrapolates and associates; the motion shown comes from the same plots
-through `plot_noise` and `legs`, whatever the estimator is.
+The tracker's estimator extrapolates and associates. The shown motion comes from the same plots
+through `plot_noise` and `leg_hypotheses`, and does not depend on the estimator.
 """
 
 from typing import NamedTuple
@@ -17,17 +17,17 @@ from . import leg_hypotheses, plot_noise
 
 STEADY, MANOEUVRING = 0, 1
 MEMORY_NAMES = ('steady', 'manoeuvring')
-SURE = 0.5  # m/s: a steady target's velocity is known as well as this
+SURE = 0.5  # m/s; a steady target's velocity has at most this deviation
 
 
 class MotionSettings(NamedTuple):
     """What is expected of targets and their plots.
 
-    glint_sigma  m, deviation of the point that echoes from the middle of the target, each axis
+    glint_sigma  m, deviation of the echoing point from the middle of the target, each axis
     speed_sigma  m/s, deviation of each component of a new target's velocity
     habits       how targets move
     rest_speed   m/s, below which a target may count as stationary ...
-    rest_time    s, ... once its velocity has not differed from 0 for so long
+    rest_time    s, ... once its velocity has not differed from 0 for this time
     """
 
     glint_sigma: float = GLINT_SIGMA['ship']
@@ -46,18 +46,19 @@ PRESETS = {
 
 
 class MotionMemory(NamedTuple):
-    """What is remembered of each track, one row a track, by ascending id.
+    """The memory of each track, one row a track, by ascending id.
 
     id          [N]
     first       [N]      s, of the first plot; nan before it
     time        [N]      s, of the last plot
     scatter              rows of `plot_noise.Scatter`, for each radar
     legs                 rows of `leg_hypotheses.Legs`
-    shown       [N, 14]  mean and covariance at `time` of what is likely, as in `linear_modes`
-    noise       [N]      m^2/s^3, density of acceleration that is to be expected from then on
+    shown       [N, 14]  mean and covariance at `time` of the likely hypotheses, as in
+    `linear_modes`
+    noise       [N]      m^2/s^3, density of acceleration expected from then on
     memory      [N]      STEADY or MANOEUVRING
     since       [N]      s, when that began: see Motion
-    still       [N]      s, since when the velocity has not differed from 0; nan: it does
+    still       [N]      s, since when the velocity has not differed from 0; nan: it differs
     stationary  [N]      whether the target counts as at rest
     """
 
@@ -75,14 +76,14 @@ class MotionMemory(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Where N tracks are and how they move; nan where a track had no plot yet.
+    """Position and motion of N tracks; nan if a track had no plot yet.
 
     position    [N, 2]     m, east and north
-    velocity    [N, 2]     m/s over ground; 0 where the target is stationary
+    velocity    [N, 2]     m/s over ground; 0 if the target is stationary
     covariance  [N, 4, 4]  of [position, velocity]
     memory      [N]        STEADY: the target is on a leg that has lasted; MANOEUVRING: it is not
     since       [N]        s: the leg's likeliest beginning; when the manoeuvre first showed
-    steady      [N]        whether the target holds course and speed, and these are well known
+    steady      [N]        whether the target keeps course and speed, and these are well known
     stationary  [N]        whether the target is at rest
     """
 
@@ -103,12 +104,12 @@ def begin(radars: int = 1) -> MotionMemory:
 def step(
     memory: MotionMemory, report: Report, plots: Plots, settings: MotionSettings, radar: int = 0
 ) -> MotionMemory:
-    """The memory after one scan of the radar; its rows are those of `report.tracks`.
+    """The memory after one scan of the radar. Its rows are those of `report.tracks`.
 
-    plots  the scan's plots as `geometry.locate` gives them, to which `report.plot` refers
+    plots  the scan's plots as `geometry.locate` gives them; `report.plot` refers to them
 
-    Plots of two radars come out of order by up to a revolution. That does no harm to straight
-    legs: their fit is the same in any order.
+    Plots of two radars can be out of order by up to one revolution. Straight legs do not suffer:
+    their fit is the same in any order.
     """
     memory = _follow(memory, report.tracks.id)
     first = np.arange(len(memory.id) - len(report.begun.time), len(memory.id))
@@ -174,7 +175,7 @@ def _follow(memory: MotionMemory, id_: IntArray) -> MotionMemory:
 def _first_plots(
     memory: MotionMemory, rows: IntArray, plots: Plots, settings: MotionSettings, radar: int
 ) -> MotionMemory:
-    """The rows [K] begin with one plot each."""
+    """Starts the rows [K], with one plot each."""
     count = len(rows)
     if not count:
         return memory
@@ -205,14 +206,14 @@ def _first_plots(
 def _next_plots(
     memory: MotionMemory, rows: IntArray, plots: Plots, settings: MotionSettings, radar: int
 ) -> MotionMemory:
-    """The rows [K] take one more plot each."""
+    """Adds one more plot to each of the rows [K]."""
     if not len(rows):
         return memory
     before = take(memory, rows)
     scatters = list(before.scatter)
     scatter, covariance, stretch = plot_noise.observe(scatters[radar], plots, settings.glint_sigma)
     scatters[radar] = scatter
-    if len(scatters) > 1:  # a fit to the plots of several radars scales with none of them
+    if len(scatters) > 1:  # a fit to plots of several radars cannot scale with one of them
         stretch = np.broadcast_to(np.eye(2), stretch.shape)
     hypotheses, shown = leg_hypotheses.update(
         before.legs,
@@ -247,8 +248,8 @@ def _manoeuvre(
 ) -> tuple[IntArray, Array]:
     """STEADY or MANOEUVRING [N], and since when [N] s, after the times [N] s.
 
-    In a turn every moment may be the beginning of a new leg, so one that is younger than `lasting`
-    s counts for nothing yet; but a new target is not taken to turn for that.
+    In a turn every moment may be the beginning of a new leg. So a leg younger than `lasting` s does
+    not count yet. But a new target is not taken as turning for this reason.
     """
     likeliest = hypotheses.weight.argmax(1)
     begun = hypotheses.begun[np.arange(len(time)), likeliest - 1]
@@ -264,8 +265,9 @@ def _rest(
 ) -> tuple[Array, BoolArray]:
     """Since when [N] tracks are still, and whether they count as stationary, after the times [N].
 
-    A target comes to rest when its velocity is within 2.4 deviations of 0, and surely slow, for a
-    time; it gets under way when it is beyond 3 and half the speed: so it does not flicker.
+    A target comes to rest when for some time its velocity is within 2.4 deviations of 0, and
+    certainly low. It gets under way when its velocity is beyond 3 deviations and above half the
+    speed limit. The gap between the two prevents flicker.
     """
     mean, covariance = linear_modes.unpack(shown)
     velocity, spread = mean[:, 2:], covariance[:, 2:, 2:]

@@ -1,4 +1,4 @@
-"""Targets: the tracks that were acquired, how they end, and the events that tell of it."""
+"""Targets: the tracks that were acquired, how they end, and the events about them."""
 
 from typing import NamedTuple
 
@@ -55,7 +55,7 @@ class Events(NamedTuple):
     kind      [E]     index into EVENTS
     id        [E]     of the track, 0 for none
     number    [E]     of the target, 0 for none
-    position  [E, 2]  m: of the track, of the click; nan where it is not known
+    position  [E, 2]  m: of the track, or of the click; nan if unknown
     """
 
     kind: CodeArray
@@ -65,23 +65,23 @@ class Events(NamedTuple):
 
 
 def label(ids: IntArray, number: IntArray) -> list[str]:
-    """TT07 by its number; Q and the track's id, as Q123, for a target without one."""
+    """TT07 for a target with a number; Q and the track's id, as Q123, for one without."""
     return [f'TT{n:02d}' if n else f'Q{i}' for i, n in zip(ids.tolist(), number.tolist())]
 
 
 def carry_over(
     targets: Targets, situation: Situation, radius: float, brief: float, now: float
 ) -> tuple[CodeArray, Array, Events]:
-    """The targets that go on: how [N] acquired (-1: no target), since [N] s; and the events.
+    """The targets that continue: how [N] acquired (-1: not a target), since [N] s; and the events.
 
-    radius, brief  acquisition.Settings.click_radius and .brief
+    radius, brief  acquisition.AcquisitionSettings.click_radius and .brief
     """
     row = row_of(situation.id, targets.id)
     gone, held, row = take(targets, row < 0), take(targets, row >= 0), row[row >= 0]
     how, since = np.full(len(situation.id), -1, np.int8), np.full(len(situation.id), now)
     how[row], since[row] = held.acquired, held.since
     target, over = how >= 0, situation.status == LOST
-    # The first that holds is the reason: a target lost in an exclusion zone raises no alarm.
+    # The first reason that applies is used: a target lost in an exclusion zone raises no alarm.
     ends = {
         MERGED_AWAY: over & (situation.reason == MERGED),
         UNCONFIRMED: over & (situation.number == 0),
@@ -113,7 +113,7 @@ def carry_over(
 
 
 def _heirs(situation: Situation, merged: BoolArray, radius: float) -> list[tuple[int, int]]:
-    """Rows (merged, heir): the track that a merged target [N] lives on in is the nearest one.
+    """Rows (merged, heir): the nearest track continues a merged target [N].
 
     A confirmed track is merged into confirmed ones only.
     """
@@ -129,7 +129,7 @@ def _heirs(situation: Situation, merged: BoolArray, radius: float) -> list[tuple
 
 
 def nearest_track(situation: Situation, position: Array, fit: BoolArray, radius: float) -> int:
-    """Row of the nearest fit track within the radius of a position, -1 where there is none."""
+    """Row of the nearest fit track within the radius of a position; -1 if there is none."""
     rows = fit.nonzero()[0]
     away = np.hypot(*(situation.position[rows] - position).T)
     near = (away <= radius).nonzero()[0]

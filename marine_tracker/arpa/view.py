@@ -1,4 +1,4 @@
-"""The targets of one scan as people see them: what `targets` and `markers` show."""
+"""The targets of one scan as they are shown: the content of `targets` and `markers`."""
 
 from typing import NamedTuple
 
@@ -20,30 +20,30 @@ from .targets import label
 
 
 class HullView(NamedTuple):
-    """shapes: of N targets; clearance [N] m: how near own ship comes to their hulls."""
+    """shapes of N targets; clearance [N] m: how near own ship will come to their hulls."""
 
     shapes: Shapes
     clearance: Array
 
 
 class View(NamedTuple):
-    """N targets at one moment: those with a number in its order, then those being acquired.
+    """N targets at one moment: first those with a number, in its order, then those being acquired.
 
-    name        TT07; Q and the track's id where there is no number yet
+    name        TT07; Q and the track's id if there is no number yet
     id          [N]  of the track
     number      [N]  0 while the target is being acquired
     status      [N]  TENTATIVE, CONFIRMED, COASTING, or LOST in this scan
-    reason      [N]  why a lost one was lost: one of lifecycle.REASONS' numbers
+    reason      [N]  why a lost one was lost: index into lifecycle.REASONS
     acquired    [N]  AUTOMATIC or MANUAL
     motion      N rows, at the end of the scan
     approach    N rows
-    harmless    [N]  own ship lies at anchor and the target does not surely come nearer
+    harmless    [N]  own ship is at anchor and the target does not certainly come nearer
     dangerous   [N]  a danger alarm is active
     swap_risk   [N]  the gate overlaps that of another track
     hits        [N]  plots in the last 10 scans
     misses      [N]  scans since the last plot
     age         [N]  s since the first plot
-    account     how the estimator fares with them, N rows; without words where it gives none
+    account     state of the estimator for them, N rows; without words if it gives none
     hulls       their sizes, N rows; None with extent none
     """
 
@@ -68,9 +68,9 @@ class View(NamedTuple):
 def view(
     picture: Picture, report: Report, estimator: Estimator, shapes: Shapes | None = None
 ) -> View:
-    """The picture's targets with what the tracker's report tells of them.
+    """The picture's targets with the data of the tracker's report.
 
-    estimator: the one that the tracks' state belongs to; shapes: of all the tracks.
+    estimator: the one to which the tracks' state belongs; shapes: of all the tracks.
     """
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
@@ -108,11 +108,11 @@ def _hulls(picture: Picture, shapes: Shapes) -> HullView:
 
 
 class Standing(NamedTuple):
-    """The account of the confirmed tracks in sum.
+    """Summary of the accounts of the confirmed tracks.
 
-    states     how many are in each state of the estimator; empty where it has none
-    fallen     how many have fallen back
-    reason     why most of them have; '' where none has
+    states     number of tracks in each state of the estimator; empty if it has none
+    fallen     number of tracks that have fallen back
+    reason     why most of them have; '' if none has
     fallen_at  [N]  which of all tracks have
     """
 
@@ -123,7 +123,7 @@ class Standing(NamedTuple):
 
 
 def standing(report: Report, estimator: Estimator) -> Standing:
-    """How the estimator fares with the confirmed tracks of a report."""
+    """The state of the estimator for the confirmed tracks of a report."""
     if estimator.account is None:
         return Standing({}, 0, '', np.zeros(len(report.tracks.id), bool))
     account = estimator.account(report.tracks.state)
@@ -139,6 +139,6 @@ def standing(report: Report, estimator: Estimator) -> Standing:
 
 
 def no_account(count: int) -> Account:
-    """That of an estimator that never falls back, of `count` tracks."""
+    """The account of an estimator that never falls back, for `count` tracks."""
     none, unknown = np.zeros(count, np.int8), np.full(count, np.nan)
     return Account(('',), none, unknown, unknown, unknown, ('',), none)

@@ -1,6 +1,9 @@
-"""Simulator (or recorded radar) and tracker as two processes over ROS 2, and a table of targets.
+"""Runs simulator (or recorded radar), tracker and PPI over ROS 2, as processes; shows a table.
 
-Ends with Ctrl-C, after --duration, or when the recording or scenario has ended."""
+The address of the PPI is printed. On a desktop the page opens by itself.
+
+Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
+"""
 
 import contextlib
 import os
@@ -20,6 +23,7 @@ from ..parameters import (
     from_mapping,
 )
 from ..processes import closing, end_in_time
+from . import demo_page
 from .node_processes import Child, children_of
 
 HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
@@ -40,12 +44,13 @@ SIZES = (('length m', 'length_m'), ('heading', 'heading_deg'))  # with extents, 
 TO_THE_LEFT = ('name', 'status', 'estimator')
 STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
 DANGEROUS = 'bold red'
-MOST_ALARMS = 8  # that are listed below the table on a terminal
-PLAIN_EVERY_S = 2.0  # between two tables where there is no terminal
+MOST_ALARMS = 8  # listed below the table on a terminal; others are only counted
+PLAIN_EVERY_S = 2.0  # s between two tables if there is no terminal
+PPI = 'ppi_display'
 
 
 def add_arguments(parser) -> None:
-    """Options of the command."""
+    """Adds the options of the command."""
     source = parser.add_mutually_exclusive_group()
     source.add_argument(
         '--scenario',
@@ -66,17 +71,18 @@ def add_arguments(parser) -> None:
         '--extent',
         choices=(*EXTENTS, 'off'),
         metavar='{' + ','.join(EXTENTS) + '}',
-        help='whether the tracker takes cells that touch as one target',
+        help='how the tracker joins cells that touch into one target',
     )
     parser.add_argument('--seed', type=int, default=1, help='seed of the simulator (default: 1)')
     parser.add_argument('--duration', type=float, metavar='S', help='end after so many seconds')
+    parser.add_argument('--no-display', action='store_true', help='no page with the radar picture')
     parser.add_argument(
         '--domain', type=int, metavar='ID', help='ROS domain (default: one that is free)'
     )
 
 
 def run(args) -> int:
-    """0 after a stop that was asked for, 1 when a process died or ROS is missing."""
+    """Returns 0 after a requested stop, 1 if a process died or ROS is missing."""
     stop = threading.Event()
 
     def on_signal(*_):
@@ -113,9 +119,13 @@ def _demo(args, stop: threading.Event) -> int:
             number = context.enter_context(domain.free_domain())
         domain.set_local(os.environ, number)
         last = context.enter_context(contextlib.ExitStack())
-        children = context.enter_context(
-            children_of({'tracker': tracker_parameters, source: source_parameters})
-        )
+        nodes = {'tracker': tracker_parameters, source: source_parameters}
+        if demo_page.wanted(args.no_display):
+            nodes[PPI] = {
+                'address': f'127.0.0.1:{demo_page.free_port()}',
+                'use_sim_time': args.rate != 1,
+            }
+        children = context.enter_context(children_of(nodes))
         listener = TargetsListener()
         last.callback(listener.close)  # after the children have ended: it may hang
         title = Path(args.recording).name if args.recording else args.scenario
@@ -123,7 +133,7 @@ def _demo(args, stop: threading.Event) -> int:
 
 
 def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
-    """The source node's name and parameters, and the tracker's. ValueError when one is wrong."""
+    """The source node's name and parameters, and the tracker's. ValueError if one is wrong."""
     source: str
     if args.recording:
         from ..recording import csv_folder
@@ -156,13 +166,17 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
 
 
 def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:
-    """Show the targets until it is over; the exit code."""
+    """Shows the targets until the end. Returns the exit code."""
     began, ended = time.monotonic(), None
+    page = next((child for child in children if child.name == PPI), None)
     with _display() as show:
         while not stop.is_set() and ended is None:
             if duration is not None and time.monotonic() - began >= duration:
                 break
             listener.spin(0.1)
+            if page and (address := demo_page.address_of(page)):
+                page = None
+                demo_page.show(address)
             show(listener.picture, f'{title}, ROS domain {domain}')
             ended = next((child for child in children if child.process.poll() is not None), None)
         if ended is None:
@@ -175,7 +189,7 @@ def _watch(listener, children, stop, title: str, duration: float | None, domain:
 
 
 def _drain(listener, show, title: str) -> None:
-    """Take in what is still on its way after the source has ended."""
+    """Takes in what is still on its way after the source has ended."""
     until = time.monotonic() + 0.5
     while time.monotonic() < until:
         listener.spin(0.1)
@@ -216,7 +230,7 @@ def _display():
 
 
 def _plain():
-    """Shows a picture as lines, once a scan and not more often than people can read."""
+    """Shows a picture as lines: once a scan, and not faster than people can read."""
     last = {'scans': 0, 'at': -PLAIN_EVERY_S}
 
     def show(picture, title):
@@ -239,7 +253,7 @@ def _plain():
 
 
 def _columns(picture):
-    """Heads and keys of what is told of these targets."""
+    """Heads and keys of the columns for these targets."""
     told = picture.targets and SIZES[0][1] in picture.targets[0]
     return (*COLUMNS[:-1], *SIZES, COLUMNS[-1]) if told else COLUMNS
 
@@ -276,7 +290,7 @@ def _rich_table(picture, title: str, height: int):
             min_width=8 if key == 'status' else None,
         )  # TRACKING in full
     room = max(height - 8 - len(below) - len(picture.warnings), 1)
-    # Where not all find room, the dangerous ones do.
+    # If there is not enough room for all, the dangerous ones are shown.
     shown = (
         picture.targets
         if len(picture.targets) <= room

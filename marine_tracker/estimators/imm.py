@@ -1,8 +1,8 @@
 """Interacting multiple models: two constant-velocity and two coordinated-turn Kalman filters.
 
-Blom and Bar-Shalom, IEEE T-AC 33(8), 1988. The state of every mode is [position, velocity], so
-the modes mix without padding. Mode changes happen in time, not per plot: the transition matrix
-over a step is that of the continuous-time chain, the identity at step 0.
+Blom and Bar-Shalom, IEEE T-AC 33(8), 1988. The state of every mode is [position, velocity], so the
+modes mix without padding. Modes change with time, not with plots: the transition matrix over a step
+is that of a continuous-time chain, and the identity at step 0.
 """
 
 from typing import NamedTuple
@@ -55,7 +55,9 @@ PRESETS = {
 
 
 def bank_of(modes: Modes) -> linear_modes.Bank:
-    """The modes as one chain; a mode left is left for each other mode alike."""
+    """The modes as one chain. A mode that is left is followed by each other mode with equal
+    probability.
+    """
     chain = linear_modes.Chain(
         slice(0, len(modes.noise)), linear_modes.transition_power(modes.stay, modes.period)
     )

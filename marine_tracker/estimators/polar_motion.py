@@ -1,6 +1,7 @@
-"""Motion as a radar at rest sees it, range, radial speed, bearing and its rate, and on the ground.
+"""Motion as seen by a radar at rest (range, radial speed, bearing, bearing rate), and on the
+ground.
 
-A velocity (e, n) is v along the line of sight and R omega to its right; bearings grow clockwise.
+A velocity (e, n) is v along the line of sight and R omega to its right. Bearings grow clockwise.
 """
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from ..geometry import to_range_bearing, unit_vector
 from ..types import Array
 
-NEAREST = 1.0  # m; bearings from nearer than this mean nothing
+NEAREST = 1.0  # m; a bearing has no meaning closer than this
 
 
 def to_polar(mean: Array, origin: Array) -> tuple[Array, Array]:

@@ -1,13 +1,13 @@
 """Blocks of four states, corrected in the wavelet domain: late but smooth (paper 003).
 
-A block is X = [x(4m+1) .. x(4m+4)], predicted at once from the last state of the block before.
-The orthonormal rows of a periodised wavelet transform take states and plots to other resolutions:
-with rows H, X_H = H X and z_H = H z, and a Kalman filter there gives the correction H' K nu. What
-rows are left out, the details, keep what was predicted. All rows together are the Kalman filter
-itself with its smoother inside the block; the coarsest row alone moves the block as a whole.
+A block is X = [x(4m+1) .. x(4m+4)], predicted at once from the last state of the block before. The
+orthonormal rows of a periodised wavelet transform take states and plots to other resolutions: with
+rows H, X_H = H X and z_H = H z. A Kalman filter there gives the correction H' K nu. The rows that
+are left out, the details, keep their prediction. With all rows, this equals the Kalman filter with
+its smoother inside the block. With the coarsest row only, the block moves as a whole.
 
-Departures: the paper's diag(F^4) for the prediction of a block forgets that its states are
-correlated; its eq 14 drops the predicted details and so the target's motion within the block; the
+Departures: the paper's diag(F^4) for the prediction of a block ignores that its states are
+correlated. Its eq 14 drops the predicted details, and so the target's motion within the block. The
 covariance is Joseph's form, because H' K is not the gain of least variance.
 """
 
@@ -36,9 +36,9 @@ class Block(NamedTuple):
 def analysis(wavelet: str, depth: int, size: int = SIZE) -> Array:
     """The orthonormal transform [size, size] of a block as rows: low-pass, then details.
 
-    The first size / 2^depth rows are the low-pass at that depth, then follow the details from
-    coarse to fine (paper 003, eq 4 and 5). ValueError for a size that cannot be halved so often,
-    and for a wavelet that is not orthogonal.
+    The first size / 2^depth rows are the low-pass at that depth. The details follow from coarse to
+    fine (paper 003, eq 4 and 5). ValueError for a size that cannot be halved that often, and for a
+    wavelet that is not orthogonal.
     """
     if size % 2**depth:
         raise ValueError(f'a block of {size} cannot be halved {depth} times')
@@ -73,9 +73,9 @@ def transition(frequency: float, step: Array) -> Array:
 def predict(mean: Array, covariance: Array, steps: Array, manoeuvre: Manoeuvre) -> Block:
     """The block of n states ahead of the states [B, 6], [B, 6, 6].
 
-    steps [B, n] s, from each state to the next. Mean acceleration and its variance are those of
-    the start: an acceleration that is not corrected stays its own mean. The covariance is
-    G P G' + sum N_i Q N_i', here state by state: cov(x_j, x_i) = F_j cov(x_j-1, x_i), i < j.
+    steps [B, n] s, from each state to the next. Mean acceleration and its variance are those of the
+    start, because an acceleration that is not corrected is its own mean. The covariance is G P G' +
+    sum N_i Q N_i', here state by state: cov(x_j, x_i) = F_j cov(x_j-1, x_i), i < j.
     """
     count, size = steps.shape
     means = np.empty((count, size, 6))
@@ -101,9 +101,10 @@ def correct(
     """The block after its plots [B, n, 2] m of covariance [B, n, 2, 2] m^2.
 
     rows     [r, n]  of the transform: the resolutions that are corrected
-    details  [d, n]  further rows, whose innovations are first shrunk by `threshold` deviations
-                     (soft): noise stays out, the beginning of a manoeuvre comes through. The
-                     covariance is that without them.
+    details  [d, n]  further rows; their innovations are first reduced by `threshold` deviations
+                     (soft), so noise is removed but the start of a manoeuvre is kept. The
+                     covariance
+                     ignores them.
     """
     count, size = position.shape[:2]
     blocks = np.zeros((count, size, 2, size, 2))
@@ -164,14 +165,14 @@ def smooth(
     depth: int = COARSEST,
     threshold: float | None = None,
 ) -> Smoothed:
-    """A history of plots smoothed block by block.
+    """Smooths a history of plots block by block.
 
-    mean [B, 6], covariance [B, 6, 6]  what is known at time[:, 0]
+    mean [B, 6], covariance [B, 6, 6]  the state at time[:, 0]
     time [B, K+1] s; position [B, K, 2] m, noise [B, K, 2, 2] m^2: the K plots after it
     depth      of the low-pass rows that are corrected; 0 corrects all: a Kalman filter with its
                smoother inside each block
     threshold  deviations above which details count too; None for never
-    ValueError where K is not a multiple of SIZE.
+    ValueError if K is not a multiple of SIZE.
     """
     count = position.shape[1]
     if count % SIZE:

@@ -1,19 +1,19 @@
 """Wavelet multiresolution CS-Kalman without latency (paper 003, `wavelet_block` made causal).
 
-Four chains of blocks are interleaved, so that with every plot one chain's block of four plots
-ends: its last state is the estimate now. A chain is corrected at the coarsest resolution only, by
-the mean of its four innovations, and keeps the predicted details. So the noise of single plots
-moves it little, whatever acceleration the model allows for.
+Four chains of blocks are interleaved, so with every plot the block of one chain ends. Its last
+state is the present estimate. A chain is corrected at the coarsest resolution only, by the mean of
+its four innovations; the details keep their prediction. So the noise of single plots has little
+effect, whatever acceleration the model allows.
 
-The coarsest row of every periodised orthonormal wavelet is the mean of the block, so the choice of
-the wavelet falls away. Plots of unequal accuracy count in the mean by their accuracy.
+The coarsest row of every periodised orthonormal wavelet is the mean of the block, so the wavelet
+makes no difference. Plots of different accuracy are weighted by it in the mean.
 
-The gain: taken literally, eq 13 to 15 leave the variance of the details in P, where it grows until
-the gain has nearly one shape for every a_max and plot noise, [1, .56 / tau, .16 / tau^2] for a
-block of tau seconds (the last less by alpha tau). That is what makes the filter insensitive to
-a_max; but P tells ten times the error at sea, and after the first plots of a track it is not even a
-covariance. Here the position is corrected by the Kalman gain of the block's mean, velocity and
-acceleration in that limiting shape, and the covariance is that of the error (Joseph's form).
+The gain: taken literally, eq 13 to 15 leave the variance of the details in P. It grows there until
+the gain has nearly one shape for every a_max and plot noise: [1, .56 / tau, .16 / tau^2] for a
+block of tau seconds (the last is reduced by alpha tau). This makes the filter insensitive to a_max.
+But P is then ten times the error at sea, and after a track's first plots it is not even a
+covariance. So here the position is corrected by the Kalman gain of the block's mean, velocity and
+acceleration by that limiting shape, and the covariance is that of the error (Joseph's form).
 """
 
 from typing import NamedTuple
@@ -27,21 +27,21 @@ from .contract import Estimator, Velocity
 from .cs_kalman import POSITION, SHOWN, CsState, Manoeuvre, acceleration_variance
 from .wavelet_block import SIZE
 
-# The first block of each chain is all resolutions, a plain Kalman filter: the velocity of a new
-# track is in the details.
+# The first block of each chain uses all resolutions, a plain Kalman filter, because the velocity of
+# a new track is in the details.
 WARM_UP = 2 * SIZE - 1
-# A plot this many times vaguer than the track moves it by nothing; it must not push another plot
+# A plot this many times less accurate than the track has no effect. It must not push another plot
 # out of the block either.
 FAINT = 1e6
 # Limits of the paper's gains: of velocity times tau, and of acceleration times tau^2, which falls
 # with alpha tau.
 VELOCITY_GAIN, ACCELERATION_GAIN, FALL = 0.5593, 0.1559, 0.83
-# Squared distance of an innovation that says that the limit cannot follow, which it is slow to do
-# where plots are missed: one in ten is larger where all is well.
+# Squared distance of an innovation at which the limiting gain is too slow to follow, as it is when
+# plots are missed. One in ten is larger in normal operation.
 SURPRISE = 4.6
 
-# The acceleration allowed for says how uncertain a track is more than where it is: agile craft
-# are followed no better with more (six recordings), and their gates grow.
+# The allowed acceleration affects the stated uncertainty of a track more than its position. Agile
+# craft are not followed better with more (six recordings), and their gates grow.
 MANOEUVRE = cs_kalman.PRESETS['ship']
 
 
@@ -53,7 +53,7 @@ class WaveletState(NamedTuple):
     covariance  [N, 4, 6, 6]
     position    [N, 3, 2]     m, of the last three plots
     noise       [N, 3, 2, 2]  m^2, likewise
-    plots       [N]           how many so far
+    plots       [N]           number of plots so far
     """
 
     time: Array
@@ -65,7 +65,7 @@ class WaveletState(NamedTuple):
 
 
 def begin(time: Array, mean: Array, covariance: Array) -> WaveletState:
-    """New rows of which the states [N, 6], [N, 6, 6] at the times [N] are known, and no plots."""
+    """New rows from known states [N, 6], [N, 6, 6] at the times [N], without plots."""
     rows = len(time)
     return WaveletState(
         np.repeat(time[:, None], SIZE, 1),
@@ -129,9 +129,9 @@ def _push(ring: Array, new: Array) -> Array:
 
 
 def _tells(covariance: Array, noise: Array) -> BoolArray:
-    """Whether plots of covariance noise [N, 2, 2] tell tracks [N, 6, 6] anything.
+    """Whether plots with covariance noise [N, 2, 2] give tracks [N, 6, 6] any information.
 
-    A plot that is no number does: it harms its own track, as in every estimator.
+    A plot that is not a number counts as yes: it harms its own track, as in every estimator.
     """
     own = covariance[:, 0, 0] + covariance[:, 3, 3]
     found: BoolArray = ~(np.trace(noise, axis1=1, axis2=2) > FAINT * own)
@@ -185,11 +185,11 @@ def _predict(
 ) -> tuple[Array, Array, Array]:
     """The oldest chain moved through the block that ends at the times [N] s.
 
-    weight [N, 4] of the states in their mean m. Returns the last state x [N, 6], the positions
-    [N, 4, 2] expected of all four and the covariance [N, axis, axis, 6, 6] of [x, m].
+    weight [N, 4] of the states in their mean m. Returns the last state x [N, 6], the expected
+    positions [N, 4, 2] of all four states, and the covariance [N, axis, axis, 6, 6] of [x, m].
 
-    [x, m] of one axis is moved from plot to plot by [[F, 0], [w F, 1]]. Both axes share that and
-    the noise in units of their sigma_a^2: small matrices do.
+    [x, m] of one axis is moved from plot to plot by [[F, 0], [w F, 1]]. Both axes share this matrix
+    and the noise in units of their sigma_a^2, so small matrices are enough.
     """
     rows = len(time)
     limit = manoeuvre.max_acceleration

@@ -177,8 +177,7 @@ def learn(
 ) -> Weights:
     """The weights after one plot each: steps 1 to 5 of the paper's algorithm.
 
-    inputs, wanted  [B, I], [B, O]  what the networks should have given; outputs 0 and 1 are the
-    position
+    inputs, wanted  [B, I], [B, O]  what the networks should have given; outputs 0 and 1: position
     speed           [B] m/s, for the first step
     unit            m, of a position output of 1
     near, far       E1, E2 [B] or number, m: corrected until E_R <= E1; the step grows above E2

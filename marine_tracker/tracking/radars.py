@@ -1,11 +1,11 @@
-"""The radars whose plots one tracker fuses, each with accuracy, range and period of its own.
+"""The radars whose plots one tracker fuses, each with its own accuracy, range and period.
 
 One YAML text, a list, describes them:
 
     - {topic: radar_x/radar/plots, range_sigma_m: 10.0, bearing_sigma_deg: 0.4}
     - {topic: radar_s/radar/plots, name: S band, bearing_sigma_deg: 1.0, scan_period_s: 2.4}
 
-What a radar leaves out is that of the tracker's parameter of the same name.
+If a radar leaves out a parameter, the tracker's parameter of the same name applies.
 """
 
 import dataclasses
@@ -22,7 +22,7 @@ from ..types import Scan
 TOPIC = 'radar/plots'
 MAX_RADARS = 20
 MAX_NAME = 200  # characters
-# Parameters that a radar may have for itself.
+# Parameters that each radar may set.
 OWN = (
     'range_sigma_m',
     'bearing_sigma_deg',
@@ -32,15 +32,15 @@ OWN = (
     'max_range_m',
     'detection_probability',
 )
-HELD_REVOLUTIONS = 1.5  # of another radar: so long its plot shows that the target is there
+HELD_REVOLUTIONS = 1.5  # of another radar; this long its plot shows that the target is there
 
 
 class Radar(NamedTuple):
     """One radar.
 
-    name        '' where there is only one
+    name        '' if there is only one
     topic       of its plots
-    parameters  the tracker's, with this radar's own in their place
+    parameters  the tracker's, with this radar's own values
     """
 
     name: str
@@ -49,9 +49,9 @@ class Radar(NamedTuple):
 
 
 def radars_of(parameters: TrackerParameters) -> tuple[Radar, ...]:
-    """The radars of the parameter `radars`; one on `radar/plots` where it is empty.
+    """The radars of the parameter `radars`; one on `radar/plots` if it is empty.
 
-    ValueError names the radar, the key, the value and what it may be.
+    ValueError names the radar, the key, the value and the allowed values.
     """
     items = yaml_file.parse(parameters.radars, 'parameter radars')
     if items is None:
@@ -71,9 +71,9 @@ def radars_of(parameters: TrackerParameters) -> tuple[Radar, ...]:
 
 
 def fused(of_each: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dict[str, Any]:
-    """Tracker parameters of several radars, whose own parameters and names are given.
+    """Tracker parameters of several radars, from their own parameters and their names.
 
-    What is not a radar's own is the first one's that has it.
+    Other parameters come from the first radar that has them.
     """
     together: dict[str, Any] = {}
     for one in reversed(of_each):
@@ -86,7 +86,7 @@ def fused(of_each: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dict[st
 
 
 def merged(*radars: Iterable[Scan]) -> Iterator[Scan]:
-    """The scans of several radars as a tracker takes them: each when it ends."""
+    """The scans of several radars in the order in which a tracker takes them: by their ends."""
 
     def of(radar: int, scans: Iterable[Scan]) -> Iterator[Scan]:
         return (scan._replace(radar=radar) for scan in scans)
@@ -95,7 +95,7 @@ def merged(*radars: Iterable[Scan]) -> Iterator[Scan]:
 
 
 def held_updates(radars: tuple[Radar, ...]) -> int:
-    """Updates of a track that may be later than a plot that has only now come in.
+    """Number of updates of a track that may be later than a plot that comes in now.
 
     A plot is at most one revolution old when its scan is complete.
     """

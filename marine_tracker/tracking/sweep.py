@@ -11,8 +11,8 @@ class Sweep(NamedTuple):
     """One antenna revolution, clockwise at constant rate.
 
     start     s
-    period    s; 0 where all plots carry one time
-    bearing0  rad, where the beam stood at `start`
+    period    s; 0 if all plots have the same time
+    bearing0  rad, direction of the beam at `start`
     """
 
     start: float
@@ -28,10 +28,10 @@ class Sweep(NamedTuple):
 
 
 def sweep_of(scan: Scan) -> Sweep:
-    """The sweep of a scan; where the beam started is read off its plots.
+    """The sweep of a scan. The start direction of the beam is derived from its plots.
 
-    If their times do not follow the bearing clockwise (no plots, or another antenna), every
-    bearing counts as swept in the middle of the scan.
+    If their times do not follow the bearing clockwise (no plots, or another kind of antenna), every
+    bearing is taken as swept in the middle of the scan.
     """
     period = scan.end - scan.start
     time, bearing = scan.plots.time, scan.plots.bearing

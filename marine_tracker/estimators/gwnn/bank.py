@@ -1,15 +1,15 @@
 """The banks of filters that `gwnn` fuses: three IMMs, four slow CV filters and CS-Kalman.
 
-All take the same plots. From them come 13 experts, each with its own opinion where the target is:
+All take the same plots. They give 13 experts, each with its own estimate of the target:
 
     0-3    the modes of the base IMM: straight, any, turning right, turning left
     4-6    the nine-mode IMM: its mean, that of its right turns, that of its left turns
     7-10   constant velocity with little to much noise
-    11     CS-Kalman, also what `gwnn` falls back to
-    12     a second IMM, good at what the base is not
+    11     CS-Kalman, also the fallback of `gwnn`
+    12     a second IMM, good where the base is not
 
-The base IMM's mean is where a network that says nothing leaves the track. There is a bank for
-each vessel class (`BANKS`); what tells them apart is data (`BankSettings`).
+With a network output of 0, the track is at the mean of the base IMM. There is one bank for each
+vessel class (`BANKS`). They differ in data only (`BankSettings`).
 """
 
 import hashlib

@@ -1,15 +1,14 @@
 """Extrapolation by a generalised wavelet network over a bank of filters (after paper 000).
 
-Thirteen filters follow every track (`bank`). After each plot a trained wavelet network looks at
-how they disagree and how the plots fit them, and says how much each is worth and what all of them
-get wrong:
+Thirteen filters follow every track (`bank`). After each plot a trained wavelet network looks at how
+they disagree and how the plots fit them. It outputs a weight for each filter, and a correction for
+the errors that all of them share:
 
     x(t) = base(t) + sum_j w_j (expert_j(t) - base(t)) + c(t),   w = softmax(l + network)
 
-with l the log mode probabilities of the base IMM. The network never feeds back into the filters,
-so leaving it out is taking another output. That happens, track by track, where its expectations
-fit the plots worse than CS-Kalman's, or where it says anything that is not a number (see
-`monitor`).
+with l the log mode probabilities of the base IMM. The network never feeds back into the filters, so
+a track can do without it at any time. This happens, track by track, when its expectations fit the
+plots worse than CS-Kalman's, or when an output is not a number (see `monitor`).
 """
 
 from typing import NamedTuple
@@ -30,15 +29,15 @@ from .bank import BankState, Expected
 from .inputs import ResidualMemory
 from .monitor import EXPECTED, FALLBACK, GWNN, TRUST, WARM, Monitor, Trust, judge
 
-GATE, REFUSALS = 16.0, 2  # squared distance from the base; plots refused in a row, at most
+GATE, REFUSALS = 16.0, 2  # squared distance from the base; largest number of plots refused in a row
 SETTLED = 10  # plots before any is refused
-FADE = 3.0  # scans ahead up to which the network speaks
-MOST = 4.0  # what it may add by itself; trained, it adds less than half of it
-MISSED, SURE = 1.5, 1.0  # scans without a plot; sigma: then it corrects by no more
-OTHERS = -5.0  # log weight, with a silent network, of all but the base's modes
+FADE = 3.0  # scans ahead up to which the network is used
+MOST = 4.0  # largest correction by the network; when trained, it uses less than half
+MISSED, SURE = 1.5, 1.0  # scans without a plot; sigma: limit of the correction after that
+OTHERS = -5.0  # log weight of all experts except the base's modes, for network output 0
 
-# The network's outputs: what it adds to the experts' log weights; corrections of the position
-# when it speaks and per scan ahead, and of the velocity; in the units of `gwnn_inputs`.
+# The network's outputs: changes of the experts' log weights; corrections of the position now and
+# per scan ahead, and of the velocity; in the units of `inputs`.
 LOGITS = slice(0, filters.EXPERTS)
 AT_ONCE, PER_SCAN, OF_VELOCITY = slice(13, 15), slice(15, 17), slice(17, 19)
 POSITION = slice(13, 17)
@@ -47,8 +46,9 @@ SPREADS = 8  # log ratio of the variances to the base's: now, a scan ahead
 
 
 class GwnnState(NamedTuple):
-    """bank, memory, monitor; output [N, 27]: what the network said after the last plot; adapted:
-    what the track has learned."""
+    """bank, memory, monitor; output [N, 27]: of the network after the last plot; adapted: what the
+    track has learned.
+    """
 
     bank: filters.BankState
     memory: inputs.ResidualMemory
@@ -63,10 +63,10 @@ def account(state: GwnnState) -> Account:
 
 
 class Look(NamedTuple):
-    """What the network's words are about: the filters at some time.
+    """The filters at some time, in the form that the network's output refers to.
 
-    apart       [4, 13, N]  experts from the base, in the units of `gwnn_inputs`
-    log_weight  [13, N]     what the experts are worth to a silent network
+    apart       [4, 13, N]  experts relative to the base, in the units of `inputs`
+    log_weight  [13, N]     weights of the experts for network output 0
     scans       [N]         ahead of the last plot
     """
 
@@ -76,7 +76,7 @@ class Look(NamedTuple):
 
 
 def look(state: filters.BankState, frame: Array, ahead: filters.Ahead, time: Array) -> Look:
-    """The filters at the times [N] s, as the network speaks of them."""
+    """The filters at the times [N] s, in the form that the network's output refers to."""
     log_weight = np.full((filters.EXPERTS, len(frame)), OTHERS)
     log_weight[:4] = np.log(ahead.weight[filters.BASE] + 1e-4)
     scans = (time - state.time) / inputs.SCAN
@@ -97,8 +97,9 @@ def fuse(output: Array, at: Look) -> Array:
 
 
 def correct(state: GwnnState, at: Look) -> Array:
-    """The correction [4, N] of the base, in the units of `gwnn_inputs`, with what the tracks have
-    learned."""
+    """The correction [4, N] of the base, in the units of `inputs`, including what the tracks have
+    learned.
+    """
     shift = fuse(state.output, at)
     shift[:2] += adaptation.correction(state.adapted, at.scans)
     return shift
@@ -113,9 +114,9 @@ def flaw(output: Array) -> Array:
 def advance(
     bank: filters.Filters, state: filters.BankState, memory: inputs.ResidualMemory, plots: Plots
 ) -> tuple[BankState, ResidualMemory, Expected]:
-    """States and memories of N rows after one plot each; and what the filters had expected.
+    """States and memories of N rows after one plot each, and what the filters had expected.
 
-    A plot far off a settled track is refused by all filters alike, up to REFUSALS times in a
+    A plot far from a settled track is refused by all filters alike, at most REFUSALS times in a
     row.
     """
     expected = filters.expect(bank, state, plots)
@@ -128,7 +129,7 @@ def advance(
 
 
 def weights(path: str = '', vessel_class: str = 'ship') -> gwnn_weights.Weights:
-    """Trained weights from a file, or those shipped; ValueError where the file is not fit."""
+    """Trained weights from a file, or the shipped ones. ValueError if the file does not fit."""
     file = path or gwnn_weights.shipped(vessel_class)
     found = gwnn_weights.load(file, inputs.COUNT, {'fusion': OUTPUTS, 'spread': SPREADS})
     theirs = found.manifest.get('vessel_class', 'unknown'), found.manifest.get('filters', 'unknown')
@@ -155,21 +156,20 @@ def gwnn(
     max_speed     m/s, of the targets: the velocity variance before the second plot
     period        s, of the radar
     trust         when tracks fall back on CS-Kalman, and when they return
-    learning      whether tracks add to the output weights what their plots tell
-                  (`gwnn_adaptation`)
-    vessel_class  whose filters the weights weigh
+    learning      whether tracks adapt the output weights to their own plots (`adaptation`)
+    vessel_class  the class of the filters
     """
     bank = filters.BANKS[vessel_class]
 
     def speak(state: BankState, memory: ResidualMemory) -> tuple[Array, Array]:
-        """What the network says [N, 27] of rows, and the units that learn; 0 while warming up."""
+        """The network's outputs [N, 27] for rows, and the units that learn; 0 while warming up."""
         out = np.zeros((len(state.time), OUTPUTS + SPREADS))
         units = adaptation.begin(len(state.time), weights.fusion, learning).units
         warm = np.flatnonzero(memory.plots >= WARM)
         if len(warm):
             seen = inputs.inputs(bank, _chosen(state, warm), _chosen(memory, warm), period).astype(
                 np.float32
-            )  # as the weights: half the time
+            )  # as the weights; float32 takes half the time
             out[warm, :OUTPUTS] = forward(weights.fusion, seen)
             out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
             if learning:
@@ -211,15 +211,16 @@ def gwnn(
                 near[heard],
             )
             shift, ratio = correct(rows, at), rows.output[:, OUTPUTS:]
-            # After a missed plot the base says how sure the position is: were the network too
-            # sure and wrong, no plot would come near enough to tell; were it too unsure, plots of
-            # what else is there would.
+            # After a missed plot the base gives the uncertainty of the position. If the network's
+            # was too small, no plot would be near enough to correct it. If it was too large,
+            # wrong plots would be taken.
             missed = (near - begun)[heard] > MISSED * period
             size = np.hypot(*shift[:2])
             shift = shift * np.where(missed, SURE / np.maximum(size, SURE), 1.0)
             ratio = np.where(missed[:, None], 0.0, ratio)
             shift = inputs.from_sigma(frame[heard], shift).T
-            # Beyond what it was trained for, the network's correction is carried on straight.
+            # Beyond the range of its training, the network's correction is continued in a straight
+            # line.
             shift[:, :2] += (time - near)[heard, None] * shift[:, 2:]
             mean[heard] += shift
             covariance[heard] = respread(covariance[heard], ratio, frame[heard], at.scans)
@@ -264,7 +265,7 @@ def gwnn(
 
 
 def _chosen(state: Rows, rows: IntArray) -> Rows:
-    """The rows (ascending) of a state; itself where they are all."""
+    """The rows (ascending) of a state; the state itself if these are all rows."""
     whole = len(rows) == len(state[0] if isinstance(state[0], np.ndarray) else state[0].time)
     return state if whole else take(state, rows)
 

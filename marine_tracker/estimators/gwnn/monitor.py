@@ -1,9 +1,9 @@
-"""Whether the network of `gwnn` is heard: its expectations are judged beside CS-Kalman's.
+"""Whether the network of `gwnn` is used: its expectations are compared with CS-Kalman's.
 
-J is the mean squared residual of a filter's expectations, in the plots' own sigmas, over the last
-dozen plots or so. A track whose network fits worse than CS-Kalman by more than `Trust.fall`, or
-says what is not a number, falls back on CS-Kalman; it returns once the network has been better
-often enough in a row.
+J is the mean squared residual of a filter's expectations, in the plots' own sigmas, over about the
+last twelve plots. A track falls back on CS-Kalman when the J of its network exceeds that of
+CS-Kalman by more than `Trust.fall`, or when the network's output is not a number. It returns when
+the network has been better often enough in a row.
 """
 
 from typing import NamedTuple
@@ -15,9 +15,9 @@ from ..contract import Account
 from . import bank as filters
 from . import inputs
 
-WARM = 8  # plots before the network is heard
+WARM = 8  # plots before the network is used
 KEEP, KEEP_LATELY = 0.9, 0.7  # of J, a plot: to fall back; to return
-WORST = 25.0  # squared residual that counts at most
+WORST = 25.0  # largest squared residual that counts
 EXPECTED = 2.2  # squared residual of a good filter, sigma^2: where J starts
 WARMUP, GWNN, FALLBACK = 0.0, 1.0, 2.0
 STATUS = ('WARMUP', 'GWNN', 'FALLBACK')
@@ -46,13 +46,13 @@ TRUST = Trust()
 
 
 class Monitor(NamedTuple):
-    """How the network fares, [N] each.
+    """The state of the network, [N] each.
 
     status      WARMUP, GWNN or FALLBACK
-    network     J of the network, heard or not: mean squared residual of its expectations, sigma^2
+    network     J of the network, used or not: mean squared residual of its expectations, sigma^2
     cs          J of CS-Kalman
-    lately      both again, [N, 2], of fewer plots
-    better      plots in a row at which a network not heard was the better one
+    lately      both again, [N, 2], over fewer plots
+    better      plots in a row at which an unused network was the better one
     reason      of FALLBACK: index into REASONS
     """
 
@@ -65,7 +65,7 @@ class Monitor(NamedTuple):
 
 
 def account(monitor: Monitor) -> Account:
-    """How the network fares, beside CS-Kalman."""
+    """The state of the network, compared with CS-Kalman."""
     status = monitor.status.astype(np.int8)
     unknown = status == WARMUP
     rho, network, cs = (
