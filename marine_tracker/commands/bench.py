@@ -7,6 +7,8 @@ measured if it is installed (extra `bench`). The estimator's own part of the ste
 `--estimator all` measures every estimator.
 """
 
+from argparse import ArgumentParser, Namespace
+
 from ..estimators import ESTIMATORS
 from ..evaluation import benchmark, report
 from ..processes import keep_freed_memory
@@ -20,7 +22,7 @@ MOST_ESTIMATOR_MS = 40.0  # for extrapolation and update by any estimator
 MOST_RATIO = 10.0  # ratio of a scan's cost to that with cs_kalman
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the command line of `bench`."""
     parser.add_argument(
         '--tracks',
@@ -46,7 +48,7 @@ def add_arguments(parser) -> None:
     report.add_arguments(parser)
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Prints the table. Returns 1 if a ratio misses its limit."""
     for name, least in (('tracks', 1), ('clutter', 0), ('scans', 1)):
         if getattr(args, name) < least:

@@ -4,6 +4,7 @@ A scenario is named, when it is shipped, or is a YAML file of your own; `scenari
 one, and its file in config/scenarios, tell how one is written."""
 
 import sys
+from argparse import ArgumentParser, Namespace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from ..simulation import radar, scenario
 HELP = 'list, check, show or write scenarios'
 
 
-def add_arguments(parser):
+def add_arguments(parser: ArgumentParser) -> None:
     """The sub-commands and what each takes."""
     commands = parser.add_subparsers(title='what to do', metavar='ACTION', required=True)
     listed = commands.add_parser('list', help='the shipped scenarios')
@@ -34,7 +35,7 @@ def add_arguments(parser):
     written.set_defaults(action=_write)
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Do what was asked; 1 where a checked file is wrong."""
     return args.action(args)
 

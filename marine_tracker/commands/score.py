@@ -11,6 +11,7 @@ longitude of the frame's zero ("origin": [55.0, 7.0]), as that of a scenario wit
 """
 
 import sys
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from ..evaluation import ais_score, metrics, report, screened
@@ -20,7 +21,7 @@ from ..simulation import ais_file
 HELP = 'tell how good a track file is on a recording'
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """The command line of `score`."""
     parser.add_argument('folder', metavar='FOLDER', help='recording with truth.csv')
     parser.add_argument('tracks', metavar='TRACKS.csv', nargs='+', help='track file to score')
@@ -89,7 +90,7 @@ def add_arguments(parser) -> None:
     parser.epilog = 'figures:\n' + '\n'.join(lines)
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Print the figures; always 0, for nothing is demanded."""
     recording, remarks = screened.read(args.folder)
     for remark in remarks:

@@ -147,8 +147,8 @@ def jacobian(network: Network, inputs: FloatArray) -> Array:
 
 def start(
     layout: Layout,
-    centre: Array,
-    scale: Array,
+    centre: FloatArray,
+    scale: FloatArray,
     rng: np.random.Generator,
     dtype: DTypeLike = np.float32,
 ) -> Network:

@@ -39,7 +39,7 @@ COVARIANCE = {  # of [x, y, vx, vy]: row and column of each field of `tracks_clo
 class TrackerOutput:
     """Of one tracker node."""
 
-    def __init__(self, node: RunnableNode, hardware_id: str):
+    def __init__(self, node: RunnableNode, hardware_id: str) -> None:
         burst = topics.reliable(topics.BURST)
         self._to_tracks = node.publisher(Odometry, topics.TRACKS, burst)
         self._to_extrapolations = node.publisher(Odometry, topics.EXTRAPOLATIONS, burst)

@@ -84,7 +84,7 @@ class Tracker:
     radars (parameter `radars`) each scan says which it is from; scans come as they end.
     """
 
-    def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
+    def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None) -> None:
         # Clusters tell what their middle strays.
         self.parameters = (
             parameters if parameters.extent == 'none' else replace(parameters, glint_sigma_m=0.0)
