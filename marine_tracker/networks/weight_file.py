@@ -55,7 +55,7 @@ def read(
     if manifest.get('format') != form:
         raise ValueError(
             f'{what} has format {shown(manifest.get("format"))}; this version reads {form}: '
-            'train anew'
+            'train again'
         )
     wanted = set(names)
     if set(arrays) != wanted:
