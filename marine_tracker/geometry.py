@@ -10,6 +10,7 @@ from .types import OwnShip, Plots, PolarPlots
 NAUTICAL_MILE = 1852.0  # m
 KNOT = NAUTICAL_MILE / 3600.0  # m/s
 EARTH_RADIUS = 6371008.8  # m, mean
+AT_REST = 0.25  # m/s, below which own ship makes no way
 
 
 def wrap_bearing(angle):
@@ -40,6 +41,23 @@ def to_range_bearing(offset):
 def bearing_from_yaw(yaw):
     """Bearing, rad in [0, 2 pi), of a ROS yaw (counter-clockwise from east), and nan of nan."""
     return wrap_bearing(np.pi / 2 - yaw)
+
+
+def heading_from(velocity, stated):
+    """Heading [...] rad: the course of the velocity [..., 2] m/s, or of who makes no way the stated
+    one [...], nan for none."""
+    course = wrap_bearing(np.arctan2(velocity[..., 0], velocity[..., 1]))
+    return np.where(np.hypot(velocity[..., 0], velocity[..., 1]) < AT_REST, stated, course)
+
+
+def heading_at(own_ship: OwnShip, time):
+    """Own ship's heading [...] rad at the times [...]; nan where it is not known."""
+    if own_ship.heading is None:
+        return np.full(np.shape(time), np.nan)
+    east, north = (
+        np.interp(time, own_ship.time, column) for column in unit_vector(own_ship.heading).T
+    )
+    return wrap_bearing(np.arctan2(east, north))
 
 
 def polar_to_position(range_, bearing, range_sigma, bearing_sigma):

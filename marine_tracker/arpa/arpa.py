@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..gaussian.linear import invert_2x2, squared_distance
-from ..geometry import KNOT, NAUTICAL_MILE, locate, polar_to_position, unit_vector
+from ..geometry import AT_REST, KNOT, NAUTICAL_MILE, locate, polar_to_position, unit_vector
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
@@ -70,7 +70,6 @@ class Picture(NamedTuple):
     changed: Alerts
 
 
-OWN_AT_REST = 0.25  # m/s, below which own ship makes no way
 BY_CHANCE = 11.8  # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
 
 
@@ -152,7 +151,7 @@ class Arpa:
         )
 
         # cpa: how the tracks pass own ship
-        at_rest = ~makes_way(moving) & (np.hypot(*own.velocity) < OWN_AT_REST)
+        at_rest = ~makes_way(moving) & (np.hypot(*own.velocity) < AT_REST)
         moving, own = sea_stabilised(moving, own, self.current)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(

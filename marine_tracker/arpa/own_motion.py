@@ -13,7 +13,8 @@ LEAST_SIGMA = 0.01  # m/s, of own velocity: few samples may agree by chance
 
 def lately(before: OwnShip, now: OwnShip, end: float) -> OwnShip:
     """The samples that count at the time `end`, s: those of the scan, and of scans before it."""
-    return append(take(before, (before.time > end - WINDOW) & (before.time < now.time[0])), now)
+    before = take(before, (before.time > end - WINDOW) & (before.time < now.time[0]))
+    return append(before, now._replace(heading=None))  # the heading now is known otherwise
 
 
 def own_motion(samples: OwnShip, time: float, heading: float, window: float = WINDOW) -> OwnMotion:

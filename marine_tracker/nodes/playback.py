@@ -24,7 +24,8 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
 
 from ..geometry import geodetic_from_local
-from ..types import OwnShip, Scan, Truth
+from ..service import heading_of
+from ..types import OwnShip, Scan, Truth, take
 from . import convert, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
@@ -200,7 +201,7 @@ class Playback:
         assert revolution is not None
         samples = revolution.own_ship
         if k < len(samples.time):
-            self._publish_own_ship(samples.time[k], samples.position[k], samples.velocity[k])
+            self._publish_own_ship(take(samples, slice(k, k + 1)))
             self._sample += 1
             return
         scan, truth = revolution.scan, revolution.truth
@@ -221,9 +222,11 @@ class Playback:
         self._next = next(self._revolutions, None)
         self._sample = 0
 
-    def _publish_own_ship(self, time, position, velocity) -> None:
-        stamp = self._stamp(time)
-        self._odometry.publish(convert.own_ship_to_odometry(stamp, position, velocity))
+    def _publish_own_ship(self, sample: OwnShip) -> None:
+        stamp, position = self._stamp(sample.time[0]), sample.position[0]
+        self._odometry.publish(
+            convert.own_ship_to_odometry(stamp, position, sample.velocity[0], heading_of(sample))
+        )
         if self._fix is not None and self.origin is not None:
             latitude, longitude = geodetic_from_local(position, *self.origin)
             self._fix.publish(convert.fix_message(stamp, latitude, longitude))

@@ -4,7 +4,8 @@ A folder holds
   plots.csv      scan, time_s, range_m, bearing_deg [, amplitude_db] [, radial_speed_mps]; true
                  bearing from own ship; radial speed over ground, positive when opening, empty where
                  a plot tells none
-  own_ship.csv   scan, time_s, north_m, east_m [, vel_north_mps, vel_east_mps] [, end_s];
+  own_ship.csv   scan, time_s, north_m, east_m [, vel_north_mps, vel_east_mps] [, end_s]
+                 [, heading_deg], true, empty where it is not known;
                  one row for every scan, also those without plots
   truth.csv      scan, time_s, target, north_m, east_m, vel_north_mps, vel_east_mps; may be left
                  out; velocities may be nan
@@ -26,7 +27,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry import own_ship_at, wrap_bearing
+from ..geometry import heading_at, own_ship_at, wrap_bearing
 from ..parameters import read_yaml_mapping
 from ..types import Array, OwnShip, PolarPlots, Scan, Truth, take
 from . import tables
@@ -36,6 +37,7 @@ OWN_SHIP = ('scan', 'time_s', 'north_m', 'east_m')
 TRUTH = ('scan', 'time_s', 'target', 'north_m', 'east_m')
 VELOCITY = ('vel_north_mps', 'vel_east_mps')
 RADIAL_SPEED = 'radial_speed_mps'
+HEADING = 'heading_deg'
 
 
 class Recording(NamedTuple):
@@ -113,7 +115,9 @@ def write(
     plots, own_ship, truth, speeds = [], [], [], []
     for k, (scan, targets) in enumerate(pairs):
         position, velocity = own_ship_at(scan.own_ship, scan.start)
-        own_ship.append((k, *_metres(scan.start, *position[::-1], *velocity[::-1], scan.end)))
+        heading = np.degrees(heading_at(scan.own_ship, scan.start))
+        row = (k, *_metres(scan.start, *position[::-1], *velocity[::-1], scan.end))
+        own_ship.append((*row, '' if np.isnan(heading) else f'{heading:.6f}'))
         degrees = np.degrees(scan.plots.bearing)
         plots += [
             (k, *_metres(time, range_), f'{bearing:.9f}', f'{amplitude:.3f}')
@@ -139,7 +143,7 @@ def write(
             for plot, speed in zip(plots, told.tolist())
         ]
     _write_table(folder / 'plots.csv', header, plots)
-    _write_table(folder / 'own_ship.csv', (*OWN_SHIP, *VELOCITY, 'end_s'), own_ship)
+    _write_table(folder / 'own_ship.csv', (*OWN_SHIP, *VELOCITY, 'end_s', HEADING), own_ship)
     _write_table(folder / 'truth.csv', (*TRUTH, *VELOCITY), truth)
     lines = [f'{key}: {json.dumps(value)}\n' for key, value in tracker_parameters.items()]
     (folder / 'radar.yaml').write_text(''.join(lines))
@@ -177,7 +181,11 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
                 f'{table.where(row)}: end_s is {end[row]:g}; it must not lie before '
                 f'time_s, {time[row]:g}'
             )
-    return numbers, OwnShip(time, position, velocity), end
+    heading = None
+    if HEADING in table.columns:
+        heading = np.radians(table.numbers(HEADING, low=-360.0, high=360.0, missing=True))
+        heading = wrap_bearing(heading)
+    return numbers, OwnShip(time, position, velocity, heading), end
 
 
 def _spans(begin: Array, end: Array, plots: list[Array]) -> Iterator[tuple[float, float]]:

@@ -52,6 +52,7 @@ class Fleet(NamedTuple):
     pd_factor  [T]  of the radar's curve
     length     [T]  m
     hulls      T rows
+    steers     whether own ship's course is stated: then she heads there at rest, too
     """
 
     origin: tuple[float, float] | None
@@ -61,6 +62,7 @@ class Fleet(NamedTuple):
     pd_factor: Array
     length: Array
     hulls: Hulls
+    steers: bool
 
 
 def read(top: Section, folder: Path, duration: float) -> Fleet:
@@ -110,6 +112,7 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
         pd_factor,
         np.array(lengths),
         Hulls(*np.array(hulls).T),
+        'course_deg' in own,
     )
 
 
