@@ -102,6 +102,11 @@ def read_origin(text: str) -> tuple[float, float] | None:
     return latitude, longitude
 
 
+def named(reason: str) -> str:
+    """The reason to count an own-ship sample, beside those of other messages."""
+    return reason.replace('samples', 'own-ship messages')
+
+
 class Anchor(NamedTuple):
     """A place known both in `map`, position [2] m, and on earth, degrees."""
 
@@ -131,11 +136,12 @@ class OwnShipInput:
         self._trust, self._timeout, self._count = trust, timeout, count
         self.log = own_ship.empty_log()
         self._base_ns: int | None = None  # the log's times are seconds after this
+        self.time_ns: int | None = None  # of the last odometry taken
         self._heading = math.nan
         self._fixed = -math.inf  # s of the wall, the last good fix
 
-    def hear_odometry(self, message: Odometry, arrival: float, now_ns: int) -> int | None:
-        """Its time, ns; None where it could not be taken.
+    def hear_odometry(self, message: Odometry, arrival: float, now_ns: int) -> bool:
+        """Whether it could be taken.
 
         arrival  s, when it came, by a clock of ours; now_ns: by that of stamps
         """
@@ -144,19 +150,22 @@ class OwnShipInput:
             time_ns = self._time(message, now_ns)
         except ConversionError as error:
             self._count(error.reason, str(error))
-            return None
+            return False
         if self._base_ns is None:
             self._base_ns = time_ns
         position, velocity = odometry_to_own_ship(message)
         self.log, reason = own_ship.admit_own_ship(
             self.log, (time_ns - self._base_ns) * 1e-9, position, velocity, arrival
         )
+        if reason == own_ship.OWN_REPEATED and np.all(self.log.taken.position[-1] == position):
+            return True  # the same message once more
         if reason:
-            self._count(reason, f'at {position}')
+            self._count(named(reason), f'at {position}')
         if reason not in ('', own_ship.OWN_REBASED):
-            return None
+            return False
+        self.time_ns = time_ns
         self._heading = heading_of_odometry(message, doubtful=self.log.off > 0)
-        return time_ns
+        return True
 
     def hear_fix(self, message: NavSatFix, now_ns: int) -> None:
         """Before the first odometry a fix cannot be placed, yet is good."""

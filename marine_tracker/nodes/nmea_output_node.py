@@ -32,6 +32,7 @@ from .nmea_output_input import (
     FIX_BY_ARRIVAL,
     TIME_BY_ARRIVAL,
     OwnShipInput,
+    named,
     read_origin,
     read_targets,
 )
@@ -73,7 +74,7 @@ class NmeaOutputNode(RunnableNode):
         self._count = {'targets': 0, 'targets waiting for a number': 0, 'sentences': 0}
         self._bad = diagnostics.Tally(
             (
-                *own_ship.OWN_REASONS,
+                *map(named, own_ship.OWN_REASONS),
                 *HEADER_REASONS,
                 BAD_FIX,
                 FIX_BY_ARRIVAL,
@@ -109,12 +110,11 @@ class NmeaOutputNode(RunnableNode):
 
     def _on_odometry(self, message: Odometry) -> None:
         wall = time.monotonic()
-        time_ns = self._own.hear_odometry(message, *self._arrival())
-        if time_ns is None:
+        if not self._own.hear_odometry(message, *self._arrival()):
             return
         self._heard[topics.ODOMETRY] = wall
         if wall - self._said_own >= self._settings.own_ship_period_s:
-            self._send(self._own_ship(time_ns))
+            self._send(self._own_ship(nanoseconds(message.header.stamp)))
 
     def _on_fix(self, message: NavSatFix) -> None:
         self._own.hear_fix(message, self._arrival()[1])
