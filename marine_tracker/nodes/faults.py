@@ -22,12 +22,11 @@ HEADER_REASONS = (WRONG_FRAME, BAD_STAMP, NO_STAMP)
 
 
 def check_frame(frame: str, allowed: Sequence[str]) -> None:
-    """ConversionError unless the frame is one of those allowed; an empty one is the first."""
+    """ConversionError unless the frame is one of those allowed; an empty one counts as `map`."""
     if frame and bare(frame) not in allowed:
+        may = ' or '.join(dict.fromkeys(allowed))
         raise ConversionError(
-            WRONG_FRAME,
-            f'frame_id is {frame[:80]!r}; it must be {" or ".join(allowed)}, or empty for '
-            f'{allowed[0]}',
+            WRONG_FRAME, f'frame_id is {frame[:80]!r}; it must be {may}, or empty'
         )
 
 

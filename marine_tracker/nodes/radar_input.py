@@ -15,7 +15,7 @@ from ..types import Scan
 from . import convert
 from .diagnostics import OK, WARN, Tally
 from .faults import HEADER_REASONS, NO_STAMP, ConversionError, check_frame
-from .topics import FRAME
+from .topics import FRAME, OWN_SHIP_FRAME
 
 MISSED = 'revolutions missed'
 NO_DOPPLER = 'scans without the radial speeds that the estimator wants'
@@ -90,7 +90,7 @@ class RadarInput:
         """
         self._heard = wall = time.monotonic()
         try:
-            check_frame(message.header.frame_id, (FRAME, came.own_frame))
+            check_frame(message.header.frame_id, (FRAME, OWN_SHIP_FRAME, came.own_frame))
             start_ns = convert.nanoseconds(message.header.stamp)
             plots = convert.cloud_to_plots(message)
         except ConversionError as error:

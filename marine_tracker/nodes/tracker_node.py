@@ -256,19 +256,19 @@ class TrackerNode(RunnableNode):
         return self._status('tracking', level, message, values)
 
     def _own_ship_status(self, wall: float) -> DiagnosticStatus:
-        level, message = OK, 'heard'
-        fresh = self.bad_own_ship.fresh(wall)
-        if fresh:
-            level, message = WARN, 'lately: ' + ', '.join(fresh)
+        worries = []
         taken = any(heard.taken for heard in self.inputs)
+        if self._fallback and taken or not self._samples:
+            worries.append(self._fallback)
         off, source = self._own_log.off, self._trusted
         if source == AUTO:
             source = 'positions' if off else 'twist'
         if off and self._trusted != POSITIONS:
-            level = WARN
-            message = f'twist is {off:.1f} m/s off the positions: velocity from {source}'
-        if self._fallback and taken or not self._samples:
-            level, message = WARN, self._fallback
+            worries.append(f'twist is {off:.1f} m/s off the positions: velocity from {source}')
+        fresh = self.bad_own_ship.fresh(wall)
+        if fresh:
+            worries.append('lately: ' + ', '.join(fresh))
+        level, message = (WARN, '; '.join(worries)) if worries else (OK, 'heard')
         values = {
             'samples': self._samples,
             'velocity from': source,

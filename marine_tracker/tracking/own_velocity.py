@@ -15,7 +15,7 @@ from ..types import Array, append, take
 WINDOW, SPAN, LEAST = 10.0, 5.0, 5  # s of positions, s and number of those that suffice
 LONGEST = 60.0  # s; samples that lie farther apart tell nothing of a velocity now
 MOST = 60  # positions that are looked at
-APART = 0.5  # m/s that both may differ, beyond three deviations
+APART, SURE = 0.5, 4.0  # m/s that both may differ, and deviations
 TURNS = 4.0  # deviations of an acceleration that is real
 AUTO, TWIST, POSITIONS = 'auto', 'twist', 'positions'
 
@@ -54,13 +54,14 @@ def follow(samples: Samples, sample: Samples, off: float) -> tuple[Samples, floa
     step = np.diff(time)[:, None]
     if np.isnan(recent.told).any():
         return samples, off
-    # What the positions do beyond the path that is told; one jump of theirs tells nothing.
+    # What the positions do beyond the path that is told.
     beyond = np.diff(recent.position, axis=0) - 0.5 * step * (recent.told[1:] + recent.told[:-1])
-    beyond[np.hypot(*beyond.T).argmax()] = 0.0
-    slope, sigma = _line(time, np.concatenate([np.zeros((1, 2)), beyond.cumsum(0)]))
-    found, limit = float(np.hypot(*slope)), APART + 3 * sigma
+    found, sigma = _speed(time, beyond)
+    limit = APART + SURE * sigma
     if found > limit:
-        return samples, found
+        beyond[np.hypot(*beyond.T).argmax()] = 0.0  # one jump of the positions tells nothing
+        if _speed(time, beyond)[0] > limit:
+            return samples, found
     slow = np.hypot(*recent.told.T).max() < 4 * AT_REST
     return samples, off if off and (slow or found > 0.5 * limit) else 0.0
 
@@ -87,6 +88,12 @@ def _recent(samples: Samples) -> Samples | None:
         return None
     rows = np.linspace(first, len(samples.time) - 1, min(count, MOST)).astype(int)
     return take(samples, rows)
+
+
+def _speed(time, steps) -> tuple[float, float]:
+    """m/s of a path of steps [K - 1, 2] between the times [K], and its deviation."""
+    slope, sigma = _line(time, np.concatenate([np.zeros((1, 2)), steps.cumsum(0)]))
+    return float(np.hypot(*slope)), sigma
 
 
 def _line(time, position) -> tuple[Array, float]:
