@@ -47,7 +47,8 @@ def heading_from(velocity, stated):
     """Heading [...] rad: the course of the velocity [..., 2] m/s, or of who makes no way the stated
     one [...], nan for none."""
     course = wrap_bearing(np.arctan2(velocity[..., 0], velocity[..., 1]))
-    return np.where(np.hypot(velocity[..., 0], velocity[..., 1]) < AT_REST, stated, course)
+    still = np.hypot(velocity[..., 0], velocity[..., 1]) < AT_REST
+    return np.where(still, wrap_bearing(stated), course)
 
 
 def heading_at(own_ship: OwnShip, time):
