@@ -40,7 +40,7 @@ class Tracking(NamedTuple):
     scan      as the tracker took it: with extents one plot a cluster
     report    of the tracker
     estimate  N rows, at the report's times
-    shapes    N rows: sizes and headings; None with extent off
+    shapes    N rows: sizes and headings; None with extent none
     """
 
     scan: Scan
@@ -79,8 +79,6 @@ class Service:
     ):
         self.tracker = Tracker(tracker, estimator)
         self.extents = Extents(tracker)
-        # Whose account is asked for; of one of your own nobody knows how it fares.
-        self._name = '' if estimator else tracker.estimator
         self.arpa = Arpa(arpa or ArpaParameters(), self.tracker.parameters)
 
     def start(self) -> ServiceMemory:
@@ -95,7 +93,7 @@ class Service:
         heading  rad, own ship's, true; nan where it is not known; None: see `heading_of`
         """
         memory, done = self.track(memory, scan)
-        fares = standing(done.report, self._name)
+        fares = standing(done.report, self.tracker.estimator)
         if heading is None:
             heading = heading_of(scan.own_ship)
         known, picture = self.arpa.step(
@@ -142,4 +140,4 @@ def heading_of(own_ship: OwnShip) -> float:
     for it, and nan where she makes no way."""
     if own_ship.heading is not None and np.isfinite(own_ship.heading[-1]):
         return float(own_ship.heading[-1])
-    return float(heading_from(own_ship.velocity[-1], np.nan))
+    return float(heading_from(own_ship.velocity[-1], np.array(np.nan)))

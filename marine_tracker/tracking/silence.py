@@ -7,7 +7,7 @@ other plot nor track nearly as near. The others end, for they have drifted too f
 
 import numpy as np
 
-from ..types import Array, Extrapolation, Plots, take
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, take
 from .gate import Pairs
 
 LONG_S, LONG_SCANS = 180.0, 10  # without a plot of any track: shorter is no silence
@@ -36,7 +36,7 @@ def unmistakable(
     return take(pairs, _clear(off, pairs.track) & _clear(off, pairs.plot))
 
 
-def _clear(off, of):
+def _clear(off: Array, of: IntArray) -> BoolArray:
     """Mask [P] of the pairs that are the nearest of their track or plot `of` [P], by far."""
     order = np.lexsort((off, of))
     first = np.append(True, of[order][1:] != of[order][:-1])
