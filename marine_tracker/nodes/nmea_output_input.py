@@ -137,7 +137,7 @@ class OwnShipInput:
         self._trust, self._timeout, self._count = trust, timeout, count
         self.log = own_ship.empty_log()
         self._base_ns: int | None = None  # the log's times are seconds after this
-        self.time_ns: int | None = None  # of the last odometry taken
+        self.time_ns: int | None = None  # of the last odometry
         self._heading = math.nan
         self._fixed = -math.inf  # s of the wall, the last good fix
 
@@ -152,6 +152,7 @@ class OwnShipInput:
         except ConversionError as error:
             self._count(error.reason, str(error))
             return False
+        self.time_ns = time_ns
         if self._base_ns is None:
             self._base_ns = time_ns
         position, velocity = odometry_to_own_ship(message)
@@ -164,7 +165,6 @@ class OwnShipInput:
             self._count(named(reason), f'at {position}')
         if reason not in ('', own_ship.OWN_REBASED):
             return False
-        self.time_ns = time_ns
         self._heading = heading_of_odometry(message, doubtful=self.log.off > 0)
         return True
 

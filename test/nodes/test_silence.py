@@ -113,7 +113,7 @@ def test_a_pause_above_rate_1_is_extrapolated_over(sailing):
     sailing.silent(41)
     after = sailing.shown.ships()
     assert len(before) >= 38
-    assert sum(after.get(name) == ship for name, ship in before.items()) >= 0.95 * len(before)
+    assert sum(after.get(name) == ship for name, ship in before.items()) >= 0.9 * len(before)
     assert not [name for name, ship in before.items() if after.get(name, 0) not in (0, ship)]
     assert sailing.tracker.inputs[0].taken >= taken + 5
     assert not sailing.tracker.inputs[0].bad.counts[intake.REBASED]
@@ -173,5 +173,5 @@ def test_a_stopped_process_goes_on_at_the_next_scan_with_its_tracks(
     wait(lambda: now() > stood + (50 if stopped == 'tracker' else 15))
     after = shown.ships()
     kept = sum(after.get(name) == ship for name, ship in before.items())
-    assert len(before) >= 35 and kept >= 0.95 * len(before)
+    assert len(before) >= 35 and kept >= 0.9 * len(before)
     assert not [name for name, ship in before.items() if after.get(name, 0) not in (0, ship)]
