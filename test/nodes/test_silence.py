@@ -40,11 +40,11 @@ class Shown:
         self.tracks = listener(node, Odometry, topics.TRACKS, topics.reliable(5000))
 
     def ships(self):
-        """{number: ship} by the last message of each track in the last revolution; 0 for none."""
+        """{number: ship} by the last message of each track of late; 0 for none."""
         found, newest = {}, convert.nanoseconds(self.tracks[-1].header.stamp)
         for message in self.tracks.messages[-400:]:
             stamp = convert.nanoseconds(message.header.stamp)
-            if stamp < newest - 3 * SECOND:
+            if stamp < newest - 6 * SECOND:  # two revolutions: the last may not be whole yet
                 continue
             at = stamp * 1e-9 - 1.0  # simulated time begins at 1 s
             truth, position = self._strait.truth_at(at), message.pose.pose.position
