@@ -34,8 +34,8 @@ demo: $(DEMO)
 # Arithmetic on all processors, then the nodes by themselves, which run in real time. Code 5: ARGS
 # leaves no test in this half.
 test: $(TEST)
-	$(BIN)/python -m pytest -m 'not slow and not fuzz and not nodes' -n auto --maxprocesses 4 --dist loadfile \
-	    $(ARGS) || [ $$? = 5 ]
+	$(BIN)/python -m pytest -m 'not slow and not fuzz and not nodes' -n auto --maxprocesses 4 \
+	    --dist loadfile $(ARGS) || [ $$? = 5 ]
 	$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' $(ARGS) || [ $$? = 5 ]
 
 check: $(CHECK)

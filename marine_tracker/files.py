@@ -13,6 +13,8 @@ _BRIEF.maxlevel, _BRIEF.maxdict, _BRIEF.maxlist, _BRIEF.maxtuple = 2, 3, 4, 4
 _BRIEF.maxstring = _BRIEF.maxlong = _BRIEF.maxother = 60
 LONGEST = 80  # characters of a value in a message
 
+Place = str | os.PathLike[str]  # of a file
+
 
 def shown(value: Any) -> str:
     """The value as a message tells it: as Python writes it, long ones cut."""
@@ -26,18 +28,18 @@ def shortened(text: Any) -> str:
     return line if len(line) <= 200 else line[:197] + '...'
 
 
-def regular(path) -> Path:
+def regular(path: Place) -> Path:
     """The path, if it is that of a regular file; else ValueError (OSError where there is none).
 
     A pipe or a device might never end, or never begin.
     """
-    path = Path(path)
-    if not stat.S_ISREG(path.stat().st_mode):
-        raise ValueError(f'{path} is not a regular file')
-    return path
+    found = Path(path)
+    if not stat.S_ISREG(found.stat().st_mode):
+        raise ValueError(f'{shortened(found)} is not a regular file')
+    return found
 
 
-def read_text(path, limit: int) -> str:
+def read_text(path: Place, limit: int) -> str:
     """The text of a regular file in UTF-8 of at most `limit` bytes.
 
     ValueError, in one line, where it is none; OSError where it cannot be read.
@@ -46,19 +48,19 @@ def read_text(path, limit: int) -> str:
     with open(path, 'rb') as file:
         content = file.read(limit + 1)
     if len(content) > limit:
-        raise ValueError(f'{path} has more than {limit} bytes; it must not')
+        raise ValueError(f'{shortened(path)} has more than {limit} bytes; it must not')
     try:
         return content.decode('utf-8-sig')
     except UnicodeDecodeError as error:
         line = content.count(b'\n', 0, error.start) + 1
         raise ValueError(
-            f'{path}, line {line}: the byte 0x{content[error.start]:02x} is not UTF-8; '
+            f'{shortened(path)}, line {line}: the byte 0x{content[error.start]:02x} is not UTF-8; '
             'save the file as UTF-8'
         ) from None
 
 
 @contextlib.contextmanager
-def written(path, mode: str = 'w', **options) -> Iterator[IO[Any]]:
+def written(path: Place, mode: str = 'w', **options: Any) -> Iterator[IO[Any]]:
     """A file to write, which takes its place only when the block has ended well.
 
     It is written beside `path` and renamed. An error, SIGINT or a full disk leaves what was there
@@ -90,7 +92,7 @@ def written(path, mode: str = 'w', **options) -> Iterator[IO[Any]]:
             beside.unlink()
 
 
-def write_text(path, text: str) -> None:
+def write_text(path: Place, text: str) -> None:
     """Write a text file, whole or not at all."""
     with written(path) as file:
         file.write(text)

@@ -4,29 +4,31 @@ Degrees on WGS 84, north and east positive. Longitudes go in as -180 to 180 and 
 [-180, 180). Those of 180 to 360 are refused: in AIS reports 181 means "not known".
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .geometry import to_range_bearing, unit_vector
+from .geometry import Angle, to_range_bearing, unit_vector
 from .types import Array
 
 FARTHEST = 2.0e7  # m: half way round the Earth, less 4 km
 
 
 @cache
-def _earth():
+def _earth() -> Any:
     """WGS 84. pyproj is loaded when the first place is asked for: a tracker alone needs none."""
     from pyproj import Geod
 
     return Geod(ellps='WGS84')
 
 
-def wrap_longitude(longitude):
+def wrap_longitude(longitude: Angle) -> Angle:
     """The same longitude [...] in [-180, 180) deg."""
-    turned = longitude % 360.0
+    turned: Angle = longitude % 360.0
     return turned - 360.0 * (turned >= 180.0)
 
 
@@ -54,7 +56,7 @@ class LocalFrame:
     latitude: ArrayLike
     longitude: ArrayLike
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _refuse_elsewhere(self.latitude, self.longitude)
 
     def to_local(self, latitude: ArrayLike, longitude: ArrayLike) -> Array:
@@ -78,7 +80,7 @@ class LocalFrame:
         return latitude, wrap_longitude(longitude)
 
 
-def _each(solve, *values: ArrayLike) -> list[Array]:
+def _each(solve: Callable[..., Any], *values: ArrayLike) -> list[Array]:
     """What solve gives for the values, broadcast; numpy's numbers for plain ones."""
     return [
         np.asarray(one)[()]

@@ -3,26 +3,29 @@
 Bearings are radians clockwise from true north; vectors are [east, north].
 """
 
+from typing import TypeVar
+
 import numpy as np
 
-from .types import OwnShip, Plots, PolarPlots
+from .types import Array, OwnShip, Plots, PolarPlots
 
 NAUTICAL_MILE = 1852.0  # m
 KNOT = NAUTICAL_MILE / 3600.0  # m/s
+Angle = TypeVar('Angle', float, Array)
 
 
-def wrap_bearing(angle):
+def wrap_bearing(angle: Angle) -> Angle:
     """The same angle in [0, 2 pi)."""
-    wrapped = np.mod(angle, 2 * np.pi)
+    wrapped: Angle = np.mod(angle, 2 * np.pi)
     return wrapped * (wrapped < 2 * np.pi)  # -1e-17 % 2 pi rounds up to 2 pi
 
 
-def wrap_angle(angle):
+def wrap_angle(angle: Angle) -> Angle:
     """The same angle in [-pi, pi): for differences of bearings."""
     return wrap_bearing(angle + np.pi) - np.pi
 
 
-def unit_vector(bearing):
+def unit_vector(bearing: float | Array) -> Array:
     """[..., 2] east and north of a unit step along the bearing [...]."""
     unit = np.empty(np.shape(bearing) + (2,))
     np.sin(bearing, out=unit[..., 0])
@@ -30,18 +33,20 @@ def unit_vector(bearing):
     return unit
 
 
-def to_range_bearing(offset):
+def to_range_bearing(offset: Array) -> tuple[Array, Array]:
     """Range [...] m and bearing [...] rad in [0, 2 pi) of offsets [..., 2] m from the radar."""
     east, north = offset[..., 0], offset[..., 1]
     return np.hypot(east, north), wrap_bearing(np.arctan2(east, north))
 
 
-def bearing_from_yaw(yaw):
+def bearing_from_yaw(yaw: Angle) -> Angle:
     """Bearing, rad in [0, 2 pi), of a ROS yaw (counter-clockwise from east), and nan of nan."""
     return wrap_bearing(np.pi / 2 - yaw)
 
 
-def polar_to_position(range_, bearing, range_sigma, bearing_sigma):
+def polar_to_position(
+    range_: Array, bearing: Array, range_sigma: float | Array, bearing_sigma: float | Array
+) -> tuple[Array, Array]:
     """Unbiased position and covariance of polar measurements relative to the radar.
 
     range_, bearing  [M] m, rad; range_sigma m; bearing_sigma rad (scalars or [M]).
@@ -65,7 +70,7 @@ def polar_to_position(range_, bearing, range_sigma, bearing_sigma):
     return position, covariance
 
 
-def own_ship_at(own_ship: OwnShip, time):
+def own_ship_at(own_ship: OwnShip, time: float | Array) -> tuple[Array, Array]:
     """Own ship's position [..., 2] m and velocity [..., 2] m/s at the times [...].
 
     Linear between samples; beyond the first and last one the ship holds its velocity.

@@ -7,6 +7,7 @@ import fcntl
 import os
 import signal
 import sys
+from typing import NoReturn
 
 PR_SET_PDEATHSIG = 1  # sys/prctl.h
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h of the GNU C library
@@ -53,7 +54,7 @@ def end_in_time() -> None:
 def stop_on_sigterm() -> None:
     """From now on SIGTERM raises SystemExit, so that what was begun is put in order."""
 
-    def stop(*_):
+    def stop(*_: object) -> NoReturn:
         raise SystemExit(128 + signal.SIGTERM)
 
     signal.signal(signal.SIGTERM, stop)

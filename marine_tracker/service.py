@@ -79,8 +79,6 @@ class Service:
     ):
         self.tracker = Tracker(tracker, estimator)
         self.extents = Extents(tracker)
-        # Whose account is asked for; of one of your own nobody knows how it fares.
-        self._name = '' if estimator else tracker.estimator
         self.arpa = Arpa(arpa or ArpaParameters(), self.tracker.parameters)
 
     def start(self) -> ServiceMemory:
@@ -95,7 +93,7 @@ class Service:
         heading  rad, own ship's, true; nan where it is not known; None: see `course_over_ground`
         """
         memory, done = self.track(memory, scan)
-        fares = standing(done.report, self._name)
+        fares = standing(done.report, self.tracker.estimator)
         if heading is None:
             heading = course_over_ground(scan.own_ship)
         known, picture = self.arpa.step(

@@ -2,14 +2,14 @@
 
 import codecs
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 import numpy as np
 
-from .files import regular, shortened, shown
-from .types import Array
+from .files import Place, regular, shortened, shown
+from .types import Array, IntArray
 
 MAX_LINE = 100_000  # characters
 
@@ -31,7 +31,7 @@ class Table(NamedTuple):
 
     def where(self, row: int) -> str:
         """The row's place, as an error names it."""
-        return f'{self.path}, line {self.line[row]}'
+        return f'{shortened(self.path)}, line {self.line[row]}'
 
     def numbers(
         self, name: str, *, missing: bool = False, low: float = -np.inf, high: float = np.inf
@@ -65,7 +65,7 @@ class Table(NamedTuple):
             )
         return values
 
-    def integers(self, name: str):
+    def integers(self, name: str) -> IntArray:
         """A column [R] as whole numbers, int64 (`3` and `3.0` are the same)."""
         values = self.numbers(name, low=-(2.0**53), high=2.0**53)
         wrong = values != np.rint(values)
@@ -87,7 +87,7 @@ class Rows(NamedTuple):
     rows: Iterator[tuple[int, list[str]]]
 
 
-def rows(path, *, broken: str = 'strict') -> Rows:
+def rows(path: Place, *, broken: str = 'strict') -> Rows:
     """The rows of a CSV file, one by one: UTF-8, with or without byte order mark, or UTF-16.
 
     broken  what is made of bytes that are no text: an error, or with 'replace' a sign for each
@@ -98,13 +98,13 @@ def rows(path, *, broken: str = 'strict') -> Rows:
     found = _rows(path, broken)
     _, header = next(found, (0, []))
     if not header:
-        raise ValueError(f'{path} is empty; its first line must name the columns')
+        raise ValueError(f'{shortened(path)} is empty; its first line must name the columns')
     if len(set(header)) < len(header):
-        raise ValueError(f'{path} names a column twice: {shortened(", ".join(header))}')
+        raise ValueError(f'{shortened(path)} names a column twice: {shortened(", ".join(header))}')
     return Rows(header, found)
 
 
-def read(path, required=()) -> Table:
+def read(path: Place, required: Sequence[str] = ()) -> Table:
     """The table in a CSV file (see `rows`).
 
     Raises ValueError as `rows` does, for a column of `required` that is missing, and for a line
@@ -114,12 +114,15 @@ def read(path, required=()) -> Table:
     header, found = rows(path)
     for name in required:
         if name not in header:
-            raise ValueError(f'{path} has no column {name}; it has {shortened(", ".join(header))}')
+            raise ValueError(
+                f'{shortened(path)} has no column {name}; it has {shortened(", ".join(header))}'
+            )
     lines = []
     for number, cells in found:
         if len(cells) != len(header):
             raise ValueError(
-                f'{path}, line {number} has {len(cells)} cells; it must have {len(header)}'
+                f'{shortened(path)}, line {number} has {len(cells)} cells; '
+                f'it must have {len(header)}'
             )
         lines.append((number, cells))
     columns = zip(*(cells for _, cells in lines)) if lines else ([] for _ in header)
@@ -142,30 +145,30 @@ def _rows(path: Path, broken: str) -> Iterator[tuple[int, list[str]]]:
                 if cells:
                     yield reader.line_num, [cell.strip() for cell in cells]
     except FileNotFoundError:
-        raise ValueError(f'{path} does not exist') from None
+        raise ValueError(f'{shortened(path)} does not exist') from None
     except UnicodeDecodeError as error:
         kind = 'UTF-16' if utf16 else 'UTF-8'
         byte = error.object[error.start]
         raise ValueError(
-            f'{path}{_line_of_bad_text(path, utf16)}: the byte 0x{byte:02x} is not {kind}; '
-            'save the file as UTF-8'
+            f'{shortened(path)}{_line_of_bad_text(path, utf16)}: the byte 0x{byte:02x} '
+            f'is not {kind}; save the file as UTF-8'
         ) from None
     except OSError as error:
-        raise ValueError(f'{path} cannot be read: {error.strerror or error}') from error
+        raise ValueError(f'{shortened(path)} cannot be read: {error.strerror or error}') from error
     except csv.Error as error:
         raise ValueError(
-            f'{path}, line {reader.line_num} cannot be read as CSV: {error}'
+            f'{shortened(path)}, line {reader.line_num} cannot be read as CSV: {error}'
         ) from error
 
 
-def _lines(file, path: Path) -> Iterator[str]:
+def _lines(file: IO[str], path: Path) -> Iterator[str]:
     """Lines, none of them without end."""
     number = 0
     while line := file.readline(MAX_LINE + 1):
         number += 1
         if len(line) > MAX_LINE:
             raise ValueError(
-                f'{path}, line {number} has more than {MAX_LINE} characters; it must not'
+                f'{shortened(path)}, line {number} has more than {MAX_LINE} characters; it must not'
             )
         yield line
 

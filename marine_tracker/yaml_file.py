@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 from ruamel.yaml import YAML, events
 from ruamel.yaml.error import MarkedYAMLError
 
-from .files import read_text, shortened, shown
+from .files import Place, read_text, shortened, shown
 
-MAX_BYTES = 500_000
-MAX_VALUES = 50_000
+MAX_BYTES = 300_000
+MAX_VALUES = 30_000
 MAX_DEPTH = 32
 MAX_KEY = 200  # characters
 MAX_INTEGER = 2**63 - 1
@@ -44,30 +44,30 @@ class _Found(NamedTuple):
     size: int
 
 
-def read(path) -> Any:
+def read(path: Place) -> Any:
     """What a YAML file holds. ValueError for one that is wrong, OSError where none can be read."""
-    return parse(read_text(path, MAX_BYTES), str(path))
+    return parse(read_text(path, MAX_BYTES), shortened(path))
 
 
-def read_mapping(path) -> dict[str, Any]:
+def read_mapping(path: Place) -> dict[str, Any]:
     """A YAML file that holds one mapping (empty counts as none); errors name the file."""
     values = read(path)
     if values is None:
         return {}
     if not isinstance(values, dict):
-        raise ValueError(f'{path} holds {_kind(values)}; it must hold a mapping')
+        raise ValueError(f'{shortened(path)} holds {_kind(values)}; it must hold a mapping')
     return values
 
 
-def read_json(path) -> dict[str, Any]:
+def read_json(path: Place) -> dict[str, Any]:
     """A JSON file that holds one object, under the same limits."""
-    return parse_json(read_text(path, MAX_BYTES), str(path))
+    return parse_json(read_text(path, MAX_BYTES), shortened(path))
 
 
 def parse_json(text: str, name: str) -> dict[str, Any]:
     """The one object of a JSON text, under the same limits; `name` says what the text is."""
 
-    def pairs(items):
+    def pairs(items: list[tuple[str, Any]]) -> dict[str, Any]:
         made: dict[str, Any] = {}
         for key, value in items:
             _check_key(key, made, name)
@@ -159,7 +159,7 @@ class _Composer:
                 self._add(event, made, found)
         return found[0] if found else None
 
-    def _begin(self, event) -> None:
+    def _begin(self, event: Any) -> None:
         if event.tag is not None:
             raise self._wrong(event, f'the tag {shortened(event.tag)} is not read; leave it out')
         if self.open and self.open[-1].wants_key:
@@ -171,12 +171,12 @@ class _Composer:
         mapping = isinstance(event, events.MappingStartEvent)
         self.open.append(_Collection({} if mapping else [], event.anchor, before))
 
-    def _count(self, event, size: int) -> None:
+    def _count(self, event: Any, size: int) -> None:
         self.values += size
         if self.values > MAX_VALUES:
             raise self._wrong(event, f'there are too many values; {MAX_VALUES} are allowed')
 
-    def _scalar(self, event) -> Any:
+    def _scalar(self, event: Any) -> Any:
         text = event.value
         if event.tag is not None and str(event.tag) not in TEXT_TAGS:
             raise self._wrong(event, f'the tag {shortened(event.tag)} is not read; leave it out')
@@ -189,7 +189,7 @@ class _Composer:
             return _integer(text, self._place(event))
         return float(text) if NUMBER.fullmatch(text) else text
 
-    def _add(self, event, made: _Found, found: list[Any]) -> None:
+    def _add(self, event: Any, made: _Found, found: list[Any]) -> None:
         if not self.open:
             found.append(made.value)
             return
@@ -205,7 +205,7 @@ class _Composer:
             collection.value[collection.key] = made.value
             collection.wants_key = True
 
-    def _place(self, event) -> str:
+    def _place(self, event: Any) -> str:
         """File, line and key of what the event brings."""
         keys = ''
         for collection in self.open:
@@ -216,7 +216,7 @@ class _Composer:
         where = f'{self.name}, line {event.start_mark.line + 1}'
         return f'{where}, {keys}' if keys else where
 
-    def _wrong(self, event, why: str) -> ValueError:
+    def _wrong(self, event: Any, why: str) -> ValueError:
         return ValueError(f'{self._place(event)}: {why}')
 
 
@@ -248,6 +248,6 @@ def _check_key(key: str, before: dict[str, Any], place: str) -> None:
         raise ValueError(f'{place}: {shown(key)} is there twice; give it once')
 
 
-def _kind(value) -> str:
+def _kind(value: Any) -> str:
     kinds = {list: 'a list', str: 'a text', dict: 'a mapping', type(None): 'nothing'}
     return kinds.get(type(value), shown(value))

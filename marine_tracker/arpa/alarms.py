@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..tracking.lifecycle import CONFIRMED, LOST
-from ..types import Array, row_of, take
+from ..types import Array, CodeArray, IntArray, row_of, take
 from . import alerts as machine
 from . import encounters
 from .acquisition import Acquisition, how_acquired
@@ -73,6 +73,9 @@ NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level th
 APART = 1.44  # overlap of gates (see swap_risk) that ends a swap risk
 
 
+Named = tuple[int, int, Causes]  # the kind of alert, its zone or radar, and what causes it
+
+
 class AlarmSettings(NamedTuple):
     """How alarms behave.
 
@@ -104,7 +107,7 @@ class Tracking(NamedTuple):
     capacity: int
     fallen: int
     overlap: Array
-    other: Array
+    other: IntArray
 
 
 class Silence(NamedTuple):
@@ -212,7 +215,9 @@ def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
     )
 
 
-def _advance(alerts, causes, settings, now):
+def _advance(
+    alerts: Alerts, causes: list[Named], settings: AlarmSettings, now: float
+) -> tuple[Alerts, Alerts]:
     """Each kind and zone by itself; those without causes here stay as they are."""
     by_kind, parts, changes = rules(settings), [], [machine.begin()]
     rest = np.ones(len(alerts.kind), bool)
@@ -227,7 +232,9 @@ def _advance(alerts, causes, settings, now):
     return _join([take(alerts, rest), *parts]), _join(changes)
 
 
-def _in_guard_zones(alerts, situation, acquisition, zones):
+def _in_guard_zones(
+    alerts: Alerts, situation: Situation, acquisition: Acquisition, zones: Zones
+) -> list[Named]:
     """Causes of `new target`, zone by zone; a zone that is no more has none."""
     cancelled = acquisition.barred.id[acquisition.barred.cancelled]
     rows = (
@@ -247,7 +254,9 @@ def _in_guard_zones(alerts, situation, acquisition, zones):
     ]
 
 
-def _of_tracks(situation, rows, level, *told):
+def _of_tracks(
+    situation: Situation, rows: IntArray, level: CodeArray | IntArray, *told: Array
+) -> Causes:
     """Causes of the tracks at the rows; level [N], and what else is told of each [N]."""
     values = np.full((len(rows), VALUES), np.nan)
     for column, value in enumerate((situation.range, situation.bearing, *told)):
@@ -261,12 +270,12 @@ def _of_tracks(situation, rows, level, *told):
     )
 
 
-def _single(value, limit, *told):
+def _single(value: float, limit: float, *told: float) -> Causes:
     """The cause of a kind that concerns no track, there from a value of `limit` on."""
     return _causes(value >= limit, *told, keep=value >= NO_LONGER * limit)
 
 
-def _causes(there, *told, keep=False):
+def _causes(there: bool, *told: float, keep: bool = False) -> Causes:
     values = np.full((1, VALUES), np.nan)
     values[0, : len(told)] = told
     none = np.zeros(1, np.int64)
@@ -279,5 +288,5 @@ def _causes(there, *told, keep=False):
     )
 
 
-def _join(parts):
+def _join(parts: list[Alerts]) -> Alerts:
     return Alerts(*(np.concatenate(column) for column in zip(*parts)))

@@ -20,9 +20,8 @@ without an operator, lapses some time after its cause, or alerts would pile up f
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array, append, row_of, take
+from ..types import Array, BoolArray, CodeArray, IntArray, append, row_of, take
 
 NORMAL, ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED = range(4)
 STATES = ('normal', 'active unacknowledged', 'active acknowledged', 'rectified unacknowledged')
@@ -50,11 +49,11 @@ class Alerts(NamedTuple):
     mark      [A, 2]  what would be clearly worse, see encounters.py; nan: not looked at yet
     """
 
-    kind: NDArray[np.int8]
-    zone: NDArray[np.int64]
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    state: NDArray[np.int8]
+    kind: CodeArray
+    zone: IntArray
+    id: IntArray
+    number: IntArray
+    state: CodeArray
     since: Array
     turn: Array
     position: Array
@@ -72,9 +71,9 @@ class Causes(NamedTuple):
     values      [S, 5]
     """
 
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    level: NDArray[np.int8]
+    id: IntArray
+    number: IntArray
+    level: CodeArray
     position: Array
     values: Array
 
@@ -150,12 +149,16 @@ def advance(
         alerts.state,
     ).astype(np.int8)
     changed = state != alerts.state
-    ends = (state == NORMAL) & ((not rule.remembered) | gone | over | (due & (level == CLEAR)))
+    forgotten = (not rule.remembered) | gone | over | (due & ~active & (level == CLEAR))
     told = alerts._replace(
         state=state,
         since=np.where(changed, now, alerts.since),
         turn=np.where(changed | (due & ~active), np.nan, turn),
-        until=np.where(ends | (state == ACTIVE_UNACKNOWLEDGED), np.nan, alerts.until),
+        until=np.where(
+            np.where(state == NORMAL, forgotten, state == ACTIVE_UNACKNOWLEDGED),
+            np.nan,
+            alerts.until,
+        ),
     )
     fresh = (changed & ~gone).nonzero()[0]
     if len(fresh):
@@ -189,11 +192,11 @@ def advance(
 def acknowledge(
     alerts: Alerts,
     now: float,
-    momentary: NDArray[np.bool_],
+    momentary: BoolArray,
     kind: int | None = None,
     number: int | None = None,
     until: float = np.inf,
-    remembered: NDArray[np.bool_] | None = None,
+    remembered: BoolArray | None = None,
 ) -> tuple[Alerts, Alerts]:
     """The operator has seen the alerts of this kind and target number; None stands for all.
 
@@ -233,7 +236,7 @@ def acknowledge(
     )
 
 
-def dismiss(alerts: Alerts, ids, now: float) -> tuple[Alerts, Alerts]:
+def dismiss(alerts: Alerts, ids: IntArray, now: float) -> tuple[Alerts, Alerts]:
     """All alerts of these tracks are normal: the operator has cancelled them. As `acknowledge`."""
     chosen = np.isin(alerts.id, ids) & (alerts.id > 0)
     return _change(
@@ -245,7 +248,7 @@ def dismiss(alerts: Alerts, ids, now: float) -> tuple[Alerts, Alerts]:
     )
 
 
-def _change(alerts: Alerts, state, now: float) -> tuple[Alerts, Alerts]:
+def _change(alerts: Alerts, state: CodeArray, now: float) -> tuple[Alerts, Alerts]:
     changed = state != alerts.state
     alerts = alerts._replace(
         state=state.astype(np.int8), since=np.where(changed, now, alerts.since)
@@ -253,6 +256,7 @@ def _change(alerts: Alerts, state, now: float) -> tuple[Alerts, Alerts]:
     return take(alerts, _alive(alerts)), take(alerts, changed)
 
 
-def _alive(alerts: Alerts):
+def _alive(alerts: Alerts) -> BoolArray:
     """Mask of the rows worth keeping: not normal, about to be raised, or acknowledged."""
-    return (alerts.state != NORMAL) | np.isfinite(alerts.turn) | ~np.isnan(alerts.until)
+    found: BoolArray = (alerts.state != NORMAL) | np.isfinite(alerts.turn) | ~np.isnan(alerts.until)
+    return found

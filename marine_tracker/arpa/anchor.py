@@ -1,35 +1,36 @@
-"""Own ship at anchor: when she is, and who may be a danger to her there.
+"""Own ship at anchor: whether she is, and which targets are a danger to her there.
 
-She counts as anchored where she surely makes no way: slower than AT_REST, or, swinging to her
-anchor, slower than SWINGING all the time and than AT_REST on the whole. The parameter
-`own_ship_status` may say so as well, as where wind and stream swing her for minutes; it does not
-hold once she makes more than SWINGING, for then the anchor does not hold either.
+She counts as anchored if her speed is certainly below AT_REST. She also counts as anchored if she
+swings: her speed is always below SWINGING, and below AT_REST on average. The parameter
+`own_ship_status` may state it as well, for example when wind and stream swing her for minutes. That
+does not apply above SWINGING, because then the anchor is not holding.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..gaussian.linear import invert_2x2, squared_distance
-from ..types import OwnShip
+from ..types import BoolArray, OwnShip
 from .cpa import OwnMotion
 from .motion import Motion
 from .yaw import HISTORY
 
-AT_REST = 0.25  # m/s, below which own ship makes no way
-SWINGING = 1.0  # m/s, the most that a ship at anchor makes
+AT_REST = 0.25  # m/s; below this own ship makes no way
+SWINGING = 1.0  # m/s; maximum speed of a ship at anchor
 BY_CHANCE = 11.8  # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
 SURELY = 3.0  # deviations of the speed towards own ship
 DETECTED, ANCHORED, UNDER_WAY = STATUS = 'detected', 'anchored', 'under_way'
 
 
-def makes_way(moving: Motion) -> NDArray[np.bool_]:
-    """Whether [N] tracks surely move over ground; a new one at anchor shows some speed by noise."""
+def makes_way(moving: Motion) -> BoolArray:
+    """Whether [N] tracks certainly move over ground. A new track at anchor shows some speed from
+    noise.
+    """
     inverse, _ = invert_2x2(moving.covariance[:, 2:, 2:])
     return ~moving.stationary & (squared_distance(moving.velocity, inverse) > BY_CHANCE)
 
 
 def at_anchor(samples: OwnShip, own: OwnMotion, time: float, status: str = DETECTED) -> bool:
-    """Whether own ship, with the samples of late and that motion at `time`, s, lies at anchor.
+    """Whether own ship is at anchor, from her recent samples and her motion at `time`, s.
 
     status  DETECTED, ANCHORED or UNDER_WAY
     """
@@ -44,8 +45,8 @@ def at_anchor(samples: OwnShip, own: OwnMotion, time: float, status: str = DETEC
     return bool(slow or (held and swings and np.hypot(*lately.mean(0)) < AT_REST))
 
 
-def harmless(moving: Motion, own: OwnMotion) -> NDArray[np.bool_]:
-    """Whether [N] targets are no danger to own ship at anchor: they do not surely come nearer.
+def harmless(moving: Motion, own: OwnMotion) -> BoolArray:
+    """Whether [N] targets are no danger to own ship at anchor: they do not certainly come nearer.
 
     moving  over ground
     """
@@ -53,4 +54,5 @@ def harmless(moving: Motion, own: OwnMotion) -> NDArray[np.bool_]:
     towards = -offset / np.maximum(np.hypot(*offset.T), 1e-9)[:, None]
     closing = (moving.velocity * towards).sum(1)
     variance = np.einsum('ni,nij,nj->n', towards, moving.covariance[:, 2:, 2:], towards)
-    return ~(makes_way(moving) & (closing > SURELY * np.sqrt(variance)))
+    surely: BoolArray = closing > SURELY * np.sqrt(variance)
+    return ~(makes_way(moving) & surely)

@@ -1,9 +1,8 @@
-"""One scan's tracks in, targets and alarms out: the whole way of the ARPA on one page."""
+"""From one scan's tracks to targets and alarms: all steps of the ARPA on one page."""
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import KNOT, NAUTICAL_MILE, polar_to_position, unit_vector
 from ..parameters import ArpaParameters, TrackerParameters
@@ -12,7 +11,18 @@ from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.noise import noise_of
 from ..tracking.radars import radars_of
 from ..tracking.tracker import Report
-from ..types import Array, OwnShip, Scan, Tracks, append, row_of, take
+from ..types import (
+    Array,
+    BoolArray,
+    CodeArray,
+    IntArray,
+    OwnShip,
+    Scan,
+    Tracks,
+    append,
+    row_of,
+    take,
+)
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
@@ -24,11 +34,13 @@ from .past_positions import PastPositions
 from .swap_risk import swap_risk
 from .targets import Events, Targets
 
+Mask = bool | BoolArray  # for all rows, or [N]
+
 
 class ArpaMemory(NamedTuple):
-    """All that the ARPA knows between two scans; see the modules of the same names.
+    """The memory of the ARPA between two scans; see the modules with the same names.
 
-    own  own ship's samples of late
+    own  own ship's recent samples
     """
 
     own: OwnShip
@@ -39,32 +51,33 @@ class ArpaMemory(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """The targets after a scan, in the order of their numbers; T rows but for own and events.
+    """The targets after a scan, in the order of their numbers. All fields have T rows except own
+    and events.
 
     time      s, end of the scan
     own       own ship then
     row       [T]  of each target in the tracker's report
-    targets   T rows; those that were lost in this scan are among them
-    motion    T rows, as stabilised: course and speed through the water where a current is given
+    targets   T rows, including those that were lost in this scan
+    motion    T rows, as stabilised: course and speed through the water if a current is given
     approach  T rows
     past      past positions of all tracks
-    harmless  [T]  own ship lies at anchor and the target does not surely come nearer
+    harmless  [T]  own ship is at anchor and the target does not certainly come nearer
     danger    [T]  one of situation.SAFE, NEARLY, DANGEROUS
-    overlap   [T]  of the gate with that of another track: below 1 they may be swapped
+    overlap   [T]  of the gate with that of another track: below 1 the two may be swapped
     events    what happened to targets in this scan
     alerts    those that are not normal
-    changed   the alerts that changed in this scan, to normal as well
+    changed   the alerts that changed in this scan, also those that became normal
     """
 
     time: float
     own: OwnMotion
-    row: NDArray[np.int64]
+    row: IntArray
     targets: Targets
     motion: Motion
     approach: Approach
     past: PastPositions
-    harmless: NDArray[np.bool_]
-    danger: NDArray[np.int8]
+    harmless: BoolArray
+    danger: CodeArray
     overlap: Array
     events: Events
     alerts: Alerts
@@ -72,14 +85,14 @@ class Picture(NamedTuple):
 
 
 class Arpa:
-    """The pure core, without a state of its own: parameters in.
+    """The pure core: it takes parameters and has no state.
 
     arpa = Arpa(ArpaParameters(), tracker.parameters)
     memory = arpa.start()
     memory, picture = arpa.step(memory, scan, report, heading)      # of each step of the tracker
 
-    A change of parameters is a new Arpa, which goes on from the same memory.
-    ValueError where the zones are wrong.
+    After a change of parameters, make a new Arpa and continue with the same memory. ValueError if
+    the zones are wrong.
     """
 
     def __init__(self, parameters: ArpaParameters, tracker: TrackerParameters):
@@ -99,7 +112,7 @@ class Arpa:
 
     @property
     def stabilised(self) -> str:
-        """What courses and speeds are measured against: 'sea' where a current is given."""
+        """The reference of courses and speeds: 'sea' if a current is given, else 'ground'."""
         return 'sea' if self.current.any() else 'ground'
 
     def start(self) -> ArpaMemory:
@@ -115,11 +128,11 @@ class Arpa:
         )
 
     def step(
-        self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen=False
+        self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen: Mask = False
     ) -> tuple[ArpaMemory, Picture]:
-        """One antenna revolution; all is reckoned to its end.
+        """Processes one antenna revolution. All results are for its end.
 
-        heading  rad, own ship's, true; nan where it is not known
+        heading  rad, own ship's, true; nan if unknown
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
@@ -147,8 +160,8 @@ class Arpa:
 
         # alarms: those after the scan, and those that changed
         overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        fallen = _fallen(fallen, acquired, tracks)
-        tracking = alarms.Tracking(self.acquisition.capacity, fallen, overlap, other)
+        down = _fallen(fallen, acquired, tracks)
+        tracking = alarms.Tracking(self.acquisition.capacity, down, overlap, other)
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
@@ -163,8 +176,8 @@ class Arpa:
 
     def _anchored(
         self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float
-    ) -> tuple[OwnMotion, NDArray[np.bool_]]:
-        """Own ship, at rest where she lies at anchor; the tracks [N] that are no danger then."""
+    ) -> tuple[OwnMotion, BoolArray]:
+        """Own ship, at rest if she is at anchor; and the tracks [N] that are no danger then."""
         if not at_anchor(samples, own, now, self.parameters.own_ship_status):
             return own, np.zeros(len(moving.position), bool)
         return own._replace(velocity=np.zeros(2)), harmless(moving, own)
@@ -172,7 +185,7 @@ class Arpa:
     def _approach(
         self, moving: Motion, own: OwnMotion, acquired: Acquisition, tracks: Tracks
     ) -> Approach:
-        """Of the tracks that are or may become targets in this scan; nan for the others."""
+        """Approach of tracks that are or may become targets in this scan; nan for the others."""
         asked = (tracks.number > 0) | np.isin(tracks.id, acquired.targets.id)
         if len(acquired.clicks.since):
             asked[:] = True
@@ -181,14 +194,14 @@ class Arpa:
 
     def _swap_risk(
         self,
-        tracks,
+        tracks: Tracks,
         remembered: motion.MotionMemory,
         passing: Approach,
         own: OwnMotion,
         now: float,
         radar: TrackerParameters,
-    ):
-        """Overlap [N] of the gates of the radar's next scan and the rows [N] of the others."""
+    ) -> tuple[Array, IntArray]:
+        """Overlap [N] of the gates in the radar's next scan, and rows [N] of the other tracks."""
         overlap, other = np.full(len(tracks.id), np.inf), np.full(len(tracks.id), -1)
         rows = ((tracks.number > 0) & (tracks.status != LOST)).nonzero()[0]
         ahead = motion.at(take(remembered, rows), now + radar.scan_period_s)
@@ -206,13 +219,15 @@ class Arpa:
 
 
 def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Targets:
-    """The targets, those that were lost in this scan among them, in the order of their numbers."""
+    """The targets in the order of their numbers, including those that were lost in this scan."""
     lost = np.isin(before.targets.id, tracks.id[tracks.status == LOST])
     targets = append(acquired.targets, take(before.targets, lost))
     return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
 
 
-def _fallen(fallen, acquired: Acquisition, tracks: Tracks) -> int:
-    """How many confirmed targets have fallen back, of the tracks `fallen` [N], or all or none."""
+def _fallen(fallen: Mask, acquired: Acquisition, tracks: Tracks) -> int:
+    """Number of confirmed targets that have fallen back; `fallen` [N] for the tracks, or one for
+    all.
+    """
     target = acquisition.how_acquired(acquired, tracks.id) >= 0
     return int(np.sum(fallen & target & (tracks.status == CONFIRMED)))

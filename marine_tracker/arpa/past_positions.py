@@ -1,4 +1,4 @@
-"""Where the targets were, at equal intervals of time: their past positions, true and relative."""
+"""Past positions of the targets at equal intervals of time, true and relative."""
 
 from typing import NamedTuple
 
@@ -27,9 +27,10 @@ class PastPositions(NamedTuple):
 
 
 def begin(count: int, interval: float) -> PastPositions:
-    """None yet. count: how many to keep; interval s between them. ValueError for less than 1, 0 s.
+    """An empty memory. count: how many to keep; interval s between them.
 
-    The standards want at least 4.
+    ValueError for less than 1, or an interval that is not above 0. The standards require at least
+    4.
     """
     if count < 1:
         raise ValueError(f'the number of past positions is {count}; it must be at least 1')
@@ -46,15 +47,14 @@ def begin(count: int, interval: float) -> PastPositions:
 def step(
     past: PastPositions, id: IntArray, first_time: Array, moving: Motion, own: OwnMotion, now: float
 ) -> PastPositions:
-    """Follow the tracks id [N] to `now` s; the rows of the result are theirs.
+    """Follows the tracks id [N] to `now` s. The rows of the result are theirs.
 
     first_time  [N] s, of the tracks' first plots
-    moving      where the tracks are at `now`, N rows; of them and of own ship position and
-                velocity count
+    moving      the tracks at `now`, N rows; uses position and velocity of them and of own ship
 
-    Positions at a moment that came up since the last step are those of `now` brought back along
-    the velocity, at most a scan's way. Moments that came up while nothing was heard for longer
-    than all of them span are not invented: the past begins anew. So it does when time goes back.
+    A moment since the last step gets the position at `now`, moved back along the velocity by at
+    most one scan. After a gap longer than the whole span of moments, nothing is invented: the
+    memory starts again. It also starts again if time goes back.
     """
     count, interval = len(past.time), past.interval
     time, own_before = past.time, past.own
@@ -82,5 +82,5 @@ def step(
 
 
 def relative(past: PastPositions) -> Array:
-    """Offsets [N, K, 2] m of the tracks from where own ship was at the same moments."""
+    """Offsets [N, K, 2] m of the tracks from own ship's positions at the same moments."""
     return past.position - past.own

@@ -77,4 +77,5 @@ def _means(samples: OwnShip, time: float) -> tuple[Array, Array]:
     total = np.stack([np.bincount(step, column) for column in samples.velocity[counts].T], 1)
     gap = (np.diff(there, prepend=0) > GAP).nonzero()[0]
     there = there[: gap[0]] if len(gap) else there
-    return total[there] / number[there, None], (STEP * (there + 0.5)).astype(float)
+    age = STEP * there.astype(np.float64) + STEP / 2
+    return total[there] / number[there, None], age

@@ -1,8 +1,9 @@
-"""Simulator (or recorded radar), tracker and PPI as processes over ROS 2, and a table of targets.
+"""Runs simulator (or recorded radar), tracker and PPI over ROS 2, and shows a table.
 
-The address of the PPI is printed; where there is a desktop the page opens by itself.
+Prints the address of the PPI, a page for a browser; opens it if there is a desktop.
 
-Ends with Ctrl-C, after --duration, or when the recording or scenario has ended."""
+Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
+"""
 
 import contextlib
 import os
@@ -43,13 +44,13 @@ SIZES = (('length m', 'length_m'), ('heading', 'heading_deg'))  # with extents, 
 TO_THE_LEFT = ('name', 'status', 'estimator')
 STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
 DANGEROUS = 'bold red'
-MOST_ALARMS = 8  # that are listed below the table on a terminal
+MOST_ALARMS = 8  # listed below the table on a terminal; others are only counted
 PPI = 'ppi_display'
-PLAIN_EVERY_S = 2.0  # between two tables where there is no terminal
+PLAIN_EVERY_S = 2.0  # s between two tables if there is no terminal
 
 
 def add_arguments(parser) -> None:
-    """Options of the command."""
+    """Adds the options of the command."""
     source = parser.add_mutually_exclusive_group()
     source.add_argument(
         '--scenario',
@@ -70,7 +71,7 @@ def add_arguments(parser) -> None:
         '--extent',
         choices=(*EXTENTS, 'off'),
         metavar='{' + ','.join(EXTENTS) + '}',
-        help='whether the tracker takes cells that touch as one target',
+        help='how the tracker joins cells that touch into one target',
     )
     parser.add_argument('--seed', type=int, default=1, help='seed of the simulator (default: 1)')
     parser.add_argument('--duration', type=float, metavar='S', help='end after so many seconds')
@@ -81,7 +82,7 @@ def add_arguments(parser) -> None:
 
 
 def run(args) -> int:
-    """0 after a stop that was asked for, 1 when a process died or ROS is missing."""
+    """Returns 0 after a requested stop, 1 if a process died or ROS is missing."""
     stop = threading.Event()
 
     def on_signal(*_):
@@ -132,7 +133,7 @@ def _demo(args, stop: threading.Event) -> int:
 
 
 def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
-    """The source node's name and parameters, and the tracker's. ValueError when one is wrong."""
+    """The source node's name and parameters, and the tracker's. ValueError if one is wrong."""
     source: str
     if args.recording:
         from ..recording import csv_folder
@@ -165,7 +166,7 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
 
 
 def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:
-    """Show the targets until it is over; the exit code."""
+    """Shows the targets until the end. Returns the exit code."""
     began, ended = time.monotonic(), None
     page = next((child for child in children if child.name == PPI), None)
     with _display() as show:
@@ -188,7 +189,7 @@ def _watch(listener, children, stop, title: str, duration: float | None, domain:
 
 
 def _drain(listener, show, title: str) -> None:
-    """Take in what is still on its way after the source has ended."""
+    """Takes in what is still on its way after the source has ended."""
     until = time.monotonic() + 0.5
     while time.monotonic() < until:
         listener.spin(0.1)
@@ -229,7 +230,7 @@ def _display():
 
 
 def _plain():
-    """Shows a picture as lines, once a scan and not more often than people can read."""
+    """Shows a picture as lines: once a scan, and not faster than people can read."""
     last = {'scans': 0, 'at': -PLAIN_EVERY_S}
 
     def show(picture, title):
@@ -252,7 +253,7 @@ def _plain():
 
 
 def _columns(picture):
-    """Heads and keys of what is told of these targets."""
+    """Heads and keys of the columns for these targets."""
     told = picture.targets and SIZES[0][1] in picture.targets[0]
     return (*COLUMNS[:-1], *SIZES, COLUMNS[-1]) if told else COLUMNS
 
@@ -289,7 +290,7 @@ def _rich_table(picture, title: str, height: int):
             min_width=8 if key == 'status' else None,
         )  # TRACKING in full
     room = max(height - 8 - len(below) - len(picture.warnings), 1)
-    # Where not all find room, the dangerous ones do.
+    # If there is not enough room for all, the dangerous ones are shown.
     shown = (
         picture.targets
         if len(picture.targets) <= room

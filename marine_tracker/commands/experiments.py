@@ -1,4 +1,4 @@
-"""Run an experiment again and print its figures beside what is claimed for them."""
+"""Runs an experiment again and prints its figures with their limits and claims."""
 
 import inspect
 import sys
@@ -14,7 +14,7 @@ HELP = 'reproduce published figures'
 
 
 def add_arguments(parser) -> None:
-    """The command line of `experiments`."""
+    """Adds the command line of `experiments`."""
     names = parser.add_subparsers(title='experiments', metavar='NAME', required=True)
     for name, experiment in EXPERIMENTS.items():
         sub = names.add_parser(name, help=experiment.HELP, description=experiment.__doc__)
@@ -48,7 +48,7 @@ def _has_parts(experiment):
 
 
 def run(args) -> int:
-    """Print the table; 1 where a figure misses its limit."""
+    """Prints the table. Returns 1 if a figure misses its limit."""
     if args.runs < 1:
         raise ValueError(f'--runs is {args.runs}; it must be at least 1')
     if args.seed < 0:

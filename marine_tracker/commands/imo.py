@@ -1,16 +1,16 @@
-"""Measure tracker and ARPA under the IMO's test conditions, as a type approval would.
+"""Measures tracker and ARPA under the IMO's test conditions, as a type approval does.
 
-Simulated plots with the sensor errors of resolution A.823(19) go through the whole service as it
-is shipped. The parts:
+Simulated plots with the sensor errors of resolution A.823(19) go through the whole service with
+default settings. The parts:
 
   accuracy    the four scenarios of A.823 after 1 and 3 minutes, limits of A.823 and MSC.192(79)
   manoeuvres  accuracy after own ship's turns, and how long targets' turns stay wrong
   encounters  Imazu's 22 encounters: acquired, warned of, measured (1 run for each 100)
-  loss        targets in 5 of 10 scans are kept, vanished ones called lost
+  loss        targets seen in 5 of 10 scans are kept; targets that vanish are called lost
 
-Errors are those of 95 runs in a hundred; beside them stands a straight line fitted to the same
-plots, and a limit that not even the line meets is told but not demanded. A thousand runs of all
-parts keep two processors busy for some twenty minutes, longer with more estimators.
+An error figure is the one that 95 of 100 runs do not exceed. The report compares it with a straight
+line fitted to the same plots. A limit that the line does not meet is shown, but not required. A
+thousand runs of all parts take about twenty minutes on two processors, longer with more estimators.
 """
 
 import sys
@@ -25,13 +25,13 @@ from ..parameters import TrackerParameters
 from . import worker_options
 from .progress_bar import progress_bar
 
-HELP = 'measure it under the test conditions of the IMO'
+HELP = 'measure the accuracy under the test conditions of the IMO'
 PARTS = ('accuracy', 'manoeuvres', 'encounters', 'loss')
 ALL = ('gwnn', 'cs_kalman', 'imm')
 
 
 def add_arguments(parser) -> None:
-    """The command line of `imo`."""
+    """Adds the command line of `imo`."""
     parser.add_argument(
         '--runs', type=int, default=1000, metavar='N', help='Monte Carlo runs (default 1000)'
     )
@@ -43,7 +43,10 @@ def add_arguments(parser) -> None:
         '(default %(default)s)',
     )
     parser.add_argument(
-        '--part', choices=PARTS, action='append', help='do this part only; may be given again'
+        '--part',
+        choices=PARTS,
+        action='append',
+        help='run only this part; may be given more than once',
     )
     parser.add_argument(
         '--html',
@@ -56,7 +59,7 @@ def add_arguments(parser) -> None:
 
 
 def run(args) -> int:
-    """Print the figures; 1 where one misses its limit."""
+    """Prints the figures. Returns 1 if one misses its limit."""
     for name, least in (('runs', 1), ('seed', 0)):
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
@@ -77,7 +80,7 @@ def run(args) -> int:
 
 
 def measure(estimators, parts, runs, seed, workers) -> figures.Results:
-    """The parts that were asked for."""
+    """Runs the requested parts."""
     found = figures.Results(estimators, {}, {})
     if 'accuracy' in parts:
         keys = [(minutes, number) for minutes in MINUTES for number in A823[minutes]]

@@ -1,4 +1,4 @@
-"""Nodes of this package as child processes of a command."""
+"""Runs nodes of this package as child processes of a command."""
 
 import contextlib
 import json
@@ -14,11 +14,11 @@ from typing import IO, Any, NamedTuple
 
 from ..processes import closing, end_with_parent
 
-STOP_S = 4.0  # for the nodes to end by themselves after SIGINT, then after SIGTERM
+STOP_S = 4.0  # s for the nodes to end by themselves after SIGINT, then after SIGTERM
 
 
 class Child(NamedTuple):
-    """A node as a process; what it says goes into `log`."""
+    """A node as a process. Its output goes into `log`."""
 
     name: str
     process: subprocess.Popen
@@ -27,7 +27,7 @@ class Child(NamedTuple):
 
 @contextlib.contextmanager
 def children_of(nodes: dict[str, dict[str, Any]]) -> Iterator[list[Child]]:
-    """The nodes, by name with their parameters, as processes; all ended with the context."""
+    """The nodes, by name with their parameters, as processes. All end with the context."""
     with contextlib.ExitStack() as logs:
         children: list[Child] = []
         try:
@@ -41,7 +41,7 @@ def children_of(nodes: dict[str, dict[str, Any]]) -> Iterator[list[Child]]:
                 for child in children:
                     if ask == signal.SIGKILL and child.process.poll() is None:
                         print(f'{child.name} does not end, and is killed', file=sys.stderr)
-                    child.process.send_signal(ask)  # nothing where it has ended
+                    child.process.send_signal(ask)  # no effect if it has ended
                 until = time.monotonic() + STOP_S
                 for child in children:
                     with contextlib.suppress(subprocess.TimeoutExpired):
@@ -54,7 +54,7 @@ def _start(name: str, parameters: dict[str, Any], log: IO[bytes]) -> subprocess.
         arguments += ['-p', f'{key}:={json.dumps(value)}']
     package_home = os.fspath(Path(__file__).resolve().parents[2])
     search = os.pathsep.join(filter(None, [package_home, os.environ.get('PYTHONPATH')]))
-    # A session of its own: Ctrl-C reaches this command alone, which then ends its children.
+    # A session of its own: Ctrl-C reaches only this command, which then ends its children.
     return subprocess.Popen(
         arguments,
         stdin=subprocess.DEVNULL,

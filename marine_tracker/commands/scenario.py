@@ -11,7 +11,6 @@ import numpy as np
 from ..geometry import KNOT, NAUTICAL_MILE, to_range_bearing
 from ..recording import csv_folder
 from ..simulation import radar, scenario
-from ..types import take
 
 HELP = 'list, check, show or write scenarios'
 
@@ -166,7 +165,7 @@ def _target_rows(loaded):
         distance, bearing = to_range_bearing(truth.position - own.position)
         for row in np.flatnonzero(np.isnan(first[target])):
             first[target[row]] = time
-            velocity = take(truth, row).velocity
+            velocity = truth.velocity[row]
             rows[target[row]] = (
                 f'{truth.target[row]}',
                 loaded.fleet.names[target[row]],

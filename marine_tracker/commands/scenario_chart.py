@@ -1,4 +1,4 @@
-"""A chart of a scenario: where every ship goes, in the frame of own ship's start."""
+"""A chart of a scenario: the paths of all ships, in the frame of own ship's start."""
 
 from pathlib import Path
 
@@ -11,9 +11,9 @@ STEPS = 241
 
 
 def draw(loaded, file):
-    """Draw the ways of own ship and targets into an image file, as far as the radar reaches.
+    """Draws the paths of own ship and targets into an image file, out to the radar's range.
 
-    A dot marks each start; the circles are the radar's range at the start and at the end.
+    A dot marks each start. The circles are the radar's range at the start and at the end.
 
     Raises ValueError without matplotlib (extra `plot`).
     """

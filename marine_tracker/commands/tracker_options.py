@@ -1,4 +1,4 @@
-"""The options by which a command's user sets the tracker's parameters."""
+"""The options of a command that set the tracker's parameters."""
 
 from .. import yaml_file
 from ..estimators import ESTIMATORS
@@ -6,7 +6,7 @@ from ..parameters import TrackerParameters, from_mapping
 
 
 def add_arguments(parser) -> None:
-    """--estimator, --parameters and --set."""
+    """Adds --estimator, --parameters and --set."""
     parser.add_argument(
         '--estimator', choices=sorted(ESTIMATORS), help='filter to use (default: the shipped one)'
     )
@@ -20,12 +20,15 @@ def add_arguments(parser) -> None:
         metavar='NAME=VALUE',
         action='append',
         default=[],
-        help='one tracker parameter; may be given again',
+        help='one tracker parameter; may be given more than once',
     )
 
 
 def parameters(args, from_source: dict) -> TrackerParameters:
-    """Shipped defaults, overruled by the source's, then --parameters, then --set, --estimator."""
+    """The parameters: defaults, then the source's, then --parameters, then --set, --estimator.
+
+    Later ones replace earlier ones.
+    """
     values = dict(from_source)
     if args.parameters:
         values.update(_read(args.parameters))
@@ -40,7 +43,7 @@ def parameters(args, from_source: dict) -> TrackerParameters:
 
 
 def _read(path) -> dict:
-    """A flat mapping, or what `ros__parameters` holds for the tracker in a node's YAML."""
+    """A flat mapping, or the `ros__parameters` of the tracker in a node's YAML."""
     values = yaml_file.read_mapping(path)
     of_nodes = {
         name: node['ros__parameters']

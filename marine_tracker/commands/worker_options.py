@@ -1,4 +1,4 @@
-"""The options by which a user says where the parts of an experiment run."""
+"""The options that say where the parts of an experiment run."""
 
 import asyncio
 import os
@@ -8,30 +8,30 @@ from contextlib import contextmanager
 from ..evaluation.parallel import Workers
 from ..processes import keep_freed_memory, one_thread
 
-CONNECT_S = 10.0  # for a scheduler to answer, and then for a first worker to be there
+CONNECT_S = 10.0  # s for a scheduler to answer, and then for a first worker
 
 
 def add_arguments(parser) -> None:
-    """--processes and --scheduler."""
+    """Adds --processes and --scheduler."""
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         '--processes',
         type=int,
         default=os.cpu_count() or 1,
         metavar='N',
-        help='processes at once; they change nothing but the time (default %(default)s)',
+        help='number of processes; the results do not depend on it (default %(default)s)',
     )
     where.add_argument(
         '--scheduler',
         metavar='ADDRESS',
         help='run on the workers of the dask scheduler there instead, e.g. tcp://10.0.0.7:8786 '
-        '(needs marine_tracker[cluster] here and there); changes nothing but the time either',
+        '(needs marine_tracker[cluster] on both sides); the results do not depend on it',
     )
 
 
 @contextmanager
 def workers(args) -> Iterator[Workers]:
-    """Who runs the parts, while the context lasts. ValueError says what is wrong with it."""
+    """The workers that run the parts, while the context lasts. ValueError says what is wrong."""
     if args.scheduler is None:
         if args.processes < 1:
             raise ValueError(f'--processes is {args.processes}; it must be at least 1')
@@ -58,7 +58,7 @@ def _client(address: str) -> Iterator:
     try:
         asyncio.run(
             asyncio.wait_for(knock(), CONNECT_S)
-        )  # a client that finds nobody leaves half of itself behind
+        )  # a client that finds no scheduler is not cleaned up completely
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except OSError as error:
         raise ValueError(

@@ -131,8 +131,8 @@ def told(output: Output, place) -> Array:
 class AccuracyTrial(NamedTuple):
     """One trial: a scenario's mapping, and when its target is judged.
 
-    moment  s, the end of a revolution        steady_since  s, own ship's course is steady from here
-    on
+    moment        s, the end of a revolution
+    steady_since  s, own ship's course is steady from here on
     """
 
     values: dict[str, Any]

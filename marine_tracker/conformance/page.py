@@ -17,10 +17,10 @@ table { border-collapse: collapse; margin: 1em 0 } img { max-width: 100% }
 td, th { padding: .15em .7em; border-bottom: 1px solid #ddd; text-align: left }
 td.n { text-align: right } .met { color: #23662a } .missed { color: #b00020; font-weight: bold }
 .past { color: #777 }"""
-ABOUT = """Errors of 95 runs in a hundred, with all sensor errors of resolution A.823(19),
-appendix 3, through the whole service. The fit is a straight line through the same plots: it knows
-that the target keeps its course. A limit that the fit itself misses is shown in grey and not
-demanded."""
+ABOUT = """Errors that 95 of 100 runs do not exceed, with all sensor errors of resolution
+A.823(19), appendix 3, through the whole service. The fit is a straight line through the same plots:
+it knows that the target keeps its course. A limit that the fit itself misses is shown in grey and
+is not required."""
 
 
 def write(folder, results: Results, title: str, seed: int) -> Path:

@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..files import shown
 from ..recording.csv_folder import Recording
 from ..recording.track_file import TrackRows
 from ..types import Array
@@ -190,7 +191,7 @@ def chosen(
         or not (above < value < np.inf)
     ):
         limit = 'finite' if above == -np.inf else f'above {above:g} and finite'
-        raise ValueError(f'{name} is {value!r}; it must be a number, {limit}')
+        raise ValueError(f'{name} is {shown(value)}; it must be a number, {limit}')
     return float(value)
 
 

@@ -7,7 +7,7 @@ touches. So a hull that breaks up stays one cluster, ships side by side stay two
 passes close to land is not merged with it.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +16,15 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..gaussian.linear import invert_2x2, squared_distance
-from ..types import Array, Plots
+from ..types import Array, BoolArray, IntArray, Plots, take
 from .smear import smear
 
 LINK = 1.5  # range resolutions, and beam widths
 GAP = 40.0  # m
 TURN = 2 * np.pi
 REACH = 225.0  # m from a hull's middle; touching cells up to here still belong to the hull
+
+Number = TypeVar('Number', np.float64, np.int64, np.bool_)
 
 
 class Gates(NamedTuple):
@@ -58,14 +60,29 @@ class Clusters(NamedTuple):
     time: Array
     position: Array
     scatter: Array
-    cells: NDArray[np.int64]
+    cells: IntArray
     noise: Array
     size: Array
     amplitude: Array
-    gate: NDArray[np.int64]
-    crowded: NDArray[np.bool_]
-    land: NDArray[np.bool_]
-    of_cell: NDArray[np.int64]
+    gate: IntArray
+    crowded: BoolArray
+    land: BoolArray
+    of_cell: IntArray
+
+
+NOTHING = Clusters(
+    time=np.zeros(1),
+    position=np.zeros((1, 2)),
+    scatter=np.zeros((1, 2, 2)),
+    cells=np.ones(1, np.int64),
+    noise=np.eye(2)[None],
+    size=np.zeros(1),
+    amplitude=np.zeros(1),
+    gate=np.full(1, -1),
+    crowded=np.zeros(1, bool),
+    land=np.zeros(1, bool),
+    of_cell=np.zeros(0, np.int64),
+)
 
 
 class Place(NamedTuple):
@@ -75,9 +92,9 @@ class Place(NamedTuple):
     hull, or of the nearest; land [M]: the cell is on land.
     """
 
-    gate: NDArray[np.int64]
+    gate: IntArray
     off: Array
-    land: NDArray[np.bool_]
+    land: BoolArray
 
 
 def cluster(cells: Plots, range_resolution: float, beam_width: float, place: Place) -> Clusters:
@@ -88,7 +105,7 @@ def cluster(cells: Plots, range_resolution: float, beam_width: float, place: Pla
     return _summary(cells, group, crowded, place, range_resolution, beam_width)
 
 
-def _links(cells, range_resolution, beam_width):
+def _links(cells: Plots, range_resolution: float, beam_width: float) -> IntArray:
     """All pairs of cells that touch, [P] each, also across north."""
     if len(cells.range) < 2:
         return np.zeros((2, 0), np.int64)
@@ -127,7 +144,7 @@ def in_gates(cells: Plots, gates: Gates) -> Place:
     )
 
 
-def _groups(first, second, place):
+def _groups(first: IntArray, second: IntArray, place: Place) -> tuple[IntArray, BoolArray]:
     """A label [M] of each cell's cluster, and whether [M] that cluster touches another one.
 
     Cells in one gate are one cluster. Cells outside belong to a hull too if they touch only its
@@ -165,20 +182,27 @@ def _groups(first, second, place):
     return group, crowded[group]
 
 
-def _mostly(land, group, groups):
+def _mostly(land: BoolArray, group: IntArray, groups: int) -> BoolArray:
     """The groups of which more than half the cells are land."""
     return np.bincount(group, land, groups) > 0.5 * np.bincount(group, minlength=groups)
 
 
-def _summary(cells, group, crowded, place, range_resolution, beam_width):
+def _summary(
+    cells: Plots,
+    group: IntArray,
+    crowded: BoolArray,
+    place: Place,
+    range_resolution: float,
+    beam_width: float,
+) -> Clusters:
     clusters = int(group.max(initial=-1)) + 1
     count = np.bincount(group, minlength=clusters)
 
-    def mean(values):
+    def mean(values: Array) -> Array:
         return np.bincount(group, values, clusters) / count
 
-    def most(values, start):
-        out = np.full(clusters, start)
+    def most(values: NDArray[Number], start: Number | float) -> NDArray[Number]:
+        out = np.full(clusters, start, values.dtype)
         np.maximum.at(out, group, values)
         return out
 
@@ -203,3 +227,8 @@ def _summary(cells, group, crowded, place, range_resolution, beam_width):
         _mostly(place.land, group, clusters),
         group,
     )
+
+
+def take_clusters(clusters: Clusters, rows: IntArray) -> Clusters:
+    """The chosen clusters; of_cell is left as it is."""
+    return take(clusters._replace(of_cell=clusters.cells), rows)._replace(of_cell=clusters.of_cell)

@@ -13,14 +13,13 @@ An echo that is longer than any ship and stays in place is land. Its clusters gi
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import locate, own_ship_at, polar_to_position, to_range_bearing, unit_vector
 from ..parameters import TrackerParameters
-from ..types import Array, Extrapolation, Plots, PolarPlots, Scan, row_of, take
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, PolarPlots, Scan, row_of, take
 from . import hulls, land_map
-from .clustering import Clusters, Gates, cluster, in_gates
+from .clustering import Clusters, Gates, cluster, in_gates, take_clusters
 from .hulls import BY_GAUSSIAN_PROCESS, Hulls, Shapes
 from .land_map import LONGEST, LandMap
 from .lit_edge import lit_edge
@@ -51,7 +50,7 @@ class ExtentsMemory(NamedTuple):
 
     hulls: Hulls
     shift: Array
-    at_sea: NDArray[np.int64]
+    at_sea: IntArray
     land: LandMap
     shores: int
 
@@ -69,7 +68,7 @@ class Seen(NamedTuple):
 
     cells: Plots
     clusters: Clusters
-    chosen: NDArray[np.int64]
+    chosen: IntArray
     shores: int
     own: Array
     map: LandMap
@@ -102,7 +101,7 @@ class Extents:
         return known if same else self.start()
 
     def reduce(
-        self, memory: ExtentsMemory, scan: Scan, ids, ahead: Extrapolation
+        self, memory: ExtentsMemory, scan: Scan, ids: IntArray, ahead: Extrapolation
     ) -> tuple[Scan, Seen]:
         """The scan with one plot a cluster, without land.
 
@@ -126,11 +125,17 @@ class Extents:
         )
         dry = found.land | ((found.size > LONGEST) & (found.gate < 0))
         chosen = (~dry).nonzero()[0]
-        plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan)
+        plots = self._plots(memory, take_clusters(found, chosen), row, scan)
         return scan._replace(plots=plots), Seen(cells, found, chosen, int(dry.sum()), own, land)
 
     def step(
-        self, memory: ExtentsMemory, seen: Seen, ids, time, plot, estimate: Extrapolation
+        self,
+        memory: ExtentsMemory,
+        seen: Seen,
+        ids: IntArray,
+        time: Array,
+        plot: IntArray,
+        estimate: Extrapolation,
     ) -> ExtentsMemory:
         """The memory after the tracker's step.
 
@@ -167,11 +172,13 @@ class Extents:
         noise = self._noise(memory.hulls.matrix.mean[:, :2] - seen.own)
         return hulls.shapes(memory.hulls, noise, estimate.position)
 
-    def _noise(self, offset):
+    def _noise(self, offset: Array) -> Array:
         range_, bearing = to_range_bearing(offset)
         return smear(range_, bearing, self.parameters.range_resolution_m, self.beam_width)
 
-    def _gates(self, memory, ids, ahead, own):
+    def _gates(
+        self, memory: ExtentsMemory, ids: IntArray, ahead: Extrapolation, own: Array
+    ) -> tuple[Gates, IntArray]:
         """Where hulls are expected, and their rows of the memory.
 
         A track that lies on land and was never clear of land for long is land that was taken for a
@@ -188,14 +195,16 @@ class Extents:
         area = OF_EXTENT * matrix.extent[row] + OF_NOISE * (
             self._noise(ahead.position - own) + ahead.covariance[:, :2, :2]
         )
-        gates, kept = one_a_ship(
+        gates, alone = one_a_ship(
             Gates(ahead.time, ahead.position - memory.shift[row], ahead.velocity, area),
             ahead.covariance[:, 2:, 2:],
             memory.hulls.scans[row] < hulls.SCANS,
         )
-        return gates, row[kept]
+        return gates, row[alone]
 
-    def _plots(self, memory, chosen, row, scan):
+    def _plots(
+        self, memory: ExtentsMemory, chosen: Clusters, row: IntArray, scan: Scan
+    ) -> PolarPlots:
         """One plot a cluster: the centroid, with noise (z_s X + R) / n plus its deviation along the
         hull.
 
@@ -223,7 +232,9 @@ class Extents:
         return PolarPlots(chosen.time, range_, bearing, chosen.amplitude, covariance=covariance)
 
 
-def one_a_ship(gates: Gates, velocity_covariance, young) -> tuple[Gates, NDArray[np.int64]]:
+def one_a_ship(
+    gates: Gates, velocity_covariance: Array, young: BoolArray
+) -> tuple[Gates, IntArray]:
     """The gates, with at most one for each hull, and their rows.
 
     Two gates belong to one hull in two pieces if they overlap and their velocities agree within the

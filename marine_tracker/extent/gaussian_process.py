@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector
-from ..types import Array, put, take
+from ..types import Array, IntArray, put, take
 from .input_noise import VARIANTS, input_variance, noisy_radius
 from .radial_function import Contour, radius
 from .random_matrix import constant_velocity
@@ -76,7 +76,9 @@ class Measurement(NamedTuple):
     noise: Array
 
 
-def start(model: Model, time, motion, covariance, f, semi_axes) -> GpState:
+def start(
+    model: Model, time: Array, motion: Array, covariance: Array, f: Array, semi_axes: Array
+) -> GpState:
     """New rows of time [N] s, motion [N, 6] = [e n ve vn psi psi'] with covariance [N, 6, 6].
 
     f [N, M], in units of the base with semi_axes [N, 2] m, has the prior's covariance. ValueError
@@ -93,7 +95,7 @@ def start(model: Model, time, motion, covariance, f, semi_axes) -> GpState:
     )
 
 
-def predict(state: GpState, time, model: Model) -> GpState:
+def predict(state: GpState, time: Array, model: Model) -> GpState:
     """Predicts all rows to the times [N] s: straight motion, constant rate of turn, unchanged
     outline.
     """
@@ -113,7 +115,9 @@ def predict(state: GpState, time, model: Model) -> GpState:
     return GpState(np.array(time, float), mean, covariance, state.semi_axes)
 
 
-def measure(state: GpState, cell, noise, model: Model, rng=None) -> Measurement:
+def measure(
+    state: GpState, cell: Array, noise: Array, model: Model, rng: np.random.Generator | None = None
+) -> Measurement:
     """Measurements of cells [N, 2] m with noise [N, 2, 2] m^2, one for each row of the state."""
     distance, bearing = to_range_bearing(cell - state.mean[:, :2])
     along = unit_vector(bearing)
@@ -148,7 +152,15 @@ def measure(state: GpState, cell, noise, model: Model, rng=None) -> Measurement:
     )
 
 
-def update(state: GpState, rows, cells, count, noise, model: Model, rng=None):
+def update(
+    state: GpState,
+    rows: IntArray,
+    cells: Array,
+    count: IntArray,
+    noise: Array,
+    model: Model,
+    rng: np.random.Generator | None = None,
+) -> tuple[GpState, Array]:
     """Updates the K named rows, which are predicted to their cells' times, with their cells.
 
     cells [K, C, 2] m, of which the first count [K] of each row are used; noise [K, 2, 2] m^2, R of

@@ -6,7 +6,7 @@ length.
 
 import numpy as np
 
-from ..types import Array
+from ..types import Array, BoolArray
 
 STEPS = 4  # points on each side of an outline; the distance is almost linear between them
 
@@ -34,10 +34,11 @@ def hull_clearance(outline: Array, position: Array, velocity: Array) -> Array:
     return np.where(through | _inside(points), 0.0, distance)
 
 
-def _inside(points):
+def _inside(points: Array) -> BoolArray:
     """Whether the origin lies inside the polygons [T, P, 2]: then the angles to the corners go once
     around it.
     """
     angle = np.arctan2(points[..., 0], points[..., 1])
     turn = np.mod(np.diff(angle, axis=1, append=angle[:, :1]) + np.pi, 2 * np.pi) - np.pi
-    return np.abs(turn.sum(1)) > np.pi
+    found: BoolArray = np.abs(turn.sum(1)) > np.pi
+    return found

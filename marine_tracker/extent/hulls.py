@@ -10,14 +10,13 @@ with one that touches another, leaves size and outline unchanged.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..estimators.contract import Velocity
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import unit_vector
-from ..types import Array, Extrapolation, append, put, take, where
+from ..types import Array, BoolArray, CodeArray, Extrapolation, IntArray, append, put, take, where
 from . import gaussian_process, outline_measures, random_matrix
-from .clustering import Clusters
+from .clustering import NOTHING, Clusters, take_clusters
 from .gaussian_process import HEADING, GpState
 from .lit_edge import FRINGE, Edge
 from .random_matrix import BOX_SPREAD, NO_MEMORY, RandomMatrixState
@@ -46,11 +45,11 @@ class Hulls(NamedTuple):
     nis      [N]  mean nu^2 / S of the outline's cells in recent scans, about 1
     """
 
-    id: NDArray[np.int64]
+    id: IntArray
     matrix: RandomMatrixState
     outline: GpState | None
-    method: NDArray[np.int8]
-    scans: NDArray[np.int64]
+    method: CodeArray
+    scans: IntArray
     cells: Array
     nis: Array
 
@@ -68,35 +67,22 @@ class Shapes(NamedTuple):
     outline             [N, CORNERS, 2]  m, east and north of the tracker's position
     """
 
-    extended: NDArray[np.bool_]
+    extended: BoolArray
     length: Array
     length_sd: Array
     beam: Array
     heading: Array
     heading_sd: Array
-    source: NDArray[np.int8]
-    method: NDArray[np.int8]
+    source: CodeArray
+    method: CodeArray
     outline: Array
 
 
-NOTHING = Clusters(
-    time=np.zeros(1),
-    position=np.zeros((1, 2)),
-    scatter=np.zeros((1, 2, 2)),
-    cells=np.ones(1, np.int64),
-    noise=np.eye(2)[None],
-    size=np.zeros(1),
-    amplitude=np.zeros(1),
-    gate=np.full(1, -1),
-    crowded=np.zeros(1, bool),
-    land=np.zeros(1, bool),
-    of_cell=np.zeros(0, np.int64),
-)
 METHODS = ('random_matrix', 'gp')
 COURSE, AXIS, BY_OUTLINE = 0, 1, 2
 SOURCES = ('course', 'axis', 'outline')
 CORNERS = 36
-_AROUND = 2 * np.pi / CORNERS * np.arange(CORNERS)
+_AROUND: Array = 2 * np.pi / CORNERS * np.arange(float(CORNERS))
 
 
 def begin(outlines: bool) -> Hulls:
@@ -122,13 +108,13 @@ def begin(outlines: bool) -> Hulls:
 
 def step(
     before: Hulls,
-    ids,
-    time,
+    ids: IntArray,
+    time: Array,
     estimate: Extrapolation,
     clusters: Clusters,
-    taken,
+    taken: IntArray,
     edge: Edge | None,
-    own_ship,
+    own_ship: Array,
 ) -> Hulls:
     """Processes one scan.
 
@@ -161,20 +147,18 @@ def step(
     return _outlines(hulls, time, rows, taken, own, edge, own_ship)
 
 
-def take_clusters(clusters: Clusters, rows) -> Clusters:
-    """The chosen clusters. of_cell is not changed."""
-    return take(clusters._replace(of_cell=clusters.cells), rows)._replace(of_cell=clusters.of_cell)
-
-
-def first_extent(scatter, count, noise):
+def first_extent(scatter: Array, count: IntArray, noise: Array) -> Array:
     """A first guess of X [K, 2, 2] m^2 from one cluster each: its spread without the noise."""
     spread = scatter / count[:, None, None] - noise
     value, vector = np.linalg.eigh(spread)
     value = np.maximum(value, 0.25 * np.linalg.eigvalsh(noise)) / random_matrix.SHIP.spread
-    return (vector * value[:, None]) @ vector.swapaxes(1, 2)
+    found: Array = (vector * value[:, None]) @ vector.swapaxes(1, 2)
+    return found
 
 
-def _start(ids, estimate, clusters, taken, outlines):
+def _start(
+    ids: IntArray, estimate: Extrapolation, clusters: Clusters, taken: IntArray, outlines: bool
+) -> Hulls:
     count = len(ids)
     # A track that began before extents were switched on may have no cluster.
     none = taken < 0
@@ -205,7 +189,7 @@ def _start(ids, estimate, clusters, taken, outlines):
     )
 
 
-def _no_outline(count):
+def _no_outline(count: int) -> GpState:
     none = np.zeros(count)
     return gaussian_process.start(
         SHIP,
@@ -217,7 +201,9 @@ def _no_outline(count):
     )
 
 
-def _keep_touch(matrix, rows, own, estimate):
+def _keep_touch(
+    matrix: RandomMatrixState, rows: IntArray, own: Clusters, estimate: Extrapolation
+) -> RandomMatrixState:
     """The matrices; of the named rows, those far from their track are reset to it.
 
     A random matrix moves straight on, but the track follows manoeuvres.
@@ -237,9 +223,18 @@ def _keep_touch(matrix, rows, own, estimate):
     )
 
 
-def _outlines(hulls, time, rows, taken, own, edge, own_ship):
+def _outlines(
+    hulls: Hulls,
+    time: Array,
+    rows: IntArray,
+    taken: IntArray,
+    own: Clusters,
+    edge: Edge,
+    own_ship: Array,
+) -> Hulls:
     """The outlines of the rows that may have one: predicted, started, updated or given up."""
     matrix, outline = hulls.matrix, hulls.outline
+    assert outline is not None
     noise, cells = np.zeros_like(matrix.extent), np.zeros(len(time), np.int64)
     noise[rows] = own.noise
     cells[rows] = np.bincount(edge.cluster, minlength=taken.max(initial=-1) + 1)[taken[rows]]
@@ -285,7 +280,7 @@ def _outlines(hulls, time, rows, taken, own, edge, own_ship):
     )
 
 
-def _padded(edge, chosen):
+def _padded(edge: Edge, chosen: IntArray) -> tuple[Array, IntArray]:
     """Cells [K, C, 2] m of the chosen clusters' edges, and how many [K] each has."""
     first, last = (np.searchsorted(edge.cluster, chosen, side) for side in ('left', 'right'))
     count = last - first
@@ -293,7 +288,7 @@ def _padded(edge, chosen):
     return edge.position[np.minimum(place, len(edge.cluster) - 1)], count
 
 
-def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
+def size(matrix: RandomMatrixState, noise: Array) -> random_matrix.Measures:
     """Length, beam and axis of the random matrices; noise [N, 2, 2] m^2, R of a single cell.
 
     A radar shows a cell wherever an echo reaches, and all cells count the same. So the cells of a
@@ -307,7 +302,7 @@ def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
     return found._replace(length=np.sqrt(found.length**2 + 4 * fringe**2) - 2 * fringe)
 
 
-def shapes(hulls: Hulls, noise, position) -> Shapes:
+def shapes(hulls: Hulls, noise: Array, position: Array) -> Shapes:
     """The shapes of the targets as they are shown.
 
     noise [N, 2, 2] m^2, R of a single cell at each target; position [N, 2] m of the point tracker.
@@ -330,7 +325,7 @@ def shapes(hulls: Hulls, noise, position) -> Shapes:
     heading_sd = np.where(by_course, course_sd, found.axis_sd)
     source = np.where(by_course, COURSE, AXIS).astype(np.int8)
     lined = (hulls.method == BY_GAUSSIAN_PROCESS).nonzero()[0]
-    if len(lined):
+    if hulls.outline is not None and len(lined):
         outline = take(hulls.outline, lined)
         of = outline_measures.measures(outline, SHIP.contour)
         points[lined] = outline_measures.of_gaussian_process(outline, SHIP.contour, _AROUND).points

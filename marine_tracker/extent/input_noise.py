@@ -15,6 +15,7 @@ With nodes b_i, means replace mu, mu', h and v, and V = mean v + var mu(b_i).
 
 import numpy as np
 
+from ..types import Array
 from .radial_function import Contour, Radius, radius
 
 VARIANTS = ('gp', 'gp_ts', 'gp_ss', 'gp_mc', 'gp_q15')
@@ -22,7 +23,7 @@ DRAWS = 100
 MOST = (np.pi / 3) ** 2  # rad^2; the moments do not hold for a larger variance
 
 
-def _even_nodes():
+def _even_nodes() -> tuple[Array, Array]:
     nodes = np.linspace(-2.8, 2.8, 15)
     weights = np.exp(-0.5 * nodes**2)
     weights /= weights.sum()
@@ -38,7 +39,9 @@ NODES = {
 }
 
 
-def input_variance(across, distance, noise, covariance=None):
+def input_variance(
+    across: Array, distance: Array, noise: Array, covariance: Array | None = None
+) -> Array:
     """Sigma [N] rad^2 of the angles at which cells meet outlines, at most MOST.
 
     across [N, 2] unit vectors, distance [N] m of the cells from the centres; noise [N, 2, 2] m^2
@@ -51,12 +54,21 @@ def input_variance(across, distance, noise, covariance=None):
     return np.minimum(found, MOST)
 
 
-def noisy_radius(prior: Contour, semi_axes, f, angle, variance, variant: str, rng=None) -> Radius:
+def noisy_radius(
+    prior: Contour,
+    semi_axes: Array,
+    f: Array,
+    angle: Array,
+    variance: Array,
+    variant: str,
+    rng: np.random.Generator | None = None,
+) -> Radius:
     """Radii [N] at the angles [N] rad with the variances [N] rad^2; other arguments as in `radius`.
 
     `variance` of the result is V. Only gp_mc draws from rng.
     """
     if variant == 'gp_mc':
+        assert rng is not None
         nodes, weights = rng.standard_normal((len(angle), DRAWS)), np.full(DRAWS, 1 / DRAWS)
     else:
         nodes, weights = NODES[variant]
@@ -68,6 +80,7 @@ def noisy_radius(prior: Contour, semi_axes, f, angle, variance, variant: str, rn
     return Radius(mean, slope, weights @ at.weight, left)
 
 
-def _square(vector, matrix):
+def _square(vector: Array, matrix: Array) -> Array:
     """a' M a [N]."""
-    return ((vector[:, None] @ matrix)[:, 0] * vector).sum(-1)
+    found: Array = ((vector[:, None] @ matrix)[:, 0] * vector).sum(-1)
+    return found

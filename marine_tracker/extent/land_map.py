@@ -10,12 +10,11 @@ longer than a ship stays a target.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..types import Array
+from ..types import Array, BoolArray, IntArray
 
 SQUARE = 50.0  # m
 LONGEST = 450.0  # m, longer than any ship
@@ -34,9 +33,9 @@ class LandMap(NamedTuple):
     scans   number of scans learnt from
     """
 
-    square: NDArray[np.int64]
+    square: IntArray
     share: Array
-    land: NDArray[np.bool_]
+    land: BoolArray
     scans: int
 
 
@@ -45,7 +44,7 @@ def empty() -> LandMap:
     return LandMap(np.zeros((0, 2), np.int64), np.zeros(0), np.zeros(0, bool), 0)
 
 
-def learn(before: LandMap, position, width) -> LandMap:
+def learn(before: LandMap, position: Array, width: Array) -> LandMap:
     """The map after one more scan.
 
     position [M, 2] m; width [M, 2] m: across the line of sight, the width of the beam there. An
@@ -65,20 +64,21 @@ def learn(before: LandMap, position, width) -> LandMap:
     return LandMap(square, share, _long(square, share >= KEEPS * known), scans)
 
 
-def on_land(land: LandMap, position) -> NDArray[np.bool_]:
+def on_land(land: LandMap, position: Array) -> BoolArray:
     """Whether positions [M, 2] m lie on a square of land, or next to one."""
     squares = land.square[land.land]
     if not len(squares) or not len(position):
         return np.zeros(len(position), bool)
     near, _ = cKDTree(squares).query(_square(position), p=np.inf, distance_upper_bound=1.5)
-    return np.isfinite(near)
+    found: BoolArray = np.isfinite(near)
+    return found
 
 
-def _square(position):
+def _square(position: Array) -> IntArray:
     return np.floor(np.asarray(position) / SQUARE).astype(np.int64)
 
 
-def _long(square, keeps):
+def _long(square: IntArray, keeps: BoolArray) -> BoolArray:
     """Which squares [G] keep echoing and are part of a piece longer than a ship."""
     rows = keeps.nonzero()[0]
     long = np.zeros(len(square), bool)

@@ -7,10 +7,9 @@ near side is. These cells are used to measure an outline.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import unit_vector, wrap_angle
-from ..types import Array, Plots
+from ..types import Array, IntArray, Plots
 from .smear import ACROSS, ALONG
 
 FRINGE = 1.1  # in deviations of a cell; echoes reach this far beyond a hull
@@ -25,12 +24,14 @@ class Edge(NamedTuple):
     noise     [C, 2, 2]  m^2, of one point of each cluster
     """
 
-    cluster: NDArray[np.int64]
+    cluster: IntArray
     position: Array
     noise: Array
 
 
-def lit_edge(cells: Plots, of_cell, noise, range_resolution: float, beam_width: float) -> Edge:
+def lit_edge(
+    cells: Plots, of_cell: IntArray, noise: Array, range_resolution: float, beam_width: float
+) -> Edge:
     """The edges of all clusters; of_cell [M] is the cluster of each cell.
 
     noise [C, 2, 2] m^2, R of a cell of each cluster; range_resolution m, beam_width rad.

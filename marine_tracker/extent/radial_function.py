@@ -78,10 +78,10 @@ def contour(
     empty = np.empty((0, 0))
     prior = Contour(angle, deviation, mean_deviation, scale, folds, mean, power, empty, empty)
     covariance = kernel(prior, angle)[0] + JITTER * deviation**2 * np.eye(points)
-    return prior._replace(covariance=covariance, precision=np.linalg.inv(covariance))
+    return prior._replace(covariance=covariance, precision=np.linalg.inv(covariance).astype(float))
 
 
-def kernel(prior: Contour, angle):
+def kernel(prior: Contour, angle: Array) -> tuple[Array, Array]:
     """k(b, U) and dk/db, both [..., M], at the angles [...] rad."""
     turned, points = prior.folds * np.asarray(angle)[..., None], prior.folds * prior.angle
     cosine, sine = np.cos(turned), np.sin(turned)  # of few angles; then of all differences
@@ -93,7 +93,7 @@ def kernel(prior: Contour, angle):
     return bell + prior.mean_deviation**2, slope
 
 
-def radius(prior: Contour, semi_axes, f, angle) -> Radius:
+def radius(prior: Contour, semi_axes: Array, f: Array, angle: Array) -> Radius:
     """Radii at the angles [N, S] rad of N targets with f [N, M] and bases of the semi-axes
     [N, 2] m, ahead and abeam."""
     k, dk = kernel(prior, angle)
@@ -111,7 +111,7 @@ def radius(prior: Contour, semi_axes, f, angle) -> Radius:
     )
 
 
-def lame(semi_axes, power, angle):
+def lame(semi_axes: Array, power: float, angle: Array) -> tuple[Array, Array]:
     """Radius m and slope m/rad [...] of |x / a|^p + |y / b|^p = 1 (Lame's curve) at the angles
     [...] off the first of its semi-axes [..., 2] m; power p > 1: 2 for an ellipse, more for boxes.
     """
@@ -127,6 +127,6 @@ def lame(semi_axes, power, angle):
     return size, (ahead * sine - abeam * cosine) * size / total
 
 
-def _dot(rows, vector):
+def _dot(rows: Array, vector: Array) -> Array:
     """[N, S] of rows [N, S, M] with vectors [N, M]."""
     return (rows @ vector[..., None])[..., 0]

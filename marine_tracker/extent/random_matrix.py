@@ -11,9 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..estimators.contract import Velocity
 from ..gaussian.linear import invert_2x2, kalman_update
 from ..geometry import unit_vector
-from ..types import Array, put, take
+from ..types import Array, IntArray, put, take
 
 SURFACE, CONTOUR = 1 / 4, 1 / 2  # z_s of scatterers over a whole ellipse, and along its outline
 NO_MEMORY = 2.0  # at this weight an extent carries no information
@@ -71,7 +72,14 @@ class Measures(NamedTuple):
     axis_sd: Array
 
 
-def start(time, position, covariance, velocity, extent, weight=6.0) -> RandomMatrixState:
+def start(
+    time: Array,
+    position: Array,
+    covariance: Array,
+    velocity: Velocity,
+    extent: Array,
+    weight: Array | float = 6.0,
+) -> RandomMatrixState:
     """New rows.
 
     time [N] s; position [N, 2] m of the centroid with covariance [N, 2, 2] m^2; velocity a
@@ -87,13 +95,13 @@ def start(time, position, covariance, velocity, extent, weight=6.0) -> RandomMat
     )
 
 
-def predict(state: RandomMatrixState, time, model: Model = SHIP) -> RandomMatrixState:
+def predict(state: RandomMatrixState, time: Array, model: Model = SHIP) -> RandomMatrixState:
     """Predicts all rows to the times [N] s: straight motion; the extent stays and loses weight."""
     step = time - state.time
     mean = state.mean.copy()
     mean[:, :2] += step[:, None] * mean[:, 2:]
-    transition, noise = constant_velocity(step)
-    transition = np.kron(transition, np.eye(2))
+    of_axis, noise = constant_velocity(step)
+    transition = np.kron(of_axis, np.eye(2))
     covariance = transition @ state.covariance @ transition.swapaxes(1, 2) + model.noise * np.kron(
         noise, np.eye(2)
     )
@@ -107,7 +115,7 @@ def predict(state: RandomMatrixState, time, model: Model = SHIP) -> RandomMatrix
     )
 
 
-def constant_velocity(step):
+def constant_velocity(step: Array) -> tuple[Array, Array]:
     """Transition [N, 2, 2] of [x v] over the steps [N] s; and the process covariance [N, 2, 2] of
     white acceleration with unit density.
     """
@@ -121,7 +129,13 @@ def constant_velocity(step):
 
 
 def update(
-    state: RandomMatrixState, rows, centroid, scatter, count, noise, model: Model = SHIP
+    state: RandomMatrixState,
+    rows: IntArray,
+    centroid: Array,
+    scatter: Array,
+    count: IntArray,
+    noise: Array,
+    model: Model = SHIP,
 ) -> RandomMatrixState:
     """Updates the K named rows, which are predicted to their clusters' times, with one cluster
     each.
@@ -149,12 +163,12 @@ def update(
     return put(state, rows, RandomMatrixState(before.time, mean, covariance, extent, weight))
 
 
-def cell_covariance(extent, noise, model: Model = SHIP):
+def cell_covariance(extent: Array, noise: Array, model: Model = SHIP) -> Array:
     """Y [..., 2, 2] m^2 of cells about their centroid; extent and noise [..., 2, 2] m^2."""
     return model.spread * extent + noise
 
 
-def root_2x2(matrix):
+def root_2x2(matrix: Array) -> Array:
     """The symmetric root [..., 2, 2] of symmetric positive definite 2 x 2 matrices."""
     root = np.sqrt(
         np.maximum(
@@ -162,11 +176,14 @@ def root_2x2(matrix):
         )
     )
     trace = matrix[..., 0, 0] + matrix[..., 1, 1]
-    return (matrix + root[..., None, None] * np.eye(2)) / np.sqrt(trace + 2 * root)[..., None, None]
+    found: Array = (matrix + root[..., None, None] * np.eye(2)) / np.sqrt(trace + 2 * root)[
+        ..., None, None
+    ]
+    return found
 
 
 def measures(
-    state: RandomMatrixState, noise, model: Model = SHIP, size: float = BOX_SPREAD
+    state: RandomMatrixState, noise: Array, model: Model = SHIP, size: float = BOX_SPREAD
 ) -> Measures:
     """Length, beam and axis of all rows; size: BOX for hulls, ELLIPSE.
 
@@ -177,8 +194,9 @@ def measures(
     line = unit_vector(axis)
     side = unit_vector(axis + np.pi / 2)
 
-    def between(matrix, a, b):
-        return np.einsum('ni,nij,nj->n', a, matrix, b)
+    def between(matrix: Array, a: Array, b: Array) -> Array:
+        found: Array = np.einsum('ni,nij,nj->n', a, matrix, b)
+        return found
 
     along, across = (between(state.extent, unit, unit) for unit in (line, side))
     cells = cell_covariance(state.extent, noise, model)
@@ -197,7 +215,7 @@ def measures(
     )
 
 
-def axis_of(extent):
+def axis_of(extent: Array) -> Array:
     """Bearing [...] rad in [0, pi) of the long axis of extents [..., 2, 2]."""
     half = 0.5 * np.arctan2(2 * extent[..., 0, 1], extent[..., 1, 1] - extent[..., 0, 0])
     return np.mod(half, np.pi)

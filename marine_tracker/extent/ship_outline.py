@@ -10,6 +10,7 @@ by a few per cent.
 import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector, wrap_angle
+from ..types import Array
 from .gaussian_process import HEADING, GpState, Model, start
 from .radial_function import contour
 from .random_matrix import Measures, RandomMatrixState
@@ -22,7 +23,7 @@ HEADING_SD = np.radians(2.0)  # least deviation of the first heading
 RATE_SD = np.radians(0.1)  # rad/s
 
 
-def from_random_matrix(matrix: RandomMatrixState, found: Measures, own) -> GpState:
+def from_random_matrix(matrix: RandomMatrixState, found: Measures, own: Array) -> GpState:
     """Outlines of N ships from their random matrices; model SHIP.
 
     found: their measures; own [2] or [N, 2] m: the radar.
@@ -46,13 +47,14 @@ def from_random_matrix(matrix: RandomMatrixState, found: Measures, own) -> GpSta
     )
 
 
-def heading_of(matrix: RandomMatrixState, found: Measures):
+def heading_of(matrix: RandomMatrixState, found: Measures) -> Array:
     """Bearing [N] rad of the bow: the end of the axis nearer to the course."""
     astern = (unit_vector(found.axis) * matrix.mean[:, 2:]).sum(1) < 0
-    return found.axis + np.pi * astern
+    value: Array = found.axis + np.pi * astern
+    return value
 
 
-def off_course(state: GpState):
+def off_course(state: GpState) -> Array:
     """Angle [N] rad in [0, pi] between heading and course; large where the outline is wrong."""
     course = to_range_bearing(state.mean[:, 2:4])[1]
     return np.abs(wrap_angle(state.mean[:, HEADING] - course))

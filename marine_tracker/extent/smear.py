@@ -8,11 +8,12 @@ resolution and beam width.
 import numpy as np
 
 from ..geometry import unit_vector
+from ..types import Array
 
 ALONG, ACROSS = 0.55, 0.4  # of the range resolution, of the beam's width
 
 
-def smear(range_, bearing, range_resolution: float, beam_width: float):
+def smear(range_: Array, bearing: Array, range_resolution: float, beam_width: float) -> Array:
     """Covariances [..., 2, 2] m^2, east and north, of cells about a point target.
 
     range_, bearing [...] m, rad; range_resolution m; beam_width rad.

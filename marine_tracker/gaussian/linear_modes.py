@@ -8,13 +8,12 @@ products of stacked 4 x 4 matrices.
 Modes may belong to several chains (IMM filters). `Chain` says which modes, and how they change.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array
+from ..types import Array, IntArray, Numbers
 
 # Entry [i, j] of a covariance by its index among the ten packed ones, and the reverse.
 ROW, COLUMN = np.triu_indices(4)
@@ -50,42 +49,42 @@ class Bank(NamedTuple):
     turn_rate: Array
     chains: tuple[Chain, ...]
     rates: Array
-    size: NDArray[np.int64]
+    size: IntArray
 
 
-def bank(noise, turn_rate, chains) -> Bank:
+def bank(noise: Numbers, turn_rate: Numbers, chains: Iterable[Chain]) -> Bank:
     """A bank from plain sequences."""
-    turn_rate = np.array(turn_rate, float)
-    rates, size = np.unique(np.abs(turn_rate), return_inverse=True)
-    return Bank(
-        np.array(noise, float)[:, None], turn_rate[:, None], tuple(chains), rates[:, None], size
-    )
+    turn = np.array(turn_rate, float)
+    rates, size = np.unique(np.abs(turn), return_inverse=True)
+    return Bank(np.array(noise, float)[:, None], turn[:, None], tuple(chains), rates[:, None], size)
 
 
-def straight(noise) -> Bank:
+def straight(noise: Array) -> Bank:
     """A bank of constant-velocity filters: noise [J, 1], or [J, N] where tracks differ."""
     count = len(noise)
     return Bank(noise, np.zeros((count, 1)), (), np.zeros((1, 1)), np.zeros(count, int))
 
 
-def transition_power(stay, period, entered=None):
+def transition_power(
+    stay: Numbers, period: float, entered: Numbers | None = None
+) -> Callable[[Array], Array]:
     """A mode chain in continuous time: function of steps [N] s to transition matrices [N, J, J].
 
     stay     [J]  probability to be in the same mode `period` s later
     entered  [J]  relative probability of each mode when another one is left; equal by default
     """
-    stay = np.asarray(stay, float)
-    count = len(stay)
+    staying = np.asarray(stay, float)
+    count = len(staying)
     share = np.ones(count) if entered is None else np.asarray(entered, float)
     # Such a chain is reversible: after rescaling, its matrix is symmetric. A symmetric matrix
     # allows equal eigenvalues, which equal modes have. The floor is for modes that are never left.
-    rate = np.maximum(1 - stay, 1e-12) / np.maximum(share.sum() - share, 1e-12)
+    rate = np.maximum(1 - staying, 1e-12) / np.maximum(share.sum() - share, 1e-12)
     matrix = np.sqrt(np.outer(rate * share, rate * share))
-    np.fill_diagonal(matrix, stay)
+    np.fill_diagonal(matrix, staying)
     values, vectors = np.linalg.eigh(matrix)
     if values.min() <= 0:
         raise ValueError(
-            f'stay probabilities {tuple(stay)} are too small for a chain in '
+            f'stay probabilities {tuple(staying)} are too small for a chain in '
             'continuous time; they must be well above 1 / number of modes'
         )
     scale = np.sqrt(rate / share)[:, None]
@@ -93,41 +92,43 @@ def transition_power(stay, period, entered=None):
     decay = np.log(values) / period
     outer = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(count, -1)
 
-    def over(step):
+    def over(step: Array) -> Array:
         powers = np.exp(np.abs(step)[:, None] * decay)
         found = (powers @ outer).reshape(-1, count, count)
-        return np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
+        value: Array = np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
+        return value
 
     return over
 
 
-def stationary(chain: Chain):
+def stationary(chain: Chain) -> Array:
     """The stationary distribution [J] of a chain."""
-    return chain.over(np.array([1e6]))[0, 0]
+    found: Array = chain.over(np.array([1e6]))[0, 0]
+    return found
 
 
-def pack(mean, covariance):
+def pack(mean: Array, covariance: Array) -> Array:
     """Rows [N, J, 14] of means [N, J, 4] and covariances [N, J, 4, 4]."""
     entries = covariance.reshape(covariance.shape[:2] + (16,)).take(PACKED, 2)
     return np.concatenate([mean, entries], 2)
 
 
-def unpack(rows):
+def unpack(rows: Array) -> tuple[Array, Array]:
     """Means [..., 4] and covariances [..., 4, 4] of rows [..., 14]."""
     return rows[..., :4], rows[..., 4:].take(UNPACKED, -1)
 
 
-def columns_of(rows):
+def columns_of(rows: Array) -> Array:
     """Columns [14, J, N] of rows [N, J, 14], always a copy."""
     return rows.transpose(2, 1, 0).copy()
 
 
-def rows_of(columns):
+def rows_of(columns: Array) -> Array:
     """Rows [N, J, 14] of columns [14, J, N], always a copy."""
     return columns.transpose(2, 1, 0).copy()
 
 
-def _shares(chain: Chain, weight, step):
+def _shares(chain: Chain, weight: Array, step: Array) -> tuple[Array, Array]:
     """Mode probabilities after the step, and the mixing weights [N, to, from] of each mode.
 
     step [N] s, or [1] for all.
@@ -138,7 +139,7 @@ def _shares(chain: Chain, weight, step):
     return ahead, joint
 
 
-def mix(bank: Bank, rows, weight, step):
+def mix(bank: Bank, rows: Array, weight: Array, step: Array) -> tuple[Array, Array]:
     """Columns [14, J, N] and weights [N, J] after the mode changes over the steps [N] s.
 
     Takes rows [N, J, 14]. Blom and Bar-Shalom, IEEE T-AC 33(8), 1988, eq 7-9, in second moments:
@@ -159,13 +160,13 @@ def mix(bank: Bank, rows, weight, step):
     return columns, weight
 
 
-def _add_squares(columns, add):
+def _add_squares(columns: Array, add: np.ufunc) -> None:
     """Add the square of the means to the covariances (or subtract it), in place."""
     for k, (i, j) in enumerate(zip(ROW, COLUMN), 4):
         add(columns[k], columns[i] * columns[j], out=columns[k])
 
 
-def mix_means(bank: Bank, mean, weight, step):
+def mix_means(bank: Bank, mean: Array, weight: Array, step: Array) -> tuple[Array, Array]:
     """As `mix`, for the means only: [N, J, 4] before and after. step [N] s, or [1] for all."""
     mean, weight = mean.copy(), weight.copy()
     for chain in bank.chains:
@@ -174,7 +175,7 @@ def mix_means(bank: Bank, mean, weight, step):
     return mean, weight
 
 
-def _turn(bank: Bank, step):
+def _turn(bank: Bank, step: Array) -> tuple[Array, Array, Array, Array]:
     """sin and cos [J, N] of the turn angles; metres along and across per m/s of velocity."""
     angle = bank.rates * step
     sin, cos = np.sin(angle), np.cos(angle)
@@ -185,7 +186,7 @@ def _turn(bank: Bank, step):
     return side * sin[bank.size], cos[bank.size], along[bank.size], side * across[bank.size]
 
 
-def move_means(bank: Bank, mean, step):
+def move_means(bank: Bank, mean: Array, step: Array) -> Array:
     """Means [4, J, N] moved by the steps [N] s, or [1] for all."""
     sin, cos, along, across = _turn(bank, step)
     e, n, ve, vn = mean
@@ -199,7 +200,7 @@ def move_means(bank: Bank, mean, step):
     )
 
 
-def move(bank: Bank, columns, step):
+def move(bank: Bank, columns: Array, step: Array) -> Array:
     """Columns [14, J, N] moved by the steps [N] s, of either sign; noise grows with |step|.
 
     With A = [[1, G], [0, R]] and P = [[X, C], [C', V]]: D = C + G V, then X + G C' + D G',
@@ -227,7 +228,9 @@ def move(bank: Bank, columns, step):
     return out
 
 
-def innovate(columns, plot, noise):
+def innovate(
+    columns: Array, plot: Array, noise: Array
+) -> tuple[tuple[Array, Array], Array, tuple[Array, Array, Array, Array]]:
     """Innovations [2, J, N], their squared distances [J, N] and the parts of their inverse
     covariances.
 
@@ -241,7 +244,7 @@ def innovate(columns, plot, noise):
     return (de, dn), distance, (see, sen, snn, determinant)
 
 
-def correct(columns, plot, noise):
+def correct(columns: Array, plot: Array, noise: Array) -> tuple[Array, Array]:
     """Kalman update of columns [14, J, N] with one plot a track; also the log-likelihoods [J, N].
 
     plot [2, N] m; noise [3, N] m^2: its covariance's ee, en, nn. Log-likelihoods are up to a
@@ -259,13 +262,14 @@ def correct(columns, plot, noise):
     return out, -0.5 * (distance + np.log(determinant))
 
 
-def reweigh(weight, score):
+def reweigh(weight: Array, score: Array) -> Array:
     """Mode probabilities [J, N] of one chain after plots with the log-likelihoods [J, N]."""
     weight = weight * np.exp(score - score.max(0)) + LEAST_WEIGHT
-    return weight / weight.sum(0)
+    found: Array = weight / weight.sum(0)
+    return found
 
 
-def combine(columns, weight):
+def combine(columns: Array, weight: Array) -> Array:
     """Mean and covariance [14, N] of mixtures of columns [14, J, N] with the weights [J, N]."""
     mean = (columns[:4] * weight).sum(1)
     apart = columns[:4] - mean[:, None]
@@ -276,6 +280,6 @@ def combine(columns, weight):
     return out
 
 
-def packed_noise(covariance):
+def packed_noise(covariance: Array) -> Array:
     """[3, N] ee, en, nn of plots' covariances [N, 2, 2]."""
     return np.stack([covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]])

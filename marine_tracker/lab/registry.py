@@ -8,6 +8,7 @@ parts run.
 from types import ModuleType
 
 from . import marine_table
+from .alarms import alarms
 from .alpha_beta import alpha_beta
 from .compare import compare
 from .extended import extended
@@ -30,4 +31,5 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'extended': extended,
     'hulls': hulls,
     'compare': compare,
+    'alarms': alarms,
 }

@@ -93,7 +93,7 @@ def gwnn(inputs: int, outputs: int, levels: int, translations: int, width: float
     return Design(inputs, outputs, width, outputs, translations * (levels + 2), form)
 
 
-def draw(design: Design, count: int, rng) -> Weights:
+def draw(design: Design, count: int, rng: np.random.Generator) -> Weights:
     """Random weights of `count` networks."""
     inner = INNER_SCALE * (1 - rng.random((count, design.groups * design.group, design.inputs + 1)))
     outer = OUTER_SCALE * (1 - rng.random((count, design.outputs, design.group)))
@@ -172,11 +172,12 @@ def next_step(rule: Rule, step, error, before, far):
     return step * np.where(error >= before, rule.shrink, np.where(error > far, rule.grow, 1.0))
 
 
-def learn(design: Design, weights: Weights, inputs, wanted, speed, rule: Rule, unit, near, far):
+def learn(
+    design: Design, weights: Weights, inputs, wanted, speed, rule: Rule, unit: float, near, far
+) -> Weights:
     """The weights after one plot each: steps 1 to 5 of the paper's algorithm.
 
-    inputs, wanted  [B, I], [B, O]  what the networks should have given; outputs 0 and 1 are the
-    position
+    inputs, wanted  [B, I], [B, O]  what the networks should have given; outputs 0 and 1: position
     speed           [B] m/s, for the first step
     unit            m, of a position output of 1
     near, far       E1, E2 [B] or number, m: corrected until E_R <= E1; the step grows above E2

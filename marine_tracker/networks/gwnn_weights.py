@@ -40,7 +40,7 @@ def _arrays(weights: Weights) -> dict[str, np.ndarray]:
     }
 
 
-def save(path, weights: Weights) -> dict[str, Any]:
+def save(path: str | Path, weights: Weights) -> dict[str, Any]:
     """Writes the file; returns its manifest with format, layouts and checksum."""
     arrays = _arrays(weights)
     manifest = {
@@ -53,7 +53,7 @@ def save(path, weights: Weights) -> dict[str, Any]:
     return manifest
 
 
-def load(path, inputs: int, outputs: dict[str, int]) -> Weights:
+def load(path: str | Path, inputs: int, outputs: dict[str, int]) -> Weights:
     """Reads a file of weights for networks with `inputs` inputs, and with the number of outputs by
     network.
 

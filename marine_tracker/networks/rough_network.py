@@ -58,7 +58,7 @@ def to_vector(network: Network):
     return np.concatenate([array.ravel() for array in network])
 
 
-def draw(form: Shapes, rng, scale: float = 0.35) -> Network:
+def draw(form: Shapes, rng: np.random.Generator, scale: float = 0.35) -> Network:
     """Random weights of that deviation."""
     return Network._make(rng.normal(0, scale, shape) for shape in form)
 

@@ -44,7 +44,7 @@ def shipped(kind: str) -> Path:
     return weight_file.FOLDER / f'cs_{kind}_nn.npz'
 
 
-def save(path, weights: Weights) -> dict[str, Any]:
+def save(path: str | Path, weights: Weights) -> dict[str, Any]:
     """Writes the file; returns its manifest with format and checksum."""
     arrays = {
         name: np.asarray(array, np.float32)
@@ -56,7 +56,7 @@ def save(path, weights: Weights) -> dict[str, Any]:
     return manifest
 
 
-def load(path, kind: str) -> Weights:
+def load(path: str | Path, kind: str) -> Weights:
     """Reads a file of weights of a `rough` or `bp` network.
 
     Raises ValueError if the file cannot be read, is damaged, or belongs to other networks.

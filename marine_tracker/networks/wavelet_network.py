@@ -142,7 +142,7 @@ def jacobian(network: Network, inputs):
     return by_layer * ((1 - layer[:, None, :-1] ** 2) * (0.5 / network.scale))
 
 
-def start(layout: Layout, centre, scale, rng, dtype=np.float32) -> Network:
+def start(layout: Layout, centre, scale, rng: np.random.Generator, dtype=np.float32) -> Network:
     """Random weights: net inputs that spread over the translations, and small outputs."""
     inputs, group = len(centre), group_size(layout)
     inner = rng.normal(0, 1.5 * layout.q / np.sqrt(inputs), (inputs + 1, layout.outputs * group))

@@ -24,14 +24,14 @@ def checksum(arrays) -> str:
     return digest.hexdigest()
 
 
-def write(path, arrays: dict[str, np.ndarray], manifest: dict[str, Any]) -> None:
+def write(path: str | Path, arrays: dict[str, np.ndarray], manifest: dict[str, Any]) -> None:
     """Write arrays of float32 and the manifest, which holds `format` and `checksum`."""
     with written(path, 'wb') as file:
         np.savez(file, manifest=np.array(json.dumps(manifest)), **arrays)  # type: ignore[arg-type]
 
 
 def read(
-    path, kind: str, command: str, form: int, names: Iterable[str]
+    path: str | Path, kind: str, command: str, form: int, names: Iterable[str]
 ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """The arrays of the given names and the manifest.
 

@@ -13,6 +13,7 @@ from rcl_interfaces.msg import (
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from ..files import shown
 from ..parameter_files import limits
 from ..parameters import from_mappings
 from .diagnostics import one_line
@@ -123,5 +124,5 @@ def _check_type(name: str, value: Any, field: dataclasses.Field) -> None:
         hint = f' (write {value}.0)' if wanted is float and type(value) is int else ''
         found = WORDS.get(type(value), 'a list')
         raise ValueError(
-            f'parameter {name} is {value!r}, {found}; it must be {WORDS[wanted]}{hint}'
+            f'parameter {name} is {shown(value)}, {found}; it must be {WORDS[wanted]}{hint}'
         )

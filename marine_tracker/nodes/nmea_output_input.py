@@ -19,6 +19,7 @@ from ..arpa.nmea import (
     Targets,
     as_acquired,
 )
+from ..files import shown
 from ..geodesy import LocalFrame
 from ..geometry import KNOT, NAUTICAL_MILE, bearing_from_yaw, to_range_bearing
 from ..types import Array
@@ -89,8 +90,8 @@ def read_origin(text: str) -> LocalFrame | None:
         return LocalFrame(latitude, longitude)
     except ValueError as error:
         raise ValueError(
-            f'parameter origin is {text!r}; it must be latitude and longitude in degrees, from '
-            '-90 to 90 and from -180 to 180, as "54.1 10.9"'
+            f'parameter origin is {shown(text)}; it must be latitude and longitude in degrees, '
+            'from -90 to 90 and from -180 to 180, as "54.1 10.9"'
         ) from error
 
 

@@ -15,8 +15,9 @@ from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import NavSatFix
 from std_msgs.msg import String
 
-from ..arpa import nmea, signalk
+from ..arpa import nmea, nmea_fields, signalk
 from ..arpa.nmea_targets import nothing_told, word
+from ..files import shown
 from ..geometry import NAUTICAL_MILE, unit_vector
 from ..parameters import NmeaOutputParameters
 from . import diagnostics, topics
@@ -46,10 +47,10 @@ class NmeaOutputNode(RunnableNode):
         for kind in self._wanted:
             if kind not in SENTENCES:
                 raise ValueError(
-                    f'parameter sentences has {kind!r}; it must be of {", ".join(SENTENCES)}'
+                    f'parameter sentences has {shown(kind)}; it must be of {", ".join(SENTENCES)}'
                 )
         for talker in (p.talker, p.own_ship_talker):
-            nmea.sentence(talker, 'HDT', ())  # ValueError for a wrong one
+            nmea_fields.sentence(talker, 'HDT', ())  # ValueError for a wrong one
         self._own = OwnShipInput(read_origin(p.origin))
         self._udp, self._signalk = Datagrams('udp', p.udp), Datagrams('signalk_udp', p.signalk_udp)
         self._tcp = Clients('tcp', p.tcp)

@@ -143,5 +143,5 @@ class ArpaParameters:
         live=True,
     )
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)

@@ -11,7 +11,17 @@ from typing import Any, TypeVar
 from ..files import shown
 
 
-def parameter(default, text, *, unit='', low=None, high=None, choices=(), live=False, old=None):
+def parameter(
+    default: bool | int | float | str,
+    text: str,
+    *,
+    unit: str = '',
+    low: float | None = None,
+    high: float | None = None,
+    choices: tuple[str, ...] = (),
+    live: bool = False,
+    old: Mapping[Any, str] | None = None,
+) -> Any:
     """A dataclass field with its description.
 
     low, high  inclusive limits of a number; choices  the values a string may take;
@@ -32,7 +42,7 @@ def parameter(default, text, *, unit='', low=None, high=None, choices=(), live=F
     )
 
 
-def check(parameters) -> None:
+def check(parameters: Any) -> None:
     """Raise ValueError for the first field with a wrong type, or outside its limits or choices."""
     for field in dataclasses.fields(parameters):
         kind: Any = field.type
@@ -72,7 +82,8 @@ P = TypeVar('P')
 
 def from_mapping(kind: type[P], values: Mapping[str, Any]) -> P:
     """A parameter object from a mapping; an unknown key is an error that names its neighbours."""
-    return from_mappings((kind,), values)[0]
+    made: P = from_mappings((kind,), values)[0]
+    return made
 
 
 def from_mappings(kinds: Sequence[type], values: Mapping[str, Any]) -> tuple[Any, ...]:
@@ -89,7 +100,7 @@ def from_mappings(kinds: Sequence[type], values: Mapping[str, Any]) -> tuple[Any
     )
 
 
-def _cut(name) -> str:
+def _cut(name: Any) -> str:
     return str(name)[:60]
 
 

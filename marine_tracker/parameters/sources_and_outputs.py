@@ -29,7 +29,7 @@ class RadarSimulatorParameters:
     )
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)
 
 
@@ -46,7 +46,7 @@ class RecordingPlayerParameters:
     )
     loop: bool = parameter(False, 'Begin again when the recording has ended.')
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)
 
 
@@ -97,5 +97,5 @@ class NmeaOutputParameters:
         'negative, no longitude beyond 180. Empty: own ship is where own_ship/fix says.',
     )
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)

@@ -211,7 +211,7 @@ class TrackerParameters:
         10.0, 'Own-ship data older than this count as missing.', unit='s', low=0.1, high=600.0
     )
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)
         if self.confirm_hits > self.confirm_scans:
             raise ValueError(

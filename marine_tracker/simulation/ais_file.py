@@ -109,7 +109,8 @@ def read(path: Path, start: float | None, duration: float, max_gap: float) -> Tr
         raise ValueError(f'AIS file {error}') from None
     if not found:
         raise ValueError(
-            f'AIS file {path} has no vessel between {start:.14g} s and {start + duration:.14g} s; '
+            f'AIS file {shortened(path)} has no vessel between {start:.14g} s '
+            f'and {start + duration:.14g} s; '
             f'its times are {first:.14g} s to {last:.14g} s{told(skipped)}'
         )
     return Traffic(found, start, dict(skipped))
@@ -170,7 +171,9 @@ def _columns(path: Path, names: list[str]) -> _Columns:
     columns = _Columns(*map(place, (TIME, VESSEL, LATITUDE, LONGITUDE, LENGTH)))
     for name, found in zip(COLUMNS, columns):
         if found < 0:
-            raise ValueError(f'{path} has no column {name}; it has {shortened(", ".join(names))}')
+            raise ValueError(
+                f'{shortened(path)} has no column {name}; it has {shortened(", ".join(names))}'
+            )
     return columns
 
 

@@ -95,13 +95,12 @@ def _solve(scenario, numbers):
         np.searchsorted(number[rows], np.append(numbers, numbers[-1] + 1)) for rows in (met, best)
     ]
     for k, revolution in enumerate(numbers.tolist()):
+        of_passages, of_truth = (slice(edge[k], edge[k + 1]) for edge in edges)
         yield Revolution(
             revolution * period,
             (revolution + 1) * period,
-            *(
-                take(rows, slice(edge[k], edge[k + 1]))
-                for rows, edge in zip((passages, truth), edges, strict=True)
-            ),
+            take(passages, of_passages),
+            take(truth, of_truth),
         )
 
 

@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ..files import shown
+from ..files import shortened, shown
 from ..geometry import KNOT, NAUTICAL_MILE
 
 LENGTH_UNITS = {'m': 1.0, 'nm': NAUTICAL_MILE}
@@ -44,7 +44,8 @@ class Section:
 
     def place(self, key) -> str:
         """The place of the key in the file."""
-        return f'{self.where}.{key}' if self.where else str(key)
+        name = shortened(key)
+        return f'{self.where}.{name}' if self.where else name
 
     def __contains__(self, key: str) -> bool:
         return key in self.values

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..files import shown
 from ..geometry import NAUTICAL_MILE, to_range_bearing
 from ..types import Array
 from .fields import Section
@@ -44,7 +45,7 @@ def _shore(section, number):
     )
     closed = section.values.get('closed', False)
     if not isinstance(closed, bool):
-        raise ValueError(f'{section.place("closed")} is {closed!r}; it must be true or false')
+        raise ValueError(f'{section.place("closed")} is {shown(closed)}; it must be true or false')
     corners = [
         _corner(corner, section.place(f'{key}[{place}]'), unit)
         for place, corner in enumerate(section.items(key))
@@ -79,7 +80,7 @@ def _corner(corner, where, unit):
         )
     ):
         raise ValueError(
-            f'{where} is {corner!r}; it must be [north, east], numbers within '
+            f'{where} is {shown(corner)}; it must be [north, east], numbers within '
             f'{MAX_COORDINATE / unit:g}'
         )
     north, east = corner

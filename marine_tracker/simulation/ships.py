@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..files import shown
+from ..files import shortened, shown
 from ..geodesy import LocalFrame
 from ..geometry import KNOT, NAUTICAL_MILE, unit_vector
 from ..types import Array
@@ -77,7 +77,7 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
         read = ais_file.read(file, start, duration, options.number('max_gap_s', 1.0, 3600.0, 120.0))
         traffic, remark = read.vessels, ais_file.told(read.skipped)
         if remark:
-            remarks = (f'AIS file {file}{remark}',)
+            remarks = (f'AIS file {shortened(file)}{remark}',)
     own = top.section('own_ship', SHIP_KEYS + ' vessel')
     own_vessel = _vessel(own.values['vessel'], traffic) if 'vessel' in own else None
     origin = _origin(top, own, traffic, own_vessel)
@@ -172,7 +172,7 @@ def _chosen_vessels(options, traffic, own_vessel):
 
 def _vessel(value, traffic) -> str:
     """The vessel's name in the AIS file; a number is also found with noughts before it."""
-    name = value if isinstance(value, str) else shown(value)
+    name = shortened(value) if isinstance(value, str) else shown(value)
     if traffic and name not in traffic and type(value) is int:
         same = [one for one in traffic if one.isdecimal() and int(one) == value]
         return same[0] if len(same) == 1 else name

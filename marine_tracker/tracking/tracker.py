@@ -107,7 +107,7 @@ class Tracker:
             self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1
         )
 
-    def extrapolate(self, tracks: Tracks, time) -> Extrapolation:
+    def extrapolate(self, tracks: Tracks, time: float | Array) -> Extrapolation:
         """The tracks at the times [N] s (or one time for all)."""
         return self.estimator.extrapolate(
             tracks.state, np.broadcast_to(time, tracks.id.shape).astype(float)

@@ -15,99 +15,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from ..estimators import cs_kalman, imm
-from ..estimators.contract import Estimator
 from ..evaluation.report import Figure
 from ..types import take
 from . import gwnn_samples, ship_tracks, track_trials, training_tracks
+from .filter_families import IMM, Family, Settings, filter_of
 
 # Weight of a cell where ships keep course and speed, by the target of the tuning.
 STRAIGHT_WEIGHT = {'training': 1.0, 'manoeuvre': 0.0}
-PERIOD = 60 / 22  # s, to which the settings refer
-LEAST_TRACKS = 10 * len(ship_tracks.KINDS)  # every vessel class has this number of kinds
-DRAWN = 2  # times as many tracks are drawn, because close ones are left out
-GLOBAL_SHARE = 2 / 3  # of the evaluations, over the whole bounds; the rest search downhill
-POPULATION = 4  # times the number of searched settings, rounded up to 2^n
-SIMPLEX = 0.12  # of the bounds' width; first step downhill, smaller later
+LEAST_TRACKS = 10 * len(ship_tracks.KINDS)  # every vessel class has as many kinds
+DRAWN = 2  # times as many tracks are drawn: close ones are left out
+GLOBAL_SHARE = 2 / 3  # of the evaluations, all over the bounds; the rest go downhill
+POPULATION = 4  # times the number of settings searched, rounded up to 2^n
+SIMPLEX = 0.12  # of the bounds' width, first step of the way down; then smaller
 
-# Bounds of the search, which uses logarithms. noise: m/s^2, deviation of the acceleration over a
-# scan; leave: probability to leave a mode in one scan.
-BOUNDS = {
-    'quiet_noise': (1e-4, 0.1),
-    'loud_noise': (0.03, 5.0),
-    'noise': (1e-3, 5.0),  # of the only mode
-    'turn_noise': (1e-4, 1.0),
-    'turn_rate': (0.003, 0.45),  # rad/s
-    'leave_quiet': (1e-4, 0.3),
-    'leave_loud': (0.01, 0.45),
-    'leave_turn': (0.01, 0.45),
-    'max_acceleration': (0.05, 5.0),  # m/s^2, of CS-Kalman
-    'frequency': (1 / 300, 20.0),  # 1/s, likewise
-}
-
-Settings = imm.Modes | cs_kalman.Manoeuvre
 Progress = Callable[[int, int], None]
-
-
-class Family(NamedTuple):
-    """Filters of one form: the searched settings (names of BOUNDS), and a function from values to
-    settings.
-    """
-
-    searched: tuple[str, ...]
-    settings: Callable[..., Settings]
-
-    def at(self, point) -> Settings:
-        """The settings at a point of the search, each coordinate 0 to 1 over its bounds."""
-        low, high = np.log(np.array([BOUNDS[name] for name in self.searched])).T
-        return self.settings(*map(float, np.exp(low + np.clip(point, 0, 1) * (high - low))))
-
-
-def _four_modes(quiet, loud, turn, rate, leave_quiet, leave_loud, leave_turn) -> imm.Modes:
-    return _modes(
-        (quiet, loud, turn, turn),
-        (0.0, 0.0, rate, -rate),
-        (leave_quiet, leave_loud, leave_turn, leave_turn),
-    )
-
-
-def _modes(acceleration, turn_rate, leave) -> imm.Modes:
-    return imm.Modes(
-        tuple(PERIOD * one**2 for one in acceleration),
-        turn_rate,
-        tuple(1 - one for one in leave),
-        PERIOD,
-    )
-
-
-FAMILIES = {
-    'imm': Family(
-        (
-            'quiet_noise',
-            'loud_noise',
-            'turn_noise',
-            'turn_rate',
-            'leave_quiet',
-            'leave_loud',
-            'leave_turn',
-        ),
-        _four_modes,
-    ),
-    'cv_cv': Family(
-        ('quiet_noise', 'loud_noise', 'leave_quiet', 'leave_loud'),
-        lambda quiet, loud, *leave: _modes((quiet, loud), (0.0, 0.0), leave),
-    ),
-    'cv': Family(('noise',), lambda noise: _modes((noise,), (0.0,), (0.0,))),
-    'cs': Family(('max_acceleration', 'frequency'), cs_kalman.Manoeuvre),
-}
-IMM = FAMILIES['imm']
-
-
-def filter_of(settings: Settings) -> Estimator:
-    """The filter with these settings."""
-    if isinstance(settings, cs_kalman.Manoeuvre):
-        return cs_kalman.cs_kalman(settings, training_tracks.SPEED)
-    return imm.imm(settings, training_tracks.SPEED)
 
 
 class Course(NamedTuple):
@@ -361,15 +282,3 @@ def judge(
         Figure(f'fresh tracks, {cell}: found over {rival}', value) for cell, value in cells.items()
     ]
     return Verdict(figures, to_rival)
-
-
-def as_text(settings: Settings) -> str:
-    """The settings as Python code."""
-
-    def value_text(value):
-        if isinstance(value, tuple):
-            return f'({", ".join(f"{one:.5g}" for one in value)}{"," * (len(value) == 1)})'
-        return '60 / 22' if value == PERIOD else f'{value:.5g}'
-
-    values = ', '.join(f'{name}={value_text(value)}' for name, value in settings._asdict().items())
-    return f'{type(settings).__name__}({values})'

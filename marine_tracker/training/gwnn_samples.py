@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..estimators.gwnn import bank as filters
-from ..estimators.gwnn import gwnn, inputs
+from ..estimators.gwnn import gwnn, inputs, monitor
 from ..gaussian import linear_modes
 from ..types import Array, put, take
 from . import ship_tracks, training_tracks
@@ -86,7 +86,7 @@ def make(bank: filters.Filters, waters: training_tracks.Waters, seed: int, chunk
     memory = inputs.begin(plots[0])
     parts = []
     for k in range(1, SCANS):
-        warm = np.flatnonzero(memory.plots >= gwnn.WARM)
+        warm = np.flatnonzero(memory.plots >= monitor.WARM)
         for after, share in ((0, EXPECTED), (1, KNOWN)):
             rows = warm[rng.random(len(warm)) < share]
             if after:

@@ -61,8 +61,7 @@ class Scene(NamedTuple):
 class Drawn(NamedTuple):
     """The first run after its last scan, relative to the true centre.
 
-    outline, inner, outer  [A, 2]  m, east and north; inner and outer are 3 deviations from the
-    outline
+    outline, inner, outer  [A, 2]  m, east and north; inner and outer are 3 deviations off
     error, deviation       [M]     m, of the radii at the angles of f
     The random matrix has an outline only.
     """

@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 
-from ...estimators.gwnn import gwnn
+from ...estimators.gwnn import gwnn, monitor
 from ...networks.gwnn_weights import Weights
 from ...training import track_trials
 from .trials import FLEETS, SCANS, fallback, network, trial
@@ -43,8 +43,8 @@ def scans_to_fallback(vessel_class: str, kind: str, runs: int, seed: int, weight
     def watch(k, state):
         if k < BREAK_SCAN:
             return None
-        down = (state.monitor.status == gwnn.FALLBACK) & (first == SCANS)
-        first[down] = k - BREAK_SCAN - 1  # BREAK_SCAN + 2: first one of the broken network
+        down = (state.monitor.status == monitor.FALLBACK) & (first == SCANS)
+        first[down] = k - BREAK_SCAN - 1  # scan BREAK_SCAN + 2 is the first expected so
         return bad
 
     own = track_trials.run(sound, on, False, watch)
@@ -89,4 +89,4 @@ def cost(seed: int, weights: Weights) -> float:
         estimator.extrapolate(state, on.plots[k].time)
         state = estimator.update(state, on.plots[k], rows)
         spent.append(time.process_time() - begin)
-    return 1e3 * float(np.median(spent[gwnn.WARM :]))
+    return 1e3 * float(np.median(spent[monitor.WARM :]))

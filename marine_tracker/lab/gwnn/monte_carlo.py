@@ -17,7 +17,7 @@ from ...estimators.gwnn import gwnn
 from ...evaluation import parallel
 from ...evaluation.parallel import Job, Workers
 from ...evaluation.result import Progress, Result, silent
-from ...networks import gwnn_weights
+from ...networks import gwnn_weights, weight_file
 from . import failures, figures, pictures
 from .claims import claims
 from .figures import Findings
@@ -56,8 +56,8 @@ def measure(
             f'--data is {data}; it holds neither of ' + ', '.join(map(str, RECORDED.values()))
         )
     weights = {name: {OWN: gwnn.weights(vessel_class=name)} for name in FLEETS}
-    weights['ship'][TANH] = gwnn.weights(str(gwnn_weights.FOLDER / 'gwnn_tanh.npz'))
-    # Differs from every seed of a training, whose numbers come in pairs.
+    weights['ship'][TANH] = gwnn.weights(str(weight_file.FOLDER / 'gwnn_tanh.npz'))
+    # Apart from every seed of a training, whose numbers come in pairs.
     seeds = iter(np.random.SeedSequence([seed, 7, 7]).generate_state(100).tolist())
     planned = {
         of: job for name in FLEETS for of, job in plan(name, runs, data, weights[name], seeds)

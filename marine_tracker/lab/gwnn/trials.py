@@ -11,7 +11,7 @@ import numpy as np
 
 from ...estimators import cs_kalman, imm
 from ...estimators.contract import Estimator
-from ...estimators.gwnn import bank, gwnn
+from ...estimators.gwnn import bank, gwnn, monitor
 from ...estimators.imm import Modes
 from ...geometry import unit_vector
 from ...networks import gwnn_weights
@@ -210,13 +210,15 @@ def cells(
     fallen = np.zeros(on.seen.shape, bool)
 
     def watch(k, state):
-        fallen[:, k] = state.monitor.status == gwnn.FALLBACK
+        fallen[:, k] = state.monitor.status == monitor.FALLBACK
 
     outcomes = {
         OWN: track_trials.run(network(vessel_class, weights[OWN], period), on, False, watch)
     }
     outcomes[ALONE] = track_trials.run(
-        network(vessel_class, weights[OWN], period, fall=np.inf), on, gated=False
+        network(vessel_class, weights[OWN], period, trust=monitor.Trust(fall=np.inf)),
+        on,
+        gated=False,
     )
     for name in weights:
         if name != OWN:
