@@ -1,6 +1,6 @@
 // The page: puts link, state, picture, panel and controls together.
 
-import { rangeBearing, toMap, toScreen } from './geometry.js';
+import { KNOT, degrees, rangeBearing, toMap, toScreen, wrap } from './geometry.js';
 import { Link } from './link.js';
 import * as panel from './panel.js';
 import { draw, scopeOf, targetAt } from './picture.js';
@@ -22,6 +22,7 @@ const sorted = { column: 6, sign: 1, danger: true };
 let pointer = null; // px, while the mouse is over the picture
 let courseUp = 0; // rad, when course-up was chosen
 let dirty = true;
+let saidUntil = 0;
 let drawn = -Infinity;
 let panelShown = -Infinity;
 /** @type {Record<string, string>} */
@@ -124,6 +125,15 @@ function applySettings() {
   dirty = true;
 }
 
+/** A trial begins from what own ship does now. */
+function fillTrial() {
+  const form = /** @type {HTMLFormElement} */ (panel.element('trial'));
+  if (!state.own || state.trial.on) return;
+  const course = degrees(wrap(Math.atan2(state.own.vx, state.own.vy)));
+  form.elements.course_deg.value = Math.round(state.own.heading === null ? course : degrees(state.own.heading)) % 360;
+  form.elements.speed_kn.value = (Math.hypot(state.own.vx, state.own.vy) / KNOT).toFixed(1);
+}
+
 /** The tracker's limits into their form, unless somebody types there. */
 function fillLimits(/** @type {Record<string, number>} */ limits) {
   const form = /** @type {HTMLFormElement} */ (panel.element('limits'));
@@ -148,8 +158,9 @@ function zoom(/** @type {number} */ step) {
 async function command(/** @type {string} */ name, values = {}) {
   const { ok, text } = await link.send(name, values);
   const said = panel.element('said');
-  panel.say(said, `${ok ? '' : 'Not done: '}${text}`);
-  setTimeout(() => said.textContent.endsWith(text) && panel.say(said, ''), 6000);
+  panel.say(said, `${ok ? '' : 'Not done: '}${text.split(';')[0]}`);
+  clearTimeout(saidUntil);
+  saidUntil = setTimeout(() => panel.say(said, ''), 6000);
 }
 
 const chosen = () => state.targets.find((target) => target.id === marks.id);
@@ -269,6 +280,7 @@ for (const [id, name] of [
     command(name, Object.fromEntries([...form].map(([key, value]) => [key, Number(value)])));
   });
 }
+panel.element('trial-box').addEventListener('toggle', fillTrial);
 panel.makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;

@@ -38,7 +38,7 @@ function fill(/** @type {HTMLElement} */ list, /** @type {string[][]} */ figures
     }
     say(list.children[2 * row], term);
     const [main, small] = list.children[2 * row + 1].children;
-    say(main, value);
+    say(main, value.startsWith(format.NONE) ? format.NONE : value); // no unit of nothing
     say(small, deviation && deviation !== format.NONE ? `±${deviation}` : '');
   });
 }
@@ -63,14 +63,14 @@ export function showSelected(/** @type {import('./state.js').Target|undefined} *
   );
   if (!target) return fill(element('selected'), []);
   const figures = [
-    ['Range', `${format.miles(target.range)} NM`, format.miles(target.range_sd)],
+    ['Range', `${format.miles(target.range)} NM`, format.miles(target.range_sd, 3)],
     ['Bearing', `${format.bearing(target.bearing)}°`, angleSd(target.bearing_sd)],
     ['Course', `${format.bearing(target.course)}°`, angleSd(target.course_sd)],
     ['Speed', `${format.knots(target.speed)} kn`, format.knots(target.speed_sd)],
     ['CPA', `${format.miles(target.cpa)} NM`, format.miles(target.cpa_sd)],
     ['TCPA', `${format.minutes(target.tcpa)} min`, format.minutes(target.tcpa_sd)],
     ['Bow', `${format.miles(target.bow_range)} NM`, format.miles(target.bow_range_sd)],
-    ['in', `${format.minutes(target.bow_time)} min`, format.minutes(target.bow_time_sd)],
+    ['Bow in', `${format.minutes(target.bow_time)} min`, format.minutes(target.bow_time_sd)],
     ['P(danger)', `${format.number(100 * target.danger_probability, 0)} %`],
     ['Acquired', target.acquired ? 'by hand' : 'automatic'],
   ];
