@@ -14,12 +14,6 @@ def node():
     program = shutil.which('node')
     if not program:
         pytest.skip('no node: the modules of the page are not tested')
-    said = subprocess.run([program, '--version'], capture_output=True, text=True).stdout
-    version = tuple(map(int, re.findall(r'\d+', said)[:2]))
-    if version < (20, 19):
-        pytest.skip(
-            f'node {said.strip()} takes the modules of the page for scripts; 20.19 does not'
-        )
     return program
 
 

@@ -7,6 +7,8 @@ import { RANGES } from './settings.js';
 
 const STATUS = { [ACQUIRING]: 'acquiring', 1: 'tracking', [COASTING]: 'coasting', [LOST]: 'lost' };
 const MOTION = ['steady', 'manoeuvring', 'at rest'];
+/** Of alerts, as they are listed. */
+const STATES = ['active unacknowledged', 'rectified unacknowledged', 'active acknowledged'];
 const NEVER = 1e12; // sorts behind all numbers
 /** Columns of the table: head, what a cell shows, what it is sorted by. */
 export const COLUMNS = [
@@ -92,15 +94,15 @@ export function showAlarms(state, mayCommand, acknowledge) {
   const list = element('alarms');
   const priority = ['alarm', 'warning', 'caution'];
   const waits = (alarm) => alarm.state.endsWith('unacknowledged');
-  const alarms = [...state.alarms].sort(
-    (a, b) => Number(waits(b)) - Number(waits(a)) || priority.indexOf(a.priority) - priority.indexOf(b.priority),
-  );
+  const rank = (alarm) => STATES.indexOf(alarm.state) * 3 + priority.indexOf(alarm.priority);
+  const alarms = [...state.alarms].sort((a, b) => rank(a) - rank(b));
   const old = new Map([...list.children].map((item) => [item.dataset.name, item]));
   const items = alarms.map((alarm) => {
     const item = old.get(alarm.name) ?? newAlarm(alarm.name);
-    item.className = `${alarm.priority} ${waits(alarm) ? 'unacknowledged' : ''}`;
+    item.className = `${alarm.priority} ${alarm.state}`;
     const [text, button] = item.children;
-    say(text, alarm.text || `${alarm.name}, ${alarm.state}`);
+    const over = alarm.state.startsWith('rectified') ? 'Over: ' : '';
+    say(text, over + (alarm.text || alarm.name));
     button.hidden = !(waits(alarm) && alarm.number);
     button.disabled = !mayCommand;
     button.onclick = () => acknowledge(alarm.number);

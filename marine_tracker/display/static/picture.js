@@ -127,8 +127,8 @@ function drawPlots(canvas, state, { view, radius, middleX, middleY }, colors, lo
     const newest = place === state.plots.length - 1;
     const fade = 1 - Math.max(now - scan.at, 0) / GLOW_S;
     if (fade <= 0 && !newest) return;
-    canvas.globalAlpha = newest ? 1 : 0.5 * fade ** 2;
-    const size = newest ? 4 : 3;
+    canvas.globalAlpha = newest ? 0.9 : 0.4 * fade ** 2;
+    const size = newest ? 3.5 : 3;
     for (let k = 0; k < scan.x.length; k++) {
       const [x, y] = toScreen(view, scan.x[k], scan.y[k]);
       if (Math.abs(x - middleX) < radius && Math.abs(y - middleY) < radius) {
@@ -217,7 +217,7 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
     if (!shown && alarm.state.endsWith('unacknowledged')) continue;
     const [x, y] = toScreen(view, alarm.x, alarm.y);
     symbols.lost(canvas, x, y, colors.danger);
-    if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: true });
+    if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: false });
   }
   canvas.font = '600 13px system-ui, sans-serif';
   canvas.textBaseline = 'middle';
