@@ -1,6 +1,6 @@
-"""Runs simulator (or recorded radar), tracker and PPI over ROS 2, and shows a table.
+"""Runs simulator (or recorded radar), tracker and PPI over ROS 2, as processes; shows a table.
 
-Prints the address of the PPI, a page for a browser; opens it if there is a desktop.
+The address of the PPI is printed. On a desktop the page opens by itself.
 
 Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
 """
@@ -45,8 +45,8 @@ TO_THE_LEFT = ('name', 'status', 'estimator')
 STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
 DANGEROUS = 'bold red'
 MOST_ALARMS = 8  # listed below the table on a terminal; others are only counted
-PPI = 'ppi_display'
 PLAIN_EVERY_S = 2.0  # s between two tables if there is no terminal
+PPI = 'ppi_display'
 
 
 def add_arguments(parser) -> None:

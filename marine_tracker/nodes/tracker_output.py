@@ -1,6 +1,6 @@
-"""What the tracker node publishes after each scan: tracks, extrapolations, targets, markers.
+"""Publishes the results of each scan: tracks, extrapolations, targets, markers.
 
-Tracks that have no number yet are in `tracks_cloud` only. What nobody listens to is not made.
+Tracks that have no number yet are in `tracks_cloud` only. A message without listeners is not made.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ from .targets_message import TargetsWriter
 
 
 class TrackerOutput:
-    """Of one tracker node."""
+    """The publishers of one tracker node."""
 
     def __init__(self, node: RunnableNode, hardware_id: str):
         burst = topics.reliable(topics.BURST)
@@ -41,7 +41,7 @@ class TrackerOutput:
     def publish(
         self, service: Service, output: Output, period: float, stamps: Callable[..., np.ndarray]
     ) -> None:
-        """All that a scan came to.
+        """Publishes the results of one scan.
 
         period  s, of the radar's revolution
         stamps  ns, on the radar's clock, of the tracker's times [N] s

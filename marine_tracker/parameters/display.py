@@ -27,5 +27,5 @@ class PpiDisplayParameters:
     tracker: str = parameter('tracker', 'Name of the tracker node that commands are for.')
     plots_topic: str = parameter('radar/plots', 'Topic of the plots that are drawn.')
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)
