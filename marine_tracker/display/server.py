@@ -170,7 +170,8 @@ class DisplayServer:
                 self.port = runner.addresses[0][1]
             started.set()
             while not self._stop.is_set():
-                self._put('pulse', _text('pulse', viewers=len(self._viewers)))
+                pulse = _text('pulse', viewers=len(self._viewers), utc=time.time())
+                self._put('pulse', pulse)
                 try:
                     await asyncio.wait_for(self._stop.wait(), PULSE_S)
                 except TimeoutError:

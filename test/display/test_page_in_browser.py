@@ -53,8 +53,11 @@ class Stage:
 
     def __init__(self):
         self.commands = []
-        self.server = DisplayServer('127.0.0.1:0', self._run)
         self.live = True
+        self.serve('127.0.0.1:0', None)
+
+    def serve(self, address, token):
+        self.server = DisplayServer(address, self._run, token=token)
 
     def _run(self, command):
         self.commands.append(command)
@@ -111,8 +114,8 @@ def on_stage(act, query=''):
                 await page.until("document.getElementById('stale').hidden")
                 await act(page, stage)
                 assert page.errors == []
-                here = f'http://127.0.0.1:{stage.server.port}/'
-                ours = tuple({here, here.replace('http', 'ws')})
+                here = f'//127.0.0.1:{stage.server.port}/'
+                ours = 'http:' + here, 'ws:' + here
                 assert [url for url in page.requests if not url.startswith(ours)] == []
         finally:
             player.cancel()
@@ -215,6 +218,32 @@ def test_a_silent_server_gets_the_red_cross_until_it_speaks_again():
         assert 'No own ship' in await page.evaluate("document.getElementById('stale').textContent")
         stage.live = True
         await page.until("document.getElementById('stale').hidden")
+
+    on_stage(act)
+
+
+def test_the_page_finds_a_server_that_was_started_again():
+    async def act(page, stage):
+        address, token = f'127.0.0.1:{stage.server.port}', stage.server.token
+        stage.live = False
+        await asyncio.to_thread(stage.server.close)
+        await page.until(
+            "document.getElementById('stale').textContent.startsWith('No connection for')"
+        )
+        await asyncio.to_thread(stage.serve, address, token)
+        stage.live = True
+        await page.until("document.getElementById('stale').hidden && ppi.state.role.commands")
+        # What the browser itself says of a server that is away.
+        page.errors[:] = [error for error in page.errors if 'ERR_CONNECTION_REFUSED' not in error]
+
+    on_stage(act)
+
+
+def test_a_clock_that_is_off_is_told_and_changes_no_age():
+    async def act(page, stage):
+        await page.evaluate('(now => { Date.now = () => now() - 7200_000; })(Date.now)')
+        await page.until("document.getElementById('role').textContent.includes('-7200 s off')")
+        assert await page.evaluate("document.getElementById('stale').hidden")
 
     on_stage(act)
 

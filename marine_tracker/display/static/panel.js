@@ -9,6 +9,7 @@ const STATUS = { [ACQUIRING]: 'acquiring', 1: 'tracking', [COASTING]: 'coasting'
 const MOTION = ['steady', 'manoeuvring', 'at rest'];
 /** Of alerts, as they are listed. */
 const STATES = ['active unacknowledged', 'rectified unacknowledged', 'active acknowledged'];
+const CLOCK_S = 30; // a larger difference of the time of day is told
 const NEVER = 1e12; // sorts behind all numbers
 /** Columns of the table: head, what a cell shows, what it is sorted by. */
 export const COLUMNS = [
@@ -218,7 +219,9 @@ export function showState(state) {
     element('limits-are'),
     limits ? `CPA ${limits.cpa_limit_nm} NM in ${limits.tcpa_limit_min} min` : format.NONE,
   );
-  say(element('role'), state.role.commands ? '' : state.role.why || 'Looking only.');
+  const off = Math.abs(state.clockError) > CLOCK_S;
+  const clock = off ? `This device's clock is ${Math.round(state.clockError)} s off; ages do not depend on it. ` : '';
+  say(element('role'), clock + (state.role.commands ? '' : state.role.why || 'Looking only.'));
   say(element('trial-says'), trialSays(state.trial));
 }
 
