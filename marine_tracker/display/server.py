@@ -39,7 +39,10 @@ TYPES = {
     'txt': 'text/plain',
 }
 HEADERS = {
-    'Content-Security-Policy': "default-src 'self'; frame-ancestors 'none'; base-uri 'none'",
+    'Content-Security-Policy': (  # the icons of OpenBridge have style attributes
+        "default-src 'self'; style-src-attr 'unsafe-inline'; frame-ancestors 'none'; "
+        "base-uri 'none'"
+    ),
     'X-Content-Type-Options': 'nosniff',
     'Referrer-Policy': 'no-referrer',
     'Cache-Control': 'no-cache',

@@ -141,7 +141,7 @@ def test_targets_show_where_they_are_and_a_click_selects_them(orientation):
             " document.querySelector('[data-next=orientation]').click()"
         )
         up = 0 if orientation == 'north-up' else HEADING
-        radius = min(box[2], box[3]) / 2 - 34
+        radius = min(box[2], box[3]) / 2 - 40
         for _, id, x, y, *_ in SHIPS:
             # By hand: the offset turned by what is up, 6 NM to the radius.
             right = (x - OWN['x']) * math.cos(up) - (y - OWN['y']) * math.sin(up)
@@ -192,12 +192,12 @@ def test_data_alarms_and_commands():
         await page.until(text % 'selected-name' + ".startsWith('TT09')")
         data = await page.evaluate(text % 'selected')
         assert '2.70 NM' in data and '±' in data and '25 %' in data and 'NaN' not in data
-        await page.evaluate("document.querySelector('#alarms button').click()")
+        await page.evaluate("document.querySelector('#alarms obc-button').click()")
         await page.evaluate("document.getElementById('cancel').click()")
         for key in ('Escape', 'q', 'a'):
             await page.call('Input.dispatchKeyEvent', type='keyDown', key=key)
-        await page.evaluate("document.querySelector('#trial button').click()")
-        await page.evaluate("document.querySelector('#limits button').click()")
+        await page.evaluate("document.querySelector('#trial .submit').click()")
+        await page.evaluate("document.querySelector('#limits .submit').click()")
         await page.until(text % 'said' + ".includes('limits done')")
         names = [command.name for command in stage.commands]
         assert names == ['acknowledge', 'cancel', 'acquire', 'acknowledge_all', 'trial', 'limits']

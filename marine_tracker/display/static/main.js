@@ -79,7 +79,7 @@ function showPanel() {
   for (const id of ['acknowledge-all', 'acquire', 'cancel', 'trial-off']) {
     /** @type {HTMLButtonElement} */ (panel.element(id)).disabled = !mayCommand;
   }
-  for (const form of document.forms) form.querySelector('button').disabled = !mayCommand;
+  for (const button of document.querySelectorAll('form .submit')) button.disabled = !mayCommand;
 }
 
 /** Goes on in a hidden tab: what waits for an answer stands in its title. */
@@ -101,12 +101,25 @@ function showStale() {
 }
 
 function applySettings() {
-  document.documentElement.dataset.palette = settings.palette;
+  document.documentElement.dataset.obcTheme = settings.palette;
   const style = getComputedStyle(document.documentElement);
   colors = Object.fromEntries(
-    ['sea', 'ring', 'scale', 'echo', 'trail', 'target', 'coasting', 'danger', 'label', 'own', 'selected', 'cursor', 'marker', 'safe'].map(
-      (name) => [name, style.getPropertyValue(`--${name}`).trim()],
-    ),
+    [
+      'sea',
+      'ring',
+      'scale',
+      'echo',
+      'trail',
+      'target',
+      'coasting',
+      'danger',
+      'label',
+      'own',
+      'selected',
+      'cursor',
+      'marker',
+      'safe',
+    ].map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),
   );
   const words = {
     orientation: settings.orientation,
@@ -130,7 +143,8 @@ function fillTrial() {
   const form = /** @type {HTMLFormElement} */ (panel.element('trial'));
   if (!state.own || state.trial.on) return;
   const course = degrees(wrap(Math.atan2(state.own.vx, state.own.vy)));
-  form.elements.course_deg.value = Math.round(state.own.heading === null ? course : degrees(state.own.heading)) % 360;
+  form.elements.course_deg.value =
+    Math.round(state.own.heading === null ? course : degrees(state.own.heading)) % 360;
   form.elements.speed_kn.value = (Math.hypot(state.own.vx, state.own.vy) / KNOT).toFixed(1);
 }
 
@@ -201,11 +215,14 @@ function cancel() {
 }
 
 function mark() {
-  marks.marker = marks.marker ? null : (marks.cursor ?? (pointer && toMap(scopeNow().view, ...pointer)));
+  marks.marker = marks.marker
+    ? null
+    : (marks.cursor ?? (pointer && toMap(scopeNow().view, ...pointer)));
   dirty = true;
 }
 
-const at = (/** @type {MouseEvent} */ event) => /** @type {[number, number]} */ ([event.offsetX, event.offsetY]);
+const at = (/** @type {MouseEvent} */ event) =>
+  /** @type {[number, number]} */ ([event.offsetX, event.offsetY]);
 canvas.addEventListener('pointermove', (event) => {
   pointer = at(event);
   dirty = true;
@@ -219,7 +236,9 @@ canvas.addEventListener('dblclick', (event) => {
   selectAt(...at(event));
   if (marks.id === null) acquire();
 });
-canvas.addEventListener('wheel', (event) => zoom(Math.sign(event.deltaY)), { passive: true });
+canvas.addEventListener('wheel', (event) => zoom(Math.sign(event.deltaY)), {
+  passive: true,
+});
 
 const KEYS = {
   '+': () => zoom(-1),
@@ -235,13 +254,22 @@ const KEYS = {
   n: chooseNext,
   e: mark,
   q: acquire,
-  a: () => (chosen()?.alarm ? command('acknowledge', { number: chosen().number }) : command('acknowledge_all')),
+  a: () =>
+    chosen()?.alarm
+      ? command('acknowledge', { number: chosen().number })
+      : command('acknowledge_all'),
   Delete: cancel,
   Escape: () => choose(null),
 };
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const ARROWS = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
 document.addEventListener('keydown', (event) => {
-  if (event.ctrlKey || event.altKey || event.metaKey || event.target instanceof HTMLInputElement) return;
+  if (event.ctrlKey || event.altKey || event.metaKey || event.target instanceof HTMLInputElement)
+    return;
   if (document.activeElement === canvas) {
     const step = ARROWS[event.key];
     if (step) {
@@ -274,10 +302,14 @@ for (const [id, name] of [
   ['trial', 'trial'],
   ['limits', 'limits'],
 ]) {
-  panel.element(id).addEventListener('submit', (event) => {
+  const form = /** @type {HTMLFormElement} */ (panel.element(id));
+  form.querySelector('.submit').addEventListener('click', () => form.requestSubmit());
+  form.addEventListener('submit', (event) => {
     event.preventDefault();
-    const form = new FormData(/** @type {HTMLFormElement} */ (event.target));
-    command(name, Object.fromEntries([...form].map(([key, value]) => [key, Number(value)])));
+    command(
+      name,
+      Object.fromEntries([...new FormData(form)].map(([key, value]) => [key, Number(value)])),
+    );
   });
 }
 panel.element('trial-box').addEventListener('toggle', fillTrial);
@@ -297,4 +329,13 @@ setInterval(showStale, 500);
 requestAnimationFrame(frame);
 
 // For tests, and for whoever looks from the console.
-window.ppi = { state, settings, marks, scopeNow, toScreen, toMap, rangeBearing, CHOICES };
+window.ppi = {
+  state,
+  settings,
+  marks,
+  scopeNow,
+  toScreen,
+  toMap,
+  rangeBearing,
+  CHOICES,
+};

@@ -5,7 +5,12 @@ import * as format from './format.js';
 import { COASTING, LOST, ACQUIRING, nameOf } from './state.js';
 import { RANGES } from './settings.js';
 
-const STATUS = { [ACQUIRING]: 'acquiring', 1: 'tracking', [COASTING]: 'coasting', [LOST]: 'lost' };
+const STATUS = {
+  [ACQUIRING]: 'acquiring',
+  1: 'tracking',
+  [COASTING]: 'coasting',
+  [LOST]: 'lost',
+};
 const MOTION = ['steady', 'manoeuvring', 'at rest'];
 /** Of alerts, as they are listed. */
 const STATES = ['active unacknowledged', 'rectified unacknowledged', 'active acknowledged'];
@@ -42,7 +47,8 @@ function fill(/** @type {HTMLElement} */ list, /** @type {string[][]} */ figures
     say(list.children[2 * row], term);
     const [main, small] = list.children[2 * row + 1].children;
     say(main, value.startsWith(format.NONE) ? format.NONE : value); // no unit of nothing
-    say(small, deviation && deviation !== format.NONE ? `±${deviation}` : '');
+    const known = deviation && deviation !== format.NONE && !value.startsWith(format.NONE);
+    say(small, known ? `±${deviation}` : '');
   });
 }
 
@@ -62,7 +68,9 @@ export function showOwnShip(/** @type {import('./state.js').State} */ state) {
 export function showSelected(/** @type {import('./state.js').Target|undefined} */ target) {
   say(
     element('selected-name'),
-    target ? `${nameOf(target)}, ${STATUS[target.status]}, ${MOTION[target.motion]}` : 'No target selected',
+    target
+      ? `${nameOf(target)}, ${STATUS[target.status]}, ${MOTION[target.motion]}`
+      : 'No target selected',
   );
   if (!target) return fill(element('selected'), []);
   const figures = [
@@ -101,8 +109,14 @@ export function showAlarms(state, mayCommand, acknowledge) {
   const items = alarms.map((alarm) => {
     const item = old.get(alarm.name) ?? newAlarm(alarm.name);
     item.className = `${alarm.priority} ${alarm.state}`;
-    const [text, button] = item.children;
     const over = alarm.state.startsWith('rectified') ? 'Over: ' : '';
+    const [icon, text, button] = item.children;
+    const about = {
+      type: alarm.priority,
+      active: !over,
+      acknowledged: !waits(alarm),
+    };
+    Object.assign(icon, about);
     say(text, over + (alarm.text || alarm.name));
     button.hidden = !(waits(alarm) && alarm.number);
     button.disabled = !mayCommand;
@@ -117,10 +131,10 @@ export function showAlarms(state, mayCommand, acknowledge) {
 function newAlarm(/** @type {string} */ name) {
   const item = document.createElement('li');
   item.dataset.name = name;
-  const button = document.createElement('button');
+  const button = document.createElement('obc-button');
   button.textContent = 'Ack';
   button.title = `Acknowledge ${name}`;
-  item.append(document.createElement('span'), button);
+  item.append(document.createElement('obc-alert-icon'), document.createElement('span'), button);
   return item;
 }
 
@@ -150,7 +164,8 @@ export function showTargets(targets, sorted, chosen, choose) {
     .filter((t) => t.status !== LOST)
     .sort((a, b) => (sorted.danger ? b.alarm - a.alarm : 0) || sorted.sign * (order(a) - order(b)));
   say(element('count'), String(inOrder.length));
-  for (const [id, row] of rows) if (!inOrder.some((t) => t.id === id)) rows.delete(id) && row.remove();
+  for (const [id, row] of rows)
+    if (!inOrder.some((t) => t.id === id)) rows.delete(id) && row.remove();
   inOrder.forEach((target, place) => {
     let row = rows.get(target.id);
     if (!row) {
@@ -185,7 +200,7 @@ export function showCorners(state, settings, scope, marks, pointer) {
   say(
     element('scale'),
     `${range} NM\n${settings.rings === 'on' ? `rings ${rings} NM` : 'no rings'}\n` +
-      `${scope.orientation}, relative motion${missing}`,
+      `${scope.orientation}\nrelative motion${missing}`,
   );
   say(
     element('modes'),
@@ -209,18 +224,27 @@ export function showCorners(state, settings, scope, marks, pointer) {
 export function showState(state) {
   const parts = Object.entries(state.health).filter(([, part]) => part.level !== 'ok');
   const estimator = Object.values(state.health).find((part) => part.estimator)?.estimator ?? '';
-  say(element('health-is'), `${parts.length ? `${parts.length} to look at` : 'all well'}${estimator && `, estimator ${estimator}`}`);
-  const lines = Object.entries(state.health).map(([name, part]) => `${part.level}: ${name}: ${part.text}`);
+  say(
+    element('health-is'),
+    `${parts.length ? `${parts.length} to look at` : 'all well'}${estimator && `, estimator ${estimator}`}`,
+  );
+  const lines = Object.entries(state.health).map(
+    ([name, part]) => `${part.level}: ${name}: ${part.text}`,
+  );
   const list = element('health');
   while (list.children.length > lines.length) list.lastChild?.remove();
-  lines.forEach((line, k) => say(list.children[k] ?? list.appendChild(document.createElement('li')), line));
+  lines.forEach((line, k) =>
+    say(list.children[k] ?? list.appendChild(document.createElement('li')), line),
+  );
   const limits = state.limits;
   say(
     element('limits-are'),
     limits ? `CPA ${limits.cpa_limit_nm} NM in ${limits.tcpa_limit_min} min` : format.NONE,
   );
   const off = Math.abs(state.clockError) > CLOCK_S;
-  const clock = off ? `This device's clock is ${Math.round(state.clockError)} s off; ages do not depend on it. ` : '';
+  const clock = off
+    ? `This device's clock is ${Math.round(state.clockError)} s off; ages do not depend on it. `
+    : '';
   say(element('role'), clock + (state.role.commands ? '' : state.role.why || 'Looking only.'));
   say(element('trial-says'), trialSays(state.trial));
 }
@@ -228,9 +252,13 @@ export function showState(state) {
 function trialSays(trial) {
   if (!trial.on) return '';
   if (!trial.safe_deg) return trial.text;
-  const safe = trial.safe_deg.map(([a, b]) => `${String(a).padStart(3, '0')}–${String(b).padStart(3, '0')}`);
+  const safe = trial.safe_deg.map(
+    ([a, b]) => `${String(a).padStart(3, '0')}–${String(b).padStart(3, '0')}`,
+  );
   const dangers = trial.targets.filter((target) => target.danger);
-  const told = dangers.map((t) => `${t.name} CPA ${format.number(t.cpa_nm, 2)} NM in ${format.number(t.tcpa_min, 1)} min`);
+  const told = dangers.map(
+    (t) => `${t.name} CPA ${format.number(t.cpa_nm, 2)} NM in ${format.number(t.tcpa_min, 1)} min`,
+  );
   return (
     `TRIAL ${format.number(trial.course_deg, 0)}°, ${format.number(trial.speed_kn, 1)} kn` +
     `${trial.countdown_min ? `, begins in ${format.number(trial.countdown_min, 1)} min` : ''}. ` +

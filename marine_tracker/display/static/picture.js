@@ -24,7 +24,7 @@ import {
 } from './state.js';
 import * as symbols from './symbols.js';
 
-const MARGIN = 34; // px, for the bearing scale
+const MARGIN = 40; // px, for the bearing scale
 const GLOW_S = 30; // an echo has faded after so long
 const OFF = 0.5; // of the radius: how far own ship is moved back when off-centre
 const ELLIPSE_SIGMA = 2;
@@ -192,7 +192,11 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
     if (target.x === null || target.status === LOST) continue;
     const [x, y] = toScreen(view, target.x, target.y);
     const danger = target.alarm >= ACKNOWLEDGED;
-    const color = danger ? colors.danger : target.status === COASTING ? colors.coasting : colors.target;
+    const color = danger
+      ? colors.danger
+      : target.status === COASTING
+        ? colors.coasting
+        : colors.target;
     const [right, down] = turned(view, ...vectorOf(settings, state.own, target.vx, target.vy));
     const beyond = Math.hypot(x - middleX, y - middleY) - radius;
     if (danger && beyond > 0 && shown) drawBeyond(canvas, scope, target, colors);
@@ -266,4 +270,3 @@ export function targetAt(/** @type {State} */ state, /** @type {View} */ view, x
   }
   return found;
 }
-

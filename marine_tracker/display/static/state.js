@@ -62,7 +62,11 @@ export function receive(state, message, local) {
   switch (message.kind) {
     case 'targets':
       state.targets = rows(message.columns);
-      state.scan = { at: message.at, time: message.time, period: message.period };
+      state.scan = {
+        at: message.at,
+        time: message.time,
+        period: message.period,
+      };
       break;
     case 'plots':
       if (state.plots.length && message.stamp < state.plots[state.plots.length - 1].stamp) {
@@ -81,7 +85,7 @@ export function receive(state, message, local) {
       state.role = { commands: message.commands, why: message.why };
       break;
     case 'pulse':
-      state.clockError = (Date.now() / 1000 - message.utc) || 0;
+      state.clockError = Date.now() / 1000 - message.utc || 0;
       break;
     case 'own':
     case 'trails':

@@ -15,7 +15,13 @@ export function drawMarks(canvas, { view, middleX, middleY, radius }, colors, ma
     canvas.lineTo(...edge(view, bearing, middleX, middleY, radius));
     canvas.stroke();
     canvas.beginPath();
-    canvas.arc(view.centreX, view.centreY, Math.hypot(x - view.centreX, y - view.centreY), 0, 2 * Math.PI);
+    canvas.arc(
+      view.centreX,
+      view.centreY,
+      Math.hypot(x - view.centreX, y - view.centreY),
+      0,
+      2 * Math.PI,
+    );
     canvas.stroke();
     canvas.setLineDash([]);
   }

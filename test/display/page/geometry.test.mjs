@@ -9,17 +9,36 @@ const { NAUTICAL_MILE, radians, degrees, wrap, toScreen, toMap, rangeBearing, ed
 
 const HEADINGS = [0, 37, 90, 143.5, 180, 271, 359.6];
 const own = (heading) => ({ x: 41234.5, y: -7020.25, vx: 3, vy: 4, heading });
-const settings = (more) => ({ range: 4, orientation: 'north-up', offCentre: 'off', ...more });
+const settings = (more) => ({
+  range: 4,
+  orientation: 'north-up',
+  offCentre: 'off',
+  ...more,
+});
 const near = (a, b, within) => assert.ok(Math.abs(a - b) <= within, `${a} is not ${b}`);
 
 for (const orientation of ['north-up', 'head-up', 'course-up']) {
   for (const offCentre of ['off', 'on']) {
     test(`pixel to map and back, ${orientation}, off-centre ${offCentre}`, () => {
       for (const heading of HEADINGS) {
-        for (const [width, height] of [[813, 640], [1220, 960], [1626, 1280]]) {
+        for (const [width, height] of [
+          [813, 640],
+          [1220, 960],
+          [1626, 1280],
+        ]) {
           const state = { own: own(radians(heading)) };
-          const { view } = scopeOf(state, settings({ orientation, offCentre }), width, height, radians(211));
-          for (const [px, py] of [[12, 700], [400.5, 3.25], [view.centreX, view.centreY]]) {
+          const { view } = scopeOf(
+            state,
+            settings({ orientation, offCentre }),
+            width,
+            height,
+            radians(211),
+          );
+          for (const [px, py] of [
+            [12, 700],
+            [400.5, 3.25],
+            [view.centreX, view.centreY],
+          ]) {
             const back = toScreen(view, ...toMap(view, px, py));
             near(back[0], px, 1e-6);
             near(back[1], py, 1e-6);
@@ -72,7 +91,10 @@ test('a yawing ship leaves a pier where it is, in all orientations but head-up i
   for (const orientation of ['north-up', 'course-up']) {
     const places = [-20, -7, 0, 11, 20].map((yaw) => {
       const state = { own: own(radians(80 + yaw)) };
-      return toScreen(scopeOf(state, settings({ orientation }), 900, 700, radians(80)).view, ...pier);
+      return toScreen(
+        scopeOf(state, settings({ orientation }), 900, 700, radians(80)).view,
+        ...pier,
+      );
     });
     for (const [x, y] of places) {
       near(x, places[2][0], 1e-9);
@@ -82,7 +104,13 @@ test('a yawing ship leaves a pier where it is, in all orientations but head-up i
 });
 
 test('without a heading the picture is north-up and says so', () => {
-  const scope = scopeOf({ own: own(null) }, settings({ orientation: 'head-up', offCentre: 'on' }), 500, 500, 1);
+  const scope = scopeOf(
+    { own: own(null) },
+    settings({ orientation: 'head-up', offCentre: 'on' }),
+    500,
+    500,
+    1,
+  );
   assert.equal(scope.orientation, 'north-up');
   assert.equal(scope.view.up, 0);
   assert.equal(scope.view.centreX, 250);

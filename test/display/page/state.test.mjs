@@ -3,7 +3,9 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 const page = new URL('../../../marine_tracker/display/static/', import.meta.url);
-const { emptyState, receive, reconnected, serverNow, staleness } = await import(new URL('state.js', page));
+const { emptyState, receive, reconnected, serverNow, staleness } = await import(
+  new URL('state.js', page)
+);
 const format = await import(new URL('format.js', page));
 const { placed } = await import(new URL('labels.js', page));
 
@@ -28,7 +30,8 @@ test('a live picture is live, and stale 3 s after the last word', () => {
 
 test('a server that still talks does not make old data young', () => {
   const state = live(20);
-  for (let local = 21; local < 24; local++) receive(state, { kind: 'pulse', now: SERVER + local }, local);
+  for (let local = 21; local < 24; local++)
+    receive(state, { kind: 'pulse', now: SERVER + local }, local);
   assert.match(staleness(state, 23.5), /No own ship for 3 s/);
 });
 
@@ -62,14 +65,19 @@ test('plots of another run push those of the last one out', () => {
   for (const stamp of [100, 103, 106, 2]) {
     receive(state, { kind: 'plots', now: 1, at: 1, stamp, x: [], y: [] }, 1);
   }
-  assert.deepEqual(state.plots.map((scan) => scan.stamp), [2]);
-  for (let stamp = 3; stamp < 60; stamp++) receive(state, { kind: 'plots', now: 1, at: 1, stamp }, 1);
+  assert.deepEqual(
+    state.plots.map((scan) => scan.stamp),
+    [2],
+  );
+  for (let stamp = 3; stamp < 60; stamp++)
+    receive(state, { kind: 'plots', now: 1, at: 1, stamp }, 1);
   assert.ok(state.plots.length < 20);
 });
 
 test('what is not known is a dash, and north is north', () => {
   for (const show of [format.bearing, format.miles, format.knots, format.minutes]) {
-    for (const nothing of [null, undefined, NaN, Infinity]) assert.equal(show(nothing), format.NONE);
+    for (const nothing of [null, undefined, NaN, Infinity])
+      assert.equal(show(nothing), format.NONE);
   }
   assert.equal(format.bearing(0), '000.0');
   assert.equal(format.bearing(2 * Math.PI - 1e-5), '000.0');
