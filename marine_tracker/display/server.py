@@ -81,7 +81,7 @@ class DisplayServer:
         on_command: Callable[[Command], Future[str]],
         anybody_commands: bool = False,
         token: str | None = None,
-    ):
+    ) -> None:
         self._host, self.port = read_address(address)
         self._on_command, self._anybody = on_command, anybody_commands
         self.token = token or access.new_token()

@@ -7,11 +7,14 @@ Times cross this border as integer nanoseconds, for a float of seconds since 197
 
 import array
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point32, Quaternion
 from nav_msgs.msg import Odometry
+from numpy.typing import NDArray
 from sensor_msgs.msg import (
     ChannelFloat32,
     NavSatFix,
@@ -23,7 +26,7 @@ from sensor_msgs.msg import (
 from std_msgs.msg import Header
 
 from ..geometry import own_ship_at, unit_vector
-from ..types import Array, PolarPlots, Scan
+from ..types import Array, IntArray, PolarPlots, Scan
 from .topics import FRAME, OWN_SHIP_FRAME
 
 PLOT_FIELDS = ('x', 'y', 'z', 'range', 'bearing', 'amplitude', 'time_offset')
@@ -62,7 +65,7 @@ TRACK_TYPE = np.dtype(
 class ConversionError(ValueError):
     """A message that cannot be read; `reason` is the name of its counter."""
 
-    def __init__(self, reason: str, text: str):
+    def __init__(self, reason: str, text: str) -> None:
         super().__init__(f'{reason}: {text}')
         self.reason = reason
 
@@ -90,12 +93,13 @@ def header(time_ns: int, frame: str = FRAME) -> Header:
     return Header(stamp=time_message(time_ns), frame_id=frame)
 
 
-def cloud_message(rows, time_ns: int) -> PointCloud2:
+def cloud_message(rows: NDArray[np.void], time_ns: int) -> PointCloud2:
     """A PointCloud2 of a structured array [M] of little-endian fields."""
     kinds = {kind: datatype for datatype, kind in KINDS.items()}
+    layout: Any = rows.dtype
     fields = []
-    for name in rows.dtype.names:
-        kind, offset = rows.dtype.fields[name]
+    for name in layout.names:
+        kind, offset = layout.fields[name]
         fields.append(PointField(name=name, offset=offset, datatype=kinds[kind.str[1:]], count=1))
     return PointCloud2(
         header=header(time_ns),
@@ -220,7 +224,7 @@ def _rounded(values, parts: int):
     return np.round(np.asarray(values) * parts) / parts
 
 
-def own_ship_to_odometry(time_ns: int, position, velocity) -> Odometry:
+def own_ship_to_odometry(time_ns: int, position: Array, velocity: Array) -> Odometry:
     """Own ship's position and velocity [2], m and m/s east and north; yaw is its course."""
     pool = OdometryPool()
     message = pool.fill(
@@ -270,10 +274,17 @@ class OdometryPool:
     What `fill` returns is valid until the next `fill`.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._messages: list[Odometry] = []
 
-    def fill(self, times_ns, child_frames, position, velocity, covariance) -> list[Odometry]:
+    def fill(
+        self,
+        times_ns: Sequence[int] | IntArray,
+        child_frames: Sequence[str],
+        position: Array,
+        velocity: Array,
+        covariance: Array,
+    ) -> list[Odometry]:
         """N messages.
 
         times_ns [N] int; child_frames N strings; position, velocity [N, 2] m, m/s;

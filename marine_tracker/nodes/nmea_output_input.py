@@ -108,7 +108,7 @@ class OwnShipInput:
     origin  the frame `map`; None: fixes tell where own ship is
     """
 
-    def __init__(self, origin: LocalFrame | None):
+    def __init__(self, origin: LocalFrame | None) -> None:
         self._from_fixes = origin is None
         self.anchor = None if origin is None else Anchor(np.zeros(2), origin)
         self.time_ns: int | None = None  # of the last odometry
@@ -152,7 +152,7 @@ class OwnShipInput:
             float(latitude), float(longitude), float(speed), float(course), self._heading
         )
 
-    def target_places(self, time_ns: int, offset) -> tuple[Array, Array]:
+    def target_places(self, time_ns: int, offset: Array) -> tuple[Array, Array]:
         """Latitude and longitude [...] deg at offsets [..., 2] m from own ship; nan if not known.
 
         The offset is laid off from own ship over the Earth, with y true north there, and not in

@@ -43,7 +43,7 @@ class Operator:
     picture  of the last scan; None before the first
     """
 
-    def __init__(self, node: RunnableNode, service: Service, hardware_id: str):
+    def __init__(self, node: RunnableNode, service: Service, hardware_id: str) -> None:
         self._node = node
         self._hardware_id = hardware_id
         self.service = service

@@ -72,7 +72,7 @@ class Playback:
         loop: bool,
         origin: LocalFrame | None = None,
         begin_at: float = 0.0,
-    ):
+    ) -> None:
         if begin_at and rate != 1:
             raise ValueError(
                 f'begin_at_s is {begin_at:g} s beside a rate of {rate:g}; it needs '
