@@ -46,7 +46,7 @@ function want(text) {
   }
 }
 want(code);
-want(readFileSync(join(folder, 'style.css'), 'utf8'));
+for (const name of ['colours.css', 'style.css']) want(readFileSync(join(folder, name), 'utf8'));
 const kept = blocks
   .map(({ selector, lines }) => [selector, lines.filter(([name]) => wanted.has(name))])
   .filter(([selector, lines]) => lines.length && !selector.startsWith('@'))

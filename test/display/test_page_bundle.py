@@ -14,7 +14,8 @@ BUILT = ('openbridge.js', 'openbridge.css')
 def test_a_build_of_the_bundle_gives_the_committed_one(tmp_path):
     if not (ROOT / 'web' / 'node_modules').is_dir() or not shutil.which('node'):
         pytest.skip('web/node_modules is missing (cd web && npm ci): the bundle is not rebuilt')
-    shutil.copy(STATIC / 'style.css', tmp_path)
+    for name in ('colours.css', 'style.css'):
+        shutil.copy(STATIC / name, tmp_path)
     done = subprocess.run(
         ['node', 'build.mjs', tmp_path],
         cwd=ROOT / 'web',

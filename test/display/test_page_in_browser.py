@@ -4,6 +4,7 @@ import asyncio
 import math
 import time
 from concurrent.futures import Future
+from pathlib import Path
 
 import pytest
 
@@ -207,6 +208,64 @@ def test_data_alarms_and_commands():
         assert stage.commands[5].values == {'cpa_nm': 0.7, 'tcpa_min': 15.0}
 
     on_stage(act)
+
+
+def test_dragging_own_ships_vector_tries_a_manoeuvre():
+    async def act(page, stage):
+        # Own ship: 5 m/s on 037, vectors of 6 min; the radius is 3 NM.
+        box = await page.evaluate(
+            '(({x, y, width, height}) => [x, y, width, height])'
+            "(document.getElementById('picture').getBoundingClientRect())"
+        )
+        scale = (min(box[2], box[3]) / 2 - 40) / (3 * 1852)
+        middle = (box[0] + box[2] / 2, box[1] + box[3] / 2)
+
+        def place(course_deg, speed_mps):
+            length, course = speed_mps * 360 * scale, math.radians(course_deg)
+            x = middle[0] + length * math.sin(course)
+            return {'x': x, 'y': middle[1] - length * math.cos(course)}
+
+        async def mouse(kind, at):
+            await page.call('Input.dispatchMouseEvent', type=kind, button='left', **at)
+
+        await mouse('mousePressed', place(37, 5))
+        for course in (60, 90, 121):
+            await mouse('mouseMoved', place(course, 7))
+        await mouse('mouseReleased', place(121, 7))
+        while not stage.commands:
+            await asyncio.sleep(0.05)
+        (trial,) = stage.commands
+        assert trial.name == 'trial' and trial.values['delay_min'] == 0
+        assert trial.values['course_deg'] == pytest.approx(121, abs=1)
+        assert trial.values['speed_kn'] == pytest.approx(7 * 3600 / 1852, abs=0.15)
+        # What is not on the handle is a click, and no trial.
+        await page.click(*place(250, 5).values())
+        await page.until('ppi.marks.cursor')
+        assert len(stage.commands) == 1
+
+    on_stage(act, '?range=3')
+
+
+@pytest.mark.parametrize('palette', ['day', 'dusk', 'night'])
+def test_the_page_is_accessible(palette):
+    axe = Path(__file__).resolve().parents[2] / 'web/node_modules/axe-core/axe.min.js'
+    if not axe.exists():
+        pytest.skip('web/node_modules is missing (cd web && npm ci): axe is not run')
+
+    async def act(page, stage):
+        await page.evaluate(
+            "for (const one of document.querySelectorAll('details')) one.open = true;"
+            'ppi.marks.id = 104'
+        )
+        await page.until("document.getElementById('selected-name').textContent.startsWith('TT04')")
+        await page.evaluate(axe.read_text() + '; 1')
+        found = await page.evaluate(
+            'axe.run().then(({violations}) => violations.map(one =>'
+            ' [one.id, ...one.nodes.map(node => node.failureSummary)]))'
+        )
+        assert found == []
+
+    on_stage(act, f'?palette={palette}')
 
 
 def test_a_silent_server_gets_the_red_cross_until_it_speaks_again():

@@ -1,6 +1,7 @@
 // The page: puts link, state, picture, panel and controls together.
 
-import { KNOT, degrees, rangeBearing, toMap, toScreen, wrap } from './geometry.js';
+import * as forms from './forms.js';
+import { rangeBearing, toMap, toScreen } from './geometry.js';
 import { Link } from './link.js';
 import * as panel from './panel.js';
 import { draw, scopeOf, targetAt } from './picture.js';
@@ -9,18 +10,20 @@ import { emptyState, receive, reconnected, staleness, unacknowledged } from './s
 
 const REDRAW_MS = 250; // at least: echoes fade, dangers flash
 const PANEL_MS = 200;
+const MOST_LINES = 2;
 const STEP_PX = 8; // of the cursor by a key
 
 const state = emptyState();
 const settings = load(location.search);
 const canvas = /** @type {HTMLCanvasElement} */ (panel.element('picture'));
 const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
-/** @type {{id: number|null, cursor: number[]|null, marker: number[]|null}} */
-const marks = { id: null, cursor: null, marker: null };
+/** @type {import('./surround.js').Marks} */
+const marks = { id: null, cursor: null, lines: [], drag: null };
 const sorted = { column: 6, sign: 1, danger: true };
 /** @type {[number, number]|null} */
 let pointer = null; // px, while the mouse is over the picture
 let courseUp = 0; // rad, when course-up was chosen
+let dragged = false; // own ship's vector, by the last press of the mouse
 let dirty = true;
 let saidUntil = 0;
 let drawn = -Infinity;
@@ -34,7 +37,7 @@ const link = new Link(
   (message) => {
     receive(state, message, seconds());
     if (message.kind === 'alarms') showTitle();
-    if (message.kind === 'limits') fillLimits(message);
+    if (message.kind === 'limits') forms.fillLimits(message);
     dirty = true;
   },
   () => reconnected(state),
@@ -138,24 +141,6 @@ function applySettings() {
   dirty = true;
 }
 
-/** A trial begins from what own ship does now. */
-function fillTrial() {
-  const form = /** @type {HTMLFormElement} */ (panel.element('trial'));
-  if (!state.own || state.trial.on) return;
-  const course = degrees(wrap(Math.atan2(state.own.vx, state.own.vy)));
-  form.elements.course_deg.value =
-    Math.round(state.own.heading === null ? course : degrees(state.own.heading)) % 360;
-  form.elements.speed_kn.value = (Math.hypot(state.own.vx, state.own.vy) / KNOT).toFixed(1);
-}
-
-/** The tracker's limits into their form, unless somebody types there. */
-function fillLimits(/** @type {Record<string, number>} */ limits) {
-  const form = /** @type {HTMLFormElement} */ (panel.element('limits'));
-  if (form.contains(document.activeElement)) return;
-  form.elements.cpa_nm.value = limits.cpa_limit_nm;
-  form.elements.tcpa_min.value = limits.tcpa_limit_min;
-}
-
 // -- in --------------------------------------------------------------------------------------
 
 function change(/** @type {string} */ name, /** @type {any} */ value) {
@@ -214,24 +199,43 @@ function cancel() {
   if (target?.number) command('cancel', { number: target.number });
 }
 
+/** A bearing line with a range marker at the cursor; after two of them, none. */
 function mark() {
-  marks.marker = marks.marker
-    ? null
-    : (marks.cursor ?? (pointer && toMap(scopeNow().view, ...pointer)));
+  const place = marks.cursor ?? (pointer && toMap(scopeNow().view, ...pointer));
+  if (marks.lines.length === MOST_LINES) marks.lines = [];
+  else if (place && state.own) {
+    marks.lines.push(rangeBearing(state.own.x, state.own.y, place[0], place[1]));
+  }
   dirty = true;
 }
 
 const at = (/** @type {MouseEvent} */ event) =>
   /** @type {[number, number]} */ ([event.offsetX, event.offsetY]);
+canvas.addEventListener('pointerdown', (event) => {
+  const handle = forms.handleOf(state, settings, scopeNow().view);
+  marks.drag = state.role.commands && forms.grips(handle, at(event)) ? at(event) : null;
+  dragged = false;
+  if (marks.drag) canvas.setPointerCapture(event.pointerId);
+});
 canvas.addEventListener('pointermove', (event) => {
   pointer = at(event);
   dirty = true;
+  if (!marks.drag) return;
+  dragged = true;
+  marks.drag = pointer;
+  forms.dragTo(state, settings, scopeNow().view, pointer);
+});
+canvas.addEventListener('pointerup', () => {
+  if (marks.drag && dragged) forms.tryIt();
+  marks.drag = null;
 });
 canvas.addEventListener('pointerleave', () => {
   pointer = null;
   dirty = true;
 });
-canvas.addEventListener('click', (event) => selectAt(...at(event)));
+canvas.addEventListener('click', (event) => {
+  if (!dragged) selectAt(...at(event));
+});
 canvas.addEventListener('dblclick', (event) => {
   selectAt(...at(event));
   if (marks.id === null) acquire();
@@ -298,21 +302,10 @@ for (const [id, act] of Object.entries({
 })) {
   panel.element(id).addEventListener('click', act);
 }
-for (const [id, name] of [
-  ['trial', 'trial'],
-  ['limits', 'limits'],
-]) {
-  const form = /** @type {HTMLFormElement} */ (panel.element(id));
-  form.querySelector('.submit').addEventListener('click', () => form.requestSubmit());
-  form.addEventListener('submit', (event) => {
-    event.preventDefault();
-    command(
-      name,
-      Object.fromEntries([...new FormData(form)].map(([key, value]) => [key, Number(value)])),
-    );
-  });
-}
-panel.element('trial-box').addEventListener('toggle', fillTrial);
+forms.listen(command);
+panel.element('trial-box').addEventListener('toggle', () => {
+  if (!dragged) forms.fillTrial(state);
+});
 panel.makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;

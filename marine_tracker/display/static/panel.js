@@ -1,6 +1,6 @@
 // What stands beside the picture: own ship, alarms, the selected target, the table, the state.
 
-import { NAUTICAL_MILE, rangeBearing, toMap } from './geometry.js';
+import { rangeBearing, toMap } from './geometry.js';
 import * as format from './format.js';
 import { COASTING, LOST, ACQUIRING, nameOf } from './state.js';
 import { RANGES } from './settings.js';
@@ -207,16 +207,16 @@ export function showCorners(state, settings, scope, marks, pointer) {
     `vectors ${settings.vectors}, ${settings.vectorMinutes} min\n` +
       `trails ${settings.trails}${settings.trails === 'off' ? '' : `, ${settings.trailMinutes} min`}`,
   );
-  const places = [
-    ['cursor', pointer ? toMap(scope.view, ...pointer) : marks.cursor],
-    ['EBL/VRM', marks.marker],
-  ];
-  const lines = places.flatMap(([name, at]) => {
-    if (!at || !state.own) return [];
-    const [away, bearing] = rangeBearing(state.own.x, state.own.y, at[0], at[1]);
-    return [`${name} ${format.bearing(bearing)}° ${(away / NAUTICAL_MILE).toFixed(2)} NM`];
-  });
-  say(element('cursor'), lines.join('\n'));
+  const lines = [];
+  const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
+  if (place && state.own) {
+    lines.push(['cursor', rangeBearing(state.own.x, state.own.y, place[0], place[1])]);
+  }
+  marks.lines.forEach((line, k) => lines.push([`EBL${k + 1}/VRM${k + 1}`, line]));
+  const told = lines.map(
+    ([name, [away, angle]]) => `${name} ${format.bearing(angle)}° ${format.miles(away)} NM`,
+  );
+  say(element('cursor'), told.join('\n'));
   say(element('time'), state.scan ? `${format.clock(state.scan.time)} UTC` : '');
 }
 

@@ -82,7 +82,7 @@ export function vectorOf(/** @type {Settings} */ settings, own, vx, vy) {
  * @param {CanvasRenderingContext2D} canvas  in CSS pixels
  * @param {State} state @param {Settings} settings @param {Scope} scope
  * @param {Record<string, string>} colors
- * @param {{id: number|null, cursor: number[]|null, marker: number[]|null}} marks  map positions
+ * @param {import('./surround.js').Marks} marks
  * @param {number} local s
  */
 export function draw(canvas, state, settings, scope, colors, marks, local) {

@@ -2,28 +2,42 @@
 
 import { canvasAngle, edge, radians, toScreen } from './geometry.js';
 
-/** Cursor, and the marker with its electronic bearing line and variable range marker. */
-export function drawMarks(canvas, { view, middleX, middleY, radius }, colors, marks) {
-  if (marks.marker) {
-    const [x, y] = toScreen(view, marks.marker[0], marks.marker[1]);
-    const bearing = Math.atan2(marks.marker[0] - view.originX, marks.marker[1] - view.originY);
+/**
+ * What the viewer has marked.
+ * @typedef {object} Marks
+ * @property {number|null} id           of the selected target's track
+ * @property {number[]|null} cursor     map position, m
+ * @property {number[][]} lines         range, m, and bearing, rad: electronic bearing lines
+ * @property {number[]|null} drag       px, to where own ship's vector is being dragged
+ */
+
+/** Cursor, bearing lines with their range markers, and the vector that is being dragged. */
+export function drawMarks(
+  canvas,
+  { view, middleX, middleY, radius },
+  colors,
+  /** @type {Marks} */ marks,
+) {
+  marks.lines.forEach(([range, bearing], place) => {
     canvas.strokeStyle = colors.marker;
     canvas.lineWidth = 1.2;
-    canvas.setLineDash([9, 5]);
+    canvas.setLineDash(place ? [3, 5] : [9, 5]);
     canvas.beginPath();
     canvas.moveTo(view.centreX, view.centreY);
     canvas.lineTo(...edge(view, bearing, middleX, middleY, radius));
     canvas.stroke();
     canvas.beginPath();
-    canvas.arc(
-      view.centreX,
-      view.centreY,
-      Math.hypot(x - view.centreX, y - view.centreY),
-      0,
-      2 * Math.PI,
-    );
+    canvas.arc(view.centreX, view.centreY, range * view.scale, 0, 2 * Math.PI);
     canvas.stroke();
     canvas.setLineDash([]);
+  });
+  if (marks.drag) {
+    canvas.strokeStyle = colors.safe;
+    canvas.lineWidth = 2;
+    canvas.beginPath();
+    canvas.moveTo(view.centreX, view.centreY);
+    canvas.lineTo(...marks.drag);
+    canvas.stroke();
   }
   if (marks.cursor) {
     const [x, y] = toScreen(view, marks.cursor[0], marks.cursor[1]);
