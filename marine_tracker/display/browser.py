@@ -148,6 +148,9 @@ async def open_page(address: str, width: int = 1280, height: int = 800) -> Async
                         mobile=False,
                     )
                     await page.call('Page.navigate', url=address)
+                    await page.until(
+                        "location.href != 'about:blank' && document.readyState == 'complete'"
+                    )
                     yield page
         finally:
             process.terminate()
