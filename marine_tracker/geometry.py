@@ -11,6 +11,7 @@ from .types import Array, OwnShip, Plots, PolarPlots
 
 NAUTICAL_MILE = 1852.0  # m
 KNOT = NAUTICAL_MILE / 3600.0  # m/s
+AT_REST = 0.25  # m/s; below this own ship makes no way
 Angle = TypeVar('Angle', float, Array)
 
 
@@ -42,6 +43,24 @@ def to_range_bearing(offset: Array) -> tuple[Array, Array]:
 def bearing_from_yaw(yaw: Angle) -> Angle:
     """Bearing, rad in [0, 2 pi), of a ROS yaw (counter-clockwise from east), and nan of nan."""
     return wrap_bearing(np.pi / 2 - yaw)
+
+
+def heading_from(velocity: Array, stated: Array) -> Array:
+    """Heading [...] rad: the course of the velocity [..., 2] m/s, or of who makes no way the stated
+    one [...], nan for none."""
+    course = wrap_bearing(np.arctan2(velocity[..., 0], velocity[..., 1]))
+    still = np.hypot(velocity[..., 0], velocity[..., 1]) < AT_REST
+    return np.where(still, wrap_bearing(stated), course)
+
+
+def heading_at(own_ship: OwnShip, time: float | Array) -> Array:
+    """Own ship's heading [...] rad at the times [...]; nan where it is not known."""
+    if own_ship.heading is None:
+        return np.full(np.shape(time), np.nan)
+    east, north = (
+        np.interp(time, own_ship.time, column) for column in unit_vector(own_ship.heading).T
+    )
+    return wrap_bearing(np.arctan2(east, north))
 
 
 def polar_to_position(

@@ -15,15 +15,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arpa.anchor import AT_REST
 from .arpa.arpa import Arpa, ArpaMemory, Picture
 from .arpa.view import Standing, standing
 from .estimators import Estimator
 from .extent.extents import Extents, ExtentsMemory
 from .extent.hulls import Shapes
+from .geometry import heading_from
 from .parameters import ArpaParameters, TrackerParameters, from_mapping
 from .tracking.tracker import Report, Tracker, TrackerMemory
-from .types import Array, Extrapolation, OwnShip, Scan, take
+from .types import Extrapolation, OwnShip, Scan, take
 
 
 class ServiceMemory(NamedTuple):
@@ -90,12 +90,12 @@ class Service:
     ) -> tuple[ServiceMemory, Output]:
         """One antenna revolution.
 
-        heading  rad, own ship's, true; nan where it is not known; None: see `course_over_ground`
+        heading  rad, own ship's, true; nan where it is not known; None: see `heading_of`
         """
         memory, done = self.track(memory, scan)
         fares = standing(done.report, self.tracker.estimator)
         if heading is None:
-            heading = course_over_ground(scan.own_ship)
+            heading = heading_of(scan.own_ship)
         known, picture = self.arpa.step(
             memory.arpa, done.scan, done.report, heading, fares.fallen_at
         )
@@ -136,10 +136,9 @@ def service_for(values: Mapping[str, Any], **changes: Any) -> Service:
     return Service(from_mapping(TrackerParameters, {**values, **changes}))
 
 
-def course_over_ground(own_ship: OwnShip) -> float:
-    """rad: own ship's course over ground in its last sample, which stands for her heading where no
-    compass is heard; nan where she makes no way."""
-    velocity: Array = own_ship.velocity[-1]
-    if np.hypot(*velocity) < AT_REST:
-        return float('nan')
-    return float(np.arctan2(*velocity))
+def heading_of(own_ship: OwnShip) -> float:
+    """rad: own ship's heading in her last sample; where none is told her course over ground stands
+    for it, and nan where she makes no way."""
+    if own_ship.heading is not None and np.isfinite(own_ship.heading[-1]):
+        return float(own_ship.heading[-1])
+    return float(heading_from(own_ship.velocity[-1], np.array(np.nan)))

@@ -28,11 +28,13 @@ class OwnShip(NamedTuple):
     time      [K]     s
     position  [K, 2]  m, east and north: where the antenna is
     velocity  [K, 2]  m/s, east and north, over ground
+    heading   [K]     rad, true, as it is told; nan where it is not, None: of no sample
     """
 
     time: Array
     position: Array
     velocity: Array
+    heading: Array | None = None
 
 
 class PolarPlots(NamedTuple):

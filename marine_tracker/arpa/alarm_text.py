@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from ..geometry import NAUTICAL_MILE
+from ..geometry import KNOT, NAUTICAL_MILE
 from . import alarms
 from .alerts import Alerts
 from .targets import label
@@ -59,6 +59,8 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
     if kind == alarms.SWAP_RISK:
         other = f'TT{third:02.0f}' if third else 'a track that is not confirmed'
         return f'{name} may be swapped with {other}, at {where}'
+    if kind == alarms.OWN_SPEED:
+        return f"own ship's speed as told is {first / KNOT:.1f} kn off the way of her positions"
     silent = f'for {first:.0f} s' if math.isfinite(first) else 'so far'
     of = f' of radar {part}' if kind == alarms.PLOTS_MISSING and part != NO_LONGER else ''
     return f'no {alarms.NAMES[kind].removesuffix(" missing")}{of} {silent}'

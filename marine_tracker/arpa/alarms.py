@@ -16,6 +16,7 @@ alerts.py has the states of an alert. These are the kinds and their causes:
     heading, position, plots missing    not received for too long; plots of each radar
     fallback         at least a share of the confirmed targets have fallen back from their filter
     swap risk        the gate of a target overlaps that of another track
+    own speed        what is told of own ship's velocity is not the way that her positions make
 """
 
 from typing import NamedTuple
@@ -43,6 +44,7 @@ NAMES = (
     'plots missing',
     'fallback',
     'swap risk',
+    'own speed doubtful',
 )
 (
     DANGER,
@@ -55,6 +57,7 @@ NAMES = (
     PLOTS_MISSING,
     FALLBACK,
     SWAP_RISK,
+    OWN_SPEED,
 ) = range(len(NAMES))
 PRIORITY = (
     'alarm',
@@ -67,6 +70,7 @@ PRIORITY = (
     'warning',
     'caution',
     'caution',
+    'warning',
 )
 CAUTION = np.array([priority == 'caution' for priority in PRIORITY])
 MOMENTARY = np.arange(len(NAMES)) == LOST_TARGET
@@ -113,11 +117,15 @@ class Tracking(NamedTuple):
 
 
 class Silence(NamedTuple):
-    """Time, s, since each was last received; inf for never. plots: of each radar."""
+    """Time, s, since each was last received; inf for never. plots: of each radar.
+
+    speed_off  m/s, how far own ship's velocity as told is off that of her positions; 0: they agree
+    """
 
     heading: float
     position: float
     plots: tuple[float, ...]
+    speed_off: float = 0.0
 
 
 def step(
@@ -184,6 +192,7 @@ def watch(
         (kind, part, _causes(silent > settings.sensor_timeout, silent))
         for kind, part, silent in sensors
     ]
+    causes.append((OWN_SPEED, 0, _causes(silence.speed_off > 0, silence.speed_off)))
     return _advance(alerts, causes, settings, now)
 
 

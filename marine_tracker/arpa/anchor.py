@@ -9,12 +9,12 @@ does not apply above SWINGING, because then the anchor is not holding.
 import numpy as np
 
 from ..gaussian.linear import invert_2x2, squared_distance
+from ..geometry import AT_REST
 from ..types import BoolArray, OwnShip
 from .cpa import OwnMotion
 from .motion import Motion
 from .yaw import HISTORY
 
-AT_REST = 0.25  # m/s; below this own ship makes no way
 SWINGING = 1.0  # m/s; maximum speed of a ship at anchor
 BY_CHANCE = 11.8  # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
 SURELY = 3.0  # deviations of the speed towards own ship

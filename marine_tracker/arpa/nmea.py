@@ -62,6 +62,7 @@ class OwnShipData(NamedTuple):
     latitude, longitude  deg
     speed m/s, course rad  over ground or through the water, as `reference` (GROUND, WATER) says
     heading              rad, true
+    estimated            whether the position goes on from an old fix by dead reckoning
     """
 
     latitude: float = np.nan
@@ -70,6 +71,7 @@ class OwnShipData(NamedTuple):
     course: float = np.nan
     heading: float = np.nan
     reference: str = GROUND
+    estimated: bool = False
 
 
 def as_acquired(targets: Targets) -> Targets:
@@ -221,22 +223,25 @@ def rsd(
 
 
 def rmc(own: OwnShipData, time: float, talker: str = 'II') -> str:
-    """RMC, own ship's position, course and speed over ground; void (V) without a position."""
+    """RMC, own ship's position, course and speed over ground.
+
+    Void (V) without a position (mode N), and with an estimated one (mode E), as IEC 61162-1 has it.
+    """
     place = position(own.latitude, own.longitude)
-    valid = bool(place[0])
+    mode = 'N' if not place[0] else 'E' if own.estimated else 'A'
     return sentence(
         talker,
         'RMC',
         (
             hours(time),
-            'A' if valid else 'V',
+            'A' if mode == 'A' else 'V',
             *place,
             figure(own.speed / KNOT, KNOTS, 2),
             degrees(own.course),
             moment(time, '%d%m%y'),
             '',
             '',
-            'A' if valid else 'N',
+            mode,
         ),
     )
 

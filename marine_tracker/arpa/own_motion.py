@@ -14,7 +14,8 @@ LEAST_SIGMA = 0.01  # m/s, of own velocity, because few samples may agree by cha
 
 def lately(before: OwnShip, now: OwnShip, end: float) -> OwnShip:
     """The samples to use at the time `end`, s: those of the scan, and of scans before it."""
-    return append(take(before, (before.time > end - HISTORY) & (before.time < now.time[0])), now)
+    before = take(before, (before.time > end - HISTORY) & (before.time < now.time[0]))
+    return append(before, now._replace(heading=None))  # the heading is known by another way
 
 
 def own_motion(samples: OwnShip, time: float, heading: float, window: float = WINDOW) -> OwnMotion:

@@ -7,12 +7,12 @@ import numpy as np
 from ..parameters import TrackerParameters, from_mapping
 from ..recording import csv_folder
 from ..recording.csv_folder import Recording
-from ..tracking import intake
+from ..tracking import intake, own_ship
 from ..types import Array, OwnShip, PolarPlots, Scan, take
 
 
 def read(folder: str | Path) -> tuple[Recording, tuple[str, ...]]:
-    """A recording without what tracking/intake.py rejects, and in a line what that was, if any."""
+    """A recording without what the live screen rejects, and in a line what that was, if any."""
     recording, counts = screened(csv_folder.read(folder))
     if not counts:
         return recording, ()
@@ -27,17 +27,17 @@ def screened(recording: Recording) -> tuple[Recording, dict[str, int]]:
     which nothing is bad comes back as it is. ValueError where its tracker parameters are wrong.
     """
     parameters = from_mapping(TrackerParameters, recording.tracker_parameters)
-    own_ship, counts = _own_ship(recording.own_ship)
+    own, counts = _own_ship(recording.own_ship)
     scans = []
     for k, scan in enumerate(recording.scans):
         plots, rejected = _plots(scan, parameters)
         for reason, count in rejected.items():
             counts[reason] = counts.get(reason, 0) + count
-        around = take(own_ship, slice(max(k - 1, 0), k + 2))
+        around = take(own, slice(max(k - 1, 0), k + 2))
         scans.append(scan._replace(plots=plots, own_ship=around))
     if not counts:
         return recording, counts
-    return recording._replace(scans=tuple(scans), own_ship=own_ship), counts
+    return recording._replace(scans=tuple(scans), own_ship=own), counts
 
 
 def _plots(scan: Scan, parameters: TrackerParameters) -> tuple[PolarPlots, dict[str, int]]:
@@ -51,11 +51,11 @@ def _plots(scan: Scan, parameters: TrackerParameters) -> tuple[PolarPlots, dict[
 
 def _own_ship(samples: OwnShip) -> tuple[OwnShip, dict[str, int]]:
     good = np.zeros(len(samples.time), bool)
-    log = intake.empty_log()
+    log = own_ship.empty_log()
     counts: dict[str, int] = {}
-    for k, (time, position, velocity) in enumerate(zip(*samples)):
-        log, reason = intake.admit_own_ship(log, time, position, velocity)
-        if reason == intake.OWN_REBASED:  # those that waited were right
+    for k, (time, position, velocity) in enumerate(zip(*samples[:3])):
+        log, reason = own_ship.admit_own_ship(log, time, position, velocity)
+        if reason == own_ship.OWN_REBASED:  # those that waited were right
             good |= np.isin(samples.time, log.taken.time)
         elif not reason:
             good[k] = True
@@ -70,4 +70,5 @@ def _own_ship(samples: OwnShip) -> tuple[OwnShip, dict[str, int]]:
         columns = [np.interp(samples.time, samples.time[good], c[good]) for c in values.T]
         return np.where(good[:, None], values, np.stack(columns, -1))
 
-    return OwnShip(samples.time, mended(samples.position), mended(samples.velocity)), counts
+    place, velocity = mended(samples.position), mended(samples.velocity)
+    return samples._replace(position=place, velocity=velocity), counts

@@ -12,21 +12,23 @@ from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import Point32, Quaternion
+from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import Odometry
 from numpy.typing import NDArray
-from sensor_msgs.msg import (
-    ChannelFloat32,
-    NavSatFix,
-    NavSatStatus,
-    PointCloud,
-    PointCloud2,
-    PointField,
-)
+from sensor_msgs.msg import NavSatFix, NavSatStatus, PointCloud2, PointField
 from std_msgs.msg import Header
 
-from ..geometry import own_ship_at, unit_vector
+from ..geometry import AT_REST, bearing_from_yaw, heading_from, own_ship_at, unit_vector
 from ..types import Array, IntArray, PolarPlots, Scan
+from .faults import (
+    BAD_LAYOUT,
+    BAD_STAMP,
+    MISSING_FIELD,
+    MISTYPED_FIELD,
+    TRUNCATED,
+    ConversionError,
+    bare,
+)
 from .topics import FRAME, OWN_SHIP_FRAME
 
 PLOT_FIELDS = ('x', 'y', 'z', 'range', 'bearing', 'amplitude', 'time_offset')
@@ -62,23 +64,14 @@ TRACK_TYPE = np.dtype(
 )
 
 
-class ConversionError(ValueError):
-    """A message that cannot be read; `reason` is the name of its counter."""
-
-    def __init__(self, reason: str, text: str) -> None:
-        super().__init__(f'{reason}: {text}')
-        self.reason = reason
-
-
-MISSING_FIELD = 'clouds with a missing field'
-MISTYPED_FIELD = 'clouds with a mistyped field'
-BAD_LAYOUT = 'clouds with a wrong layout'
-TRUNCATED = 'clouds with a truncated buffer'
 CLOUD_REASONS = (MISSING_FIELD, MISTYPED_FIELD, BAD_LAYOUT, TRUNCATED)
+NO_HEADING = math.pi**2 / 3  # rad^2, variance of a yaw of which there is no idea at all
 
 
 def nanoseconds(stamp: Time) -> int:
-    """A stamp as integer nanoseconds."""
+    """A stamp as integer nanoseconds. ConversionError where it is none."""
+    if stamp.nanosec >= 1_000_000_000:
+        raise ConversionError(BAD_STAMP, f'nanosec is {stamp.nanosec}; it must be below 1000000000')
     return stamp.sec * 1_000_000_000 + stamp.nanosec
 
 
@@ -196,57 +189,61 @@ def cloud_to_plots(message: PointCloud2) -> PolarPlots:
     return PolarPlots(offset, range_, bearing, amplitude, *speed)
 
 
-def plots_to_readable(scan: Scan, start_ns: int) -> PointCloud:
-    """One revolution for people's eyes.
+def own_ship_to_odometry(
+    time_ns: int, position: Array, velocity: Array, heading: float | None = None
+) -> Odometry:
+    """Own ship's position and velocity [2], m and m/s east and north, and heading, rad.
 
-    Channels range_m, bearing_deg, amplitude_db, time_offset_s, and radial_speed_mps where the radar
-    tells it. Values are rounded to binary fractions, which float32 holds exactly, so that an echo
-    prints 123.25 and not 123.249996.
+    heading  None: her course, if she makes way; nan: not known, which the variance of the yaw tells
     """
-    plots = scan.plots
-    points = [Point32(x=x, y=y) for x, y in _rounded(plots_positions(scan), 2).tolist()]
-    columns = [
-        ('range_m', plots.range, 2),
-        ('bearing_deg', np.degrees(plots.bearing), 8),
-        ('amplitude_db', plots.amplitude, 2),
-        ('time_offset_s', plots.time - scan.start, 8),
-    ]
-    if plots.radial_speed is not None:
-        columns.append(('radial_speed_mps', plots.radial_speed, 16))
-    channels = [
-        ChannelFloat32(name=name, values=array.array('f', _rounded(values, parts).tolist()))
-        for name, values, parts in columns
-    ]
-    return PointCloud(header=header(start_ns), points=points, channels=channels)
-
-
-def _rounded(values, parts: int):
-    return np.round(np.asarray(values) * parts) / parts
-
-
-def own_ship_to_odometry(time_ns: int, position: Array, velocity: Array) -> Odometry:
-    """Own ship's position and velocity [2], m and m/s east and north; yaw is its course."""
-    pool = OdometryPool()
-    message = pool.fill(
-        np.array([time_ns]),
-        [OWN_SHIP_FRAME],
-        np.reshape(position, (1, 2)),
-        np.reshape(velocity, (1, 2)),
-        np.zeros((1, 4, 4)),
-    )[0]
+    heading = (
+        float(heading_from(np.asarray(velocity), np.array(np.nan))) if heading is None else heading
+    )
+    known = math.isfinite(heading)
+    yaw = math.pi / 2 - heading if known else 0.0
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    east, north = map(float, velocity)
+    message = Odometry(header=header(time_ns), child_frame_id=OWN_SHIP_FRAME)
+    pose, twist = message.pose.pose, message.twist.twist.linear
+    pose.position.x, pose.position.y = map(float, position)
+    pose.orientation.z, pose.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+    twist.x, twist.y = cos * east + sin * north, cos * north - sin * east
+    message.pose.covariance[35] = 0.0 if known else NO_HEADING
     return message
 
 
 def odometry_to_own_ship(message: Odometry) -> tuple[Array, Array]:
     """Position [2] m and velocity [2] m/s over ground, east and north; not judged here.
 
-    The twist is in the ship's own frame, turned into the ground's by the orientation.
+    The twist is in the ship's own frame, turned into the ground's by the orientation; where
+    child_frame_id says so it is in the ground's. nan where the orientation does not tell.
     """
     pose, twist = message.pose.pose, message.twist.twist.linear
+    position = np.array([pose.position.x, pose.position.y])
+    velocity = np.array([twist.x, twist.y])
+    child = message.child_frame_id
+    if child and bare(child) == bare(message.header.frame_id or FRAME):
+        return position, velocity
     yaw = yaw_of(pose.orientation)
+    if not message.pose.covariance[35] < NO_HEADING and np.hypot(*velocity) >= AT_REST:
+        yaw = math.nan
     cos, sin = math.cos(yaw), math.sin(yaw)
-    velocity = np.array([cos * twist.x - sin * twist.y, sin * twist.x + cos * twist.y])
-    return np.array([pose.position.x, pose.position.y]), velocity
+    return position, np.array([[cos, -sin], [sin, cos]]) @ velocity
+
+
+def heading_of_odometry(message: Odometry, doubtful: bool = False) -> float:
+    """rad, true; nan where it is not known: the orientation is none, its variance that of no idea,
+    or it is the unit quaternion as those leave it who know nothing but a position: without
+    variance beside a position that has some, or `doubtful`, for the twist is not the way made, and
+    without a twist."""
+    q, covariance = message.pose.pose.orientation, message.pose.covariance
+    unset, twist = (q.x, q.y, q.z, q.w) == (0.0, 0.0, 0.0, 1.0), message.twist.twist.linear
+    bare_position = (covariance[0] > 0 and not covariance[35]) or (
+        doubtful and twist.x == 0 and twist.y == 0
+    )
+    if not covariance[35] < NO_HEADING or (unset and bare_position):
+        return math.nan
+    return float(bearing_from_yaw(yaw_of(q)))
 
 
 def yaw_of(q: Quaternion) -> float:
@@ -308,7 +305,7 @@ class OdometryPool:
         course_variance = twist[:, 1, 1] / np.maximum(speed, 1e-3) ** 2
         pose_rows, twist_rows = np.zeros((count, 36)), np.zeros((count, 36))
         pose_rows[:, [0, 1, 6, 7]] = covariance[:, :2, :2].reshape(count, 4)
-        pose_rows[:, 35] = np.minimum(course_variance, np.pi**2 / 3)  # that of no idea at all
+        pose_rows[:, 35] = np.minimum(course_variance, NO_HEADING)
         twist_rows[:, [0, 1, 6, 7]] = twist.reshape(count, 4)
         columns = np.column_stack([position, np.sin(yaw / 2), np.cos(yaw / 2), speed]).tolist()
         for message, time_ns, child, (x, y, z, w, v), of_pose, of_twist in zip(

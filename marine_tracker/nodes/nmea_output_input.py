@@ -2,6 +2,8 @@
 
 import math
 import re
+import time
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -21,10 +23,17 @@ from ..arpa.nmea import (
 )
 from ..files import shown
 from ..geodesy import LocalFrame
-from ..geometry import KNOT, NAUTICAL_MILE, bearing_from_yaw, to_range_bearing
+from ..geometry import AT_REST, KNOT, NAUTICAL_MILE, to_range_bearing
+from ..tracking import own_ship
 from ..types import Array
-from .convert import nanoseconds, odometry_to_own_ship, yaw_of
+from .convert import heading_of_odometry, nanoseconds, odometry_to_own_ship
+from .faults import NO_STAMP, ConversionError, check_frame
+from .topics import FRAME
 
+BAD_FIX = 'fixes without a position'
+FIX_BY_ARRIVAL = 'fixes with stamps far from those of own ship: paired as they arrived'
+TIME_BY_ARRIVAL = 'own ship told for stamps far from hers: as she was last'
+LOST_AFTER = 6  # timeouts without a fix: nobody knows where she is
 NAMED = re.compile(r'(TT|Q)([0-9]{1,9})')
 LONGEST_NAME = 80  # characters; no sentence holds more
 STATUS = {'LOST': LOST, 'ACQUIRING': ACQUIRING}  # all others are tracked
@@ -95,6 +104,11 @@ def read_origin(text: str) -> LocalFrame | None:
         ) from error
 
 
+def named(reason: str) -> str:
+    """The reason to count an own-ship sample, beside those of other messages."""
+    return reason.replace('samples', 'own-ship messages')
+
+
 class Anchor(NamedTuple):
     """A place known both in `map`, position [2] m, and on Earth: the frame about it."""
 
@@ -105,52 +119,113 @@ class Anchor(NamedTuple):
 class OwnShipInput:
     """Own ship as last heard.
 
-    origin  the frame `map`; None: fixes tell where own ship is
+    origin   the frame `map`; None: fixes tell where own ship is
+    trust    what tells her velocity (own_velocity.chosen)
+    timeout  s without a fix, after which the position is an estimate; six of them: is not known
+    count    count(reason, detail) of what is wrong with a message
     """
 
-    def __init__(self, origin: LocalFrame | None) -> None:
+    def __init__(
+        self,
+        origin: LocalFrame | None,
+        trust: str,
+        timeout: float,
+        count: Callable[[str, str], None],
+    ) -> None:
         self._from_fixes = origin is None
         self.anchor = None if origin is None else Anchor(np.zeros(2), origin)
+        self._trust, self._timeout, self._count = trust, timeout, count
+        self.log = own_ship.empty_log()
+        self._base_ns: int | None = None  # the log's times are seconds after this
         self.time_ns: int | None = None  # of the last odometry
-        self._position = self._velocity = np.full(2, np.nan)
         self._heading = math.nan
+        self._fixed = -math.inf  # s of the wall, the last good fix
 
-    def hear_odometry(self, message: Odometry) -> bool:
-        """Whether it could be taken."""
-        position, velocity = odometry_to_own_ship(message)
-        if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
+    def hear_odometry(self, message: Odometry, arrival: float, now_ns: int) -> bool:
+        """Whether it could be taken.
+
+        arrival  s, when it came, by a clock of ours; now_ns: by that of stamps
+        """
+        try:
+            check_frame(message.header.frame_id, (FRAME,))
+            time_ns = self._time(message, now_ns)
+        except ConversionError as error:
+            self._count(error.reason, str(error))
             return False
-        self.time_ns = nanoseconds(message.header.stamp)
-        self._position, self._velocity = position, velocity
-        self._heading = float(bearing_from_yaw(yaw_of(message.pose.pose.orientation)))
+        self.time_ns = time_ns
+        if self._base_ns is None:
+            self._base_ns = time_ns
+        position, velocity = odometry_to_own_ship(message)
+        self.log, reason = own_ship.admit_own_ship(
+            self.log, (time_ns - self._base_ns) * 1e-9, position, velocity, arrival
+        )
+        if reason == own_ship.OWN_REPEATED and np.all(self.log.taken.position[-1] == position):
+            return True  # the same message once more
+        if reason:
+            self._count(named(reason), f'at {position}')
+        if reason not in ('', own_ship.OWN_REBASED):
+            return False
+        self._heading = heading_of_odometry(message, doubtful=self.log.off > 0)
         return True
 
-    def hear_fix(self, message: NavSatFix) -> bool:
-        """Whether it could be taken; before the first odometry it cannot be placed, yet is good."""
+    def hear_fix(self, message: NavSatFix, now_ns: int) -> None:
+        """Before the first odometry a fix cannot be placed, yet is good."""
+        try:
+            time_ns = self._time(message, now_ns)
+        except ConversionError as error:
+            self._count(error.reason, str(error))
+            return
         if message.status.status < NavSatStatus.STATUS_FIX or not (
             abs(message.latitude) <= 90 and abs(message.longitude) <= 180
         ):
-            return False
-        if self._from_fixes and self.time_ns is not None:
-            at = self.position(nanoseconds(message.header.stamp))
+            self._count(BAD_FIX, '')
+            return
+        self._fixed = time.monotonic()
+        if self._from_fixes and self.log.number:
+            at, _, told = self._now(time_ns)
+            if not told:
+                self._count(FIX_BY_ARRIVAL, '')
             self.anchor = Anchor(at, LocalFrame(message.latitude, message.longitude))
-        return True
+
+    @property
+    def fix_age(self) -> float:
+        """s since the last good fix; 0 where the origin is a parameter and none is needed."""
+        return time.monotonic() - self._fixed if self._from_fixes else 0.0
 
     def position(self, time_ns: int) -> Array:
-        """Own ship's position [2] m at a time, from the last odometry on."""
-        if self.time_ns is None:
-            return np.full(2, np.nan)
-        return self._position + (time_ns - self.time_ns) * 1e-9 * self._velocity
+        """Own ship's position [2] m at a time; the last one where that is far from her stamps."""
+        return self._now(time_ns)[0]
+
+    @property
+    def placed(self) -> bool:
+        """Whether it is known, or can be estimated, where on earth she is."""
+        return self.anchor is not None and self.fix_age <= LOST_AFTER * self._timeout
 
     def at(self, time_ns: int) -> OwnShipData:
         """Own ship as the sentences tell her."""
-        if self.time_ns is None:
-            return OwnShipData()
-        speed, course = to_range_bearing(self._velocity)
+        _, velocity, told = self._now(time_ns)
+        if not told:
+            self._count(TIME_BY_ARRIVAL, '')
+        speed, course = to_range_bearing(velocity)
         latitude, longitude = self._place(time_ns)
         return OwnShipData(
-            float(latitude), float(longitude), float(speed), float(course), self._heading
+            float(latitude),
+            float(longitude),
+            float(speed),
+            float(course) if speed >= AT_REST else math.nan,
+            self._heading,
+            estimated=self.fix_age > self._timeout,
         )
+
+    def _now(self, time_ns: int) -> tuple[Array, Array, bool]:
+        return own_ship.now(self.log, (time_ns - (self._base_ns or 0)) * 1e-9, self._trust)
+
+    def _time(self, message: Odometry | NavSatFix, now_ns: int) -> int:
+        """ns of its stamp; of a message without one, of its arrival."""
+        time_ns = nanoseconds(message.header.stamp)
+        if not time_ns:
+            self._count(NO_STAMP, '')
+        return time_ns or now_ns
 
     def target_places(self, time_ns: int, offset: Array) -> tuple[Array, Array]:
         """Latitude and longitude [...] deg at offsets [..., 2] m from own ship; nan if not known.
@@ -169,6 +244,6 @@ class OwnShipInput:
 
     def _place(self, time_ns: int) -> tuple[Array, Array]:
         """Own ship's latitude and longitude, deg; nan if not known."""
-        if self.anchor is None:
+        if self.anchor is None or not self.placed:
             return np.array(np.nan), np.array(np.nan)
         return self.anchor.frame.to_geodetic(self.position(time_ns) - self.anchor.position)

@@ -21,18 +21,28 @@ from ..arpa.nmea_targets import nothing_told, word
 from ..files import shown
 from ..geometry import NAUTICAL_MILE, unit_vector
 from ..parameters import NmeaOutputParameters
+from ..tracking import clocks, own_ship
+from ..tracking.own_velocity import POSITIONS, TWIST
 from . import diagnostics, topics
 from .base_node import RunnableNode
 from .convert import nanoseconds
 from .declare import declare
 from .diagnostics import ERROR, FAILED, OK, WARN, one_line
-from .nmea_output_input import OwnShipInput, read_origin, read_targets
+from .faults import HEADER_REASONS, ConversionError
+from .nmea_output_input import (
+    BAD_FIX,
+    FIX_BY_ARRIVAL,
+    TIME_BY_ARRIVAL,
+    OwnShipInput,
+    named,
+    read_origin,
+    read_targets,
+)
 from .nmea_output_links import Clients, Datagrams
 
 SENTENCES = ('RMC', 'HDT', 'OSD', 'RSD', 'TTM', 'TLL')
 SILENT_S = 10.0  # s of the wall without own ship or targets: they count as missing
 SERVE_S = 0.2  # s between two looks for new TCP clients
-BAD_ODOMETRY, BAD_FIX = 'own-ship messages not finite', 'fixes without a position'
 NOT_SENT, REFUSED = 'datagrams not sent', 'datagrams refused, for nobody listens there'
 NO_ROOM, TOO_SLOW = 'TCP clients refused for want of room', 'TCP clients dropped as too slow'
 
@@ -52,7 +62,12 @@ class NmeaOutputNode(RunnableNode):
                 )
         for talker in (p.talker, p.own_ship_talker):
             nmea_fields.sentence(talker, 'HDT', ())  # ValueError for a wrong one
-        self._own = OwnShipInput(read_origin(p.origin))
+        self._own = OwnShipInput(
+            read_origin(p.origin),
+            p.own_ship_velocity,
+            p.fix_timeout_s,
+            lambda reason, detail: self._bad.add(reason, time.monotonic(), detail=detail),
+        )
         self._udp, self._signalk = Datagrams('udp', p.udp), Datagrams('signalk_udp', p.signalk_udp)
         self._tcp = Clients('tcp', p.tcp)
         self._told = nothing_told()
@@ -61,7 +76,18 @@ class NmeaOutputNode(RunnableNode):
         self._last_ns: int | None = None  # stamp of the last `targets`
         self._count = {'targets': 0, 'targets waiting for a number': 0, 'sentences': 0}
         self._bad = diagnostics.Tally(
-            (BAD_ODOMETRY, BAD_FIX, NOT_SENT, REFUSED, NO_ROOM, TOO_SLOW), self.tell
+            (
+                *map(named, own_ship.OWN_REASONS),
+                *HEADER_REASONS,
+                BAD_FIX,
+                FIX_BY_ARRIVAL,
+                TIME_BY_ARRIVAL,
+                NOT_SENT,
+                REFUSED,
+                NO_ROOM,
+                TOO_SLOW,
+            ),
+            self.tell,
         )
         # Targets of two radars, or of two runs of different nodes, are different vessels.
         self._vessels = uuid.uuid5(uuid.NAMESPACE_OID, self.get_fully_qualified_name())
@@ -92,19 +118,27 @@ class NmeaOutputNode(RunnableNode):
 
     def _on_odometry(self, message: Odometry) -> None:
         wall = time.monotonic()
-        if not self._own.hear_odometry(message):
-            self._bad.add(BAD_ODOMETRY, wall)
+        if not self._own.hear_odometry(message, *self._arrival()):
             return
         self._heard[topics.ODOMETRY] = wall
         if wall - self._said_own >= self._settings.own_ship_period_s:
             self._send(self._own_ship(nanoseconds(message.header.stamp)))
 
     def _on_fix(self, message: NavSatFix) -> None:
-        if not self._own.hear_fix(message):
-            self._bad.add(BAD_FIX, time.monotonic())
+        self._own.hear_fix(message, self._arrival()[1])
+
+    def _arrival(self) -> tuple[float, int]:
+        """s, ns: now by a clock of ours, simulated where time is, and by the clock of stamps."""
+        now_ns = self.get_clock().now().nanoseconds
+        simulated = self.get_parameter('use_sim_time').value and now_ns
+        return now_ns * 1e-9 if simulated else clocks.steady(), now_ns
 
     def _on_targets(self, message: DiagnosticArray) -> None:
-        time_ns = nanoseconds(message.header.stamp)
+        try:
+            time_ns = nanoseconds(message.header.stamp)
+        except ConversionError as error:
+            self._bad.add(error.reason, time.monotonic(), detail=str(error))
+            return
         if time_ns == self._last_ns:  # the same once more
             return
         self._last_ns = time_ns
@@ -199,6 +233,17 @@ class NmeaOutputNode(RunnableNode):
         ]
         if not worries and self._own.anchor is None:
             worries.append(f'nothing on {topics.FIX} and no parameter origin: RMC void, no TLL')
+        age, timeout = self._own.fix_age, self._settings.fix_timeout_s
+        if self._own.anchor is not None and age > timeout:
+            worries.append(
+                f'no good fix for {age:.0f} s: RMC void'
+                + (', position estimated (mode E)' if self._own.placed else ', no TLL')
+            )
+        if self._own.log.off and self._settings.own_ship_velocity != POSITIONS:
+            worries.append(
+                f"own ship's twist is {self._own.log.off:.1f} m/s off her positions: speed and "
+                f'course from {"twist" if self._settings.own_ship_velocity == TWIST else POSITIONS}'
+            )
         worries += [f'lately: {reason}' for reason in self._bad.fresh(wall)]
         if self._count['targets waiting for a number']:
             worries.append(

@@ -117,11 +117,14 @@ class Operator:
             )
         return output
 
-    def watch(self) -> None:
-        """To be called every second: are heading, position and plots still heard?"""
+    def watch(self, speed_off: float) -> None:
+        """To be called every second: are heading, position and plots still heard?
+
+        speed_off  m/s, how far own ship's velocity as told is off that of her positions
+        """
         wall = time.monotonic()
         silence = alarms.Silence(
-            wall - self._heard_heading, wall - self._heard_position, self._overdue(wall)
+            wall - self._heard_heading, wall - self._heard_position, self._overdue(wall), speed_off
         )
         found, changed = alarms.watch(
             self.memory.arpa.alerts, self.arpa.alarms, silence, self._now()

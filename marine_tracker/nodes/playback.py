@@ -24,10 +24,12 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
 
 from ..geodesy import LocalFrame
-from ..types import OwnShip, Scan, Truth
+from ..service import heading_of
+from ..types import OwnShip, Scan, Truth, take
 from . import convert, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
+from .readable_plots import plots_to_readable
 
 FIRST_S = 1.0  # s, where simulated time begins
 TICK_S = 0.05  # longest wait between two looks at the time
@@ -201,14 +203,14 @@ class Playback:
         assert revolution is not None
         samples = revolution.own_ship
         if k < len(samples.time):
-            self._publish_own_ship(samples.time[k], samples.position[k], samples.velocity[k])
+            self._publish_own_ship(take(samples, slice(k, k + 1)))
             self._sample += 1
             return
         scan, truth = revolution.scan, revolution.truth
         start_ns = self._stamp(scan.start)
         self._plots.publish(convert.plots_to_cloud(scan, start_ns))
         if self._readable.get_subscription_count():
-            self._readable.publish(convert.plots_to_readable(scan, start_ns))
+            self._readable.publish(plots_to_readable(scan, start_ns))
         if self._truth.get_subscription_count():
             exact = np.zeros((len(truth.time), 4, 4))
             for message in self._pool.fill(
@@ -222,9 +224,11 @@ class Playback:
         self._next = next(self._revolutions, None)
         self._sample = 0
 
-    def _publish_own_ship(self, time, position, velocity) -> None:
-        stamp = self._stamp(time)
-        self._odometry.publish(convert.own_ship_to_odometry(stamp, position, velocity))
+    def _publish_own_ship(self, sample: OwnShip) -> None:
+        stamp, position = self._stamp(sample.time[0]), sample.position[0]
+        self._odometry.publish(
+            convert.own_ship_to_odometry(stamp, position, sample.velocity[0], heading_of(sample))
+        )
         if self._fix is not None and self.origin is not None:
             place = map(float, self.origin.to_geodetic(position))
             self._fix.publish(convert.fix_message(stamp, *place))

@@ -21,7 +21,7 @@ from sensor_msgs.msg import NavSatFix, PointCloud2
 from ..display.commands import Command
 from ..display.server import DisplayServer
 from ..display.trails import Trails
-from ..geometry import bearing_from_yaw, unit_vector
+from ..geometry import unit_vector
 from ..parameters import PpiDisplayParameters
 from . import convert, diagnostics, display_messages, targets_cloud, topics
 from .base_node import RunnableNode
@@ -89,7 +89,7 @@ class PpiDisplayNode(RunnableNode):
         if wall - self._own_told < OWN_EVERY_S:
             return
         self._own_told = wall
-        heading = bearing_from_yaw(convert.yaw_of(message.pose.pose.orientation))
+        heading = convert.heading_of_odometry(message)
         x, y, vx, vy = display_messages.plain(np.hstack([position, velocity]), 3)
         latitude, longitude = self._fix or (None, None)
         self.server.publish(
@@ -101,7 +101,7 @@ class PpiDisplayNode(RunnableNode):
                 'y': y,
                 'vx': vx,
                 'vy': vy,
-                'heading': float(heading) if np.isfinite(heading) else None,
+                'heading': heading if np.isfinite(heading) else None,
                 'latitude': latitude,
                 'longitude': longitude,
             },

@@ -4,20 +4,37 @@ import statistics
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 from sensor_msgs.msg import PointCloud2
 
 from ..estimators import WANT_DOPPLER
-from ..tracking import intake
+from ..tracking import intake, own_ship
 from ..tracking.radars import Radar
 from ..types import Scan
 from . import convert
-from .convert import ConversionError
 from .diagnostics import OK, WARN, Tally
+from .faults import HEADER_REASONS, NO_STAMP, ConversionError, check_frame
+from .topics import FRAME, OWN_SHIP_FRAME
 
 MISSED = 'revolutions missed'
 NO_DOPPLER = 'scans without the radial speeds that the estimator wants'
+LEADS = 15  # scans; more than ever wait in a queue
 SILENT_S = 5.0  # s of the wall, and three scans, without plots: the radar is silent
+
+
+class Arrival(NamedTuple):
+    """How a message came.
+
+    arrival    s, by a clock of ours (intake.admit_scan); now_ns: by that of stamps
+    seconds    of a stamp in ns
+    own_frame  own ship's, beside which plots may be in `map`
+    """
+
+    arrival: float
+    now_ns: int
+    seconds: Callable[[int], float]
+    own_frame: str
 
 
 class RadarInput:
@@ -33,10 +50,12 @@ class RadarInput:
         self.bad = Tally(
             (
                 *convert.CLOUD_REASONS,
+                *HEADER_REASONS,
                 *intake.PLOT_REASONS,
                 *intake.SCAN_REASONS,
                 MISSED,
                 NO_DOPPLER,
+                own_ship.OWN_BY_ARRIVAL,
             ),
             tell,
         )
@@ -44,6 +63,8 @@ class RadarInput:
         self._plots_in_scan = 0
         self._starts: deque[float] = deque(maxlen=10)
         self._stamped_alike = False
+        self._samples = 0  # of own ship, taken before the last scan
+        self._leads: deque[float] = deque(maxlen=LEADS)
         self._began = time.monotonic()
         self._heard: float | None = None  # wall time of the last plots
 
@@ -58,16 +79,19 @@ class RadarInput:
     def scan_of(
         self,
         message: PointCloud2,
-        seconds: Callable[[int], float],
-        own_log: intake.OwnShipLog,
+        came: Arrival,
+        own_log: own_ship.OwnShipLog,
         others: Sequence[intake.TimeOrder],
-    ) -> tuple[Scan, str] | None:
-        """The scan in the tracker's time and the fallback for own ship; None where it is rejected.
+    ) -> tuple[Scan, str, own_ship.OwnShipLog] | None:
+        """The scan in the tracker's time, the fallback for own ship, and her log, in which what
+        waited may be confirmed by the scan; None where the scan is rejected.
 
-        seconds  of a stamp in ns; others: the orders of the other radars
+        others  the orders of the other radars
         """
         self._heard = wall = time.monotonic()
         try:
+            check_frame(message.header.frame_id, (FRAME, OWN_SHIP_FRAME, came.own_frame))
+            start_ns = convert.nanoseconds(message.header.stamp)
             plots = convert.cloud_to_plots(message)
         except ConversionError as error:
             self.bad.add(error.reason, wall, detail=str(error))
@@ -78,9 +102,13 @@ class RadarInput:
             self.bad.add(reason, wall, count)
         if parameters.estimator in WANT_DOPPLER and plots.radial_speed is None and len(plots.time):
             self.bad.add(NO_DOPPLER, wall, detail=parameters.estimator)
-        start_ns = convert.nanoseconds(message.header.stamp)
-        start, before = seconds(start_ns), self.order.last
-        self.order, taken, reason = intake.admit_scan(self.order, start, period, others)
+        if not start_ns:
+            start_ns = came.now_ns - round(1e9 * max(period, plots.time.max(initial=0.0)))
+            self.bad.add(NO_STAMP, wall)
+        start, before = came.seconds(start_ns), self.order.last
+        self.order, taken, reason = intake.admit_scan(
+            self.order, start, period, others, came.arrival, own_log.newest
+        )
         if reason:
             self.bad.add(reason, wall, detail=f'stamp {start_ns * 1e-9:.3f} s')
         if not taken:
@@ -96,16 +124,39 @@ class RadarInput:
             self._stamped_alike = not plots.time.any()
         length = 0.0 if self._stamped_alike else max(period, plots.time.max(initial=0.0))
         end, shift = start + length, self.order.shift
-        own_ship, fallback = intake.own_ship_for(own_log, start, end, parameters.own_ship_timeout_s)
+        own_log = own_ship.confirmed(own_log, end)
+        own, fallback = own_ship.own_ship_for(
+            own_log,
+            start,
+            end,
+            parameters.own_ship_timeout_s,
+            parameters.own_ship_velocity,
+            self._lead(own_log, end),
+        )
+        if fallback == own_ship.OWN_BY_ARRIVAL:
+            self.bad.add(fallback, wall)
         self.taken += 1
         self._plots_in_scan = len(plots.time)
-        return Scan(
+        scan = Scan(
             start + shift,
             end + shift,
             plots._replace(time=plots.time + start + shift),
-            own_ship._replace(time=own_ship.time + shift),
+            own._replace(time=own.time + shift),
             self._place,
-        ), fallback
+        )
+        return scan, fallback, own_log
+
+    def _lead(self, own_log: own_ship.OwnShipLog, end: float) -> float:
+        """s that own ship's stamps lie ahead of the plots': behind, where she was heard since the
+        last scan; ahead, by the least of many scans, for some may have waited in a queue."""
+        samples, self._samples = self._samples, own_log.number
+        if not own_log.number:
+            return 0.0
+        lead = float(own_log.taken.time[-1]) - end
+        self._leads.append(lead)
+        if lead < 0:
+            return lead if own_log.number > samples else 0.0
+        return min(self._leads) if len(self._leads) == LEADS else 0.0
 
     def state(self, wall: float) -> tuple[bytes, str, dict[str, object]]:
         """Level, message and values for /diagnostics."""

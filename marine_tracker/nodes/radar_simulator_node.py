@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry import own_ship_at
+from ..geometry import heading_at, own_ship_at
 from ..parameters import RadarSimulatorParameters
 from ..simulation import radar, scenario
 from ..types import OwnShip
@@ -37,7 +37,9 @@ class RadarSimulatorNode(RunnableNode):
                 # Evenly up to the end, which is always one of them.
                 count = max(round((scan.end - scan.start) / step), 1)
                 time = np.linspace(scan.start, scan.end, count + 1)[1:]
-                yield Revolution(scan, truth, OwnShip(time, *own_ship_at(scan.own_ship, time)))
+                own = OwnShip(time, *own_ship_at(scan.own_ship, time))
+                own = own._replace(heading=heading_at(scan.own_ship, time))
+                yield Revolution(scan, truth, own)
 
         self._playback = Playback(
             self,

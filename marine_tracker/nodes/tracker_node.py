@@ -21,18 +21,19 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from sensor_msgs.msg import PointCloud2
 
 from ..arpa.view import Standing
-from ..geometry import bearing_from_yaw
 from ..parameters import ArpaParameters, TrackerParameters
 from ..service import Service
-from ..tracking import intake
+from ..tracking import clocks, own_ship
 from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
+from ..tracking.own_velocity import AUTO, POSITIONS
 from ..tracking.radars import radars_of
 from . import convert, diagnostics, topics
 from .base_node import RunnableNode
 from .declare import declare, follow
 from .diagnostics import FAILED, OK, WARN, Durations, Tally
+from .faults import HEADER_REASONS, NO_STAMP, ConversionError, bare, check_frame
 from .operator import Operator
-from .radar_input import RadarInput
+from .radar_input import Arrival, RadarInput
 from .tracker_output import TrackerOutput
 
 
@@ -44,8 +45,8 @@ class TrackerNode(RunnableNode):
         parameters, arpa_parameters = declare(self, TrackerParameters, ArpaParameters)
         service = Service(parameters, arpa_parameters)
         self._base_ns: int | None = None  # stamps are seconds after this
-        self._own_log = intake.empty_log()
-        self._fallback = intake.OWN_NEVER_HEARD
+        self._own_log, self._own_frame = own_ship.empty_log(), topics.OWN_SHIP_FRAME
+        self._fallback = own_ship.OWN_NEVER_HEARD
         self._samples = 0
         self._status_count = np.zeros(4, int)
         self._standing = Standing({}, 0, '', np.zeros(0, bool))
@@ -55,7 +56,7 @@ class TrackerNode(RunnableNode):
             RadarInput(radar, place, partial(self._tell_of, radar.name))
             for place, radar in enumerate(radars_of(parameters))
         ]
-        self.bad_own_ship = Tally(intake.OWN_REASONS, self.tell)
+        self.bad_own_ship = Tally((*own_ship.OWN_REASONS, *HEADER_REASONS), self.tell)
 
         self._operator = Operator(self, service, self.hardware_id)
         follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
@@ -98,32 +99,49 @@ class TrackerNode(RunnableNode):
         )
 
     def _on_odometry(self, message: Odometry) -> None:
-        position, velocity = convert.odometry_to_own_ship(message)
-        at = self._seconds(convert.nanoseconds(message.header.stamp))
-        self._own_log, reason = intake.admit_own_ship(self._own_log, at, position, velocity)
         self._samples += 1
-        if reason:
-            self.bad_own_ship.add(reason, time.monotonic(), detail=f'at {position}')
-        # A message without an orientation has a position, though no velocity that could be used.
-        placed = bool(np.isfinite(position).all()) and reason in (
-            '',
-            intake.OWN_NOT_FINITE,
-            intake.OWN_REBASED,
+        wall, came = time.monotonic(), self._arrival()
+        try:
+            check_frame(message.header.frame_id, (topics.FRAME,))
+            time_ns = convert.nanoseconds(message.header.stamp)
+        except ConversionError as error:
+            self.bad_own_ship.add(error.reason, wall, detail=str(error))
+            return
+        if not time_ns:
+            time_ns = came.now_ns
+            self.bad_own_ship.add(NO_STAMP, wall)
+        position, velocity = convert.odometry_to_own_ship(message)
+        self._own_log, reason = own_ship.admit_own_ship(
+            self._own_log, self._seconds(time_ns), position, velocity, came.arrival
         )
-        yaw = convert.yaw_of(message.pose.pose.orientation)
-        self._operator.hear_own_ship(placed, float(bearing_from_yaw(yaw)))
+        if reason:
+            self.bad_own_ship.add(reason, wall, detail=f'at {position}')
+        placed = reason in ('', own_ship.OWN_REBASED)
+        if placed and bare(message.child_frame_id) not in ('', topics.FRAME):
+            self._own_frame = bare(message.child_frame_id)
+        self._operator.hear_own_ship(
+            placed, convert.heading_of_odometry(message, doubtful=self._own_log.off > 0)
+        )
+
+    def _arrival(self) -> Arrival:
+        """How a message comes that comes now: in simulated time where there is one."""
+        clock = self.get_clock()
+        now_ns = clock.now().nanoseconds
+        simulated = self.get_parameter('use_sim_time').value and now_ns
+        arrival = now_ns * 1e-9 if simulated else clocks.steady()
+        return Arrival(arrival, now_ns, self._seconds, self._own_frame)
 
     def _on_plots(self, heard: RadarInput, message: PointCloud2) -> None:
         began = time.perf_counter()
         found = heard.scan_of(
             message,
-            self._seconds,
+            self._arrival(),
             self._own_log,
             [other.order for other in self.inputs if other is not heard],
         )
         if found is None:
             return
-        scan, self._fallback = found
+        scan, self._fallback, self._own_log = found
         end_ns = int(self._stamps(heard, scan.end))
         output = self._operator.step(scan, end_ns)
         self._output.publish(
@@ -174,7 +192,7 @@ class TrackerNode(RunnableNode):
             self._mismatched.discard(topic)
             self.get_logger().info(f'{topic} is published best effort: taken so')
         wall, now = time.monotonic(), self.get_clock().now().nanoseconds
-        self._operator.watch()
+        self._operator.watch(0.0 if self._trusted == POSITIONS else self._own_log.off)
         self._to_diagnostics.publish(
             diagnostics.array(
                 now,
@@ -232,16 +250,31 @@ class TrackerNode(RunnableNode):
         return self._status('tracking', level, message, values)
 
     def _own_ship_status(self, wall: float) -> DiagnosticStatus:
-        level, message = OK, 'heard'
-        fresh = self.bad_own_ship.fresh(wall)
-        if fresh:
-            level, message = WARN, 'lately: ' + ', '.join(fresh)
+        worries = []
         taken = any(heard.taken for heard in self.inputs)
         if self._fallback and taken or not self._samples:
-            level, message = WARN, self._fallback
-        return self._status(
-            'own ship', level, message, {'samples': self._samples, **self.bad_own_ship.counts}
-        )
+            worries.append(self._fallback)
+        off, source = self._own_log.off, self._trusted
+        if source == AUTO:
+            source = 'positions' if off else 'twist'
+        if off and self._trusted != POSITIONS:
+            worries.append(f'twist is {off:.1f} m/s off the positions: velocity from {source}')
+        fresh = self.bad_own_ship.fresh(wall)
+        if fresh:
+            worries.append('lately: ' + ', '.join(fresh))
+        level, message = (WARN, '; '.join(worries)) if worries else (OK, 'heard')
+        values = {
+            'samples': self._samples,
+            'velocity from': source,
+            'twist off positions_mps': f'{off:.2f}',
+            **self.bad_own_ship.counts,
+        }
+        return self._status('own ship', level, message, values)
+
+    @property
+    def _trusted(self) -> str:
+        """What tells own ship's velocity: the parameter."""
+        return self._operator.service.tracker.parameters.own_ship_velocity
 
     def _status(self, task, level, message, values):
         return diagnostics.status(f'{self.label}: {task}', self.hardware_id, level, message, values)

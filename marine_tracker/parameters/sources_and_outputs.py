@@ -96,6 +96,21 @@ class NmeaOutputParameters:
         'Latitude and longitude in degrees of the origin of `map`, as "54.1 -10.9": south and west '
         'negative, no longitude beyond 180. Empty: own ship is where own_ship/fix says.',
     )
+    fix_timeout_s: float = parameter(
+        5.0,
+        'Without a good fix for so long RMC is void, its position only estimated (mode E); '
+        'without one for six times as long there is none (mode N).',
+        unit='s',
+        low=0.5,
+        high=600.0,
+    )
+    own_ship_velocity: str = parameter(
+        'auto',
+        "Own ship's velocity over ground: as the odometry's twist tells it (twist), from her "
+        'positions (positions), or by twist unless her positions contradict it (auto); see '
+        'doc/own_ship.md.',
+        choices=('auto', 'twist', 'positions'),
+    )
 
     def __post_init__(self) -> None:
         check(self)

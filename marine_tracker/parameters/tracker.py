@@ -209,6 +209,14 @@ class TrackerParameters:
     own_ship_timeout_s: float = parameter(
         10.0, 'Own-ship data older than this count as missing.', unit='s', low=0.1, high=600.0
     )
+    own_ship_velocity: str = parameter(
+        'auto',
+        "Own ship's velocity over ground: as the odometry's twist tells it (twist), from her "
+        'positions (positions), or by twist unless her positions contradict it (auto); see '
+        'doc/own_ship.md.',
+        choices=('auto', 'twist', 'positions'),
+        live=True,
+    )
 
     def __post_init__(self) -> None:
         check(self)

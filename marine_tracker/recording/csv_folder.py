@@ -4,7 +4,8 @@ A folder holds
   plots.csv      scan, time_s, range_m, bearing_deg [, amplitude_db] [, radial_speed_mps]; true
                  bearing from own ship; radial speed over ground, positive when opening, empty where
                  a plot tells none
-  own_ship.csv   scan, time_s, north_m, east_m [, vel_north_mps, vel_east_mps] [, end_s];
+  own_ship.csv   scan, time_s, north_m, east_m [, vel_north_mps, vel_east_mps] [, end_s]
+                 [, heading_deg], true, empty where it is not known;
                  one row for every scan, also those without plots
   truth.csv      scan, time_s, target, north_m, east_m, vel_north_mps, vel_east_mps; may be left
                  out; velocities may be nan
@@ -29,7 +30,7 @@ from numpy.typing import NDArray
 
 from .. import tables, yaml_file
 from ..files import Place, written
-from ..geometry import own_ship_at, wrap_bearing
+from ..geometry import heading_at, own_ship_at, wrap_bearing
 from ..types import Array, OwnShip, PolarPlots, Scan, Truth, take
 
 PLOTS = ('scan', 'time_s', 'range_m', 'bearing_deg')
@@ -37,6 +38,7 @@ OWN_SHIP = ('scan', 'time_s', 'north_m', 'east_m')
 TRUTH = ('scan', 'time_s', 'target', 'north_m', 'east_m')
 VELOCITY = ('vel_north_mps', 'vel_east_mps')
 RADIAL_SPEED = 'radial_speed_mps'
+HEADING = 'heading_deg'
 MAX_TIME = 1e11  # s, either way: beyond all clocks
 
 
@@ -115,7 +117,9 @@ def write(
     plots, own_ship, truth, speeds = [], [], [], []
     for k, (scan, targets) in enumerate(pairs):
         position, velocity = own_ship_at(scan.own_ship, scan.start)
-        own_ship.append((k, *_metres(scan.start, *position[::-1], *velocity[::-1], scan.end)))
+        heading = np.degrees(heading_at(scan.own_ship, scan.start))
+        row = (k, *_metres(scan.start, *position[::-1], *velocity[::-1], scan.end))
+        own_ship.append((*row, '' if np.isnan(heading) else f'{heading:.6f}'))
         degrees = np.degrees(scan.plots.bearing)
         plots += [
             (k, *_metres(time, range_), f'{bearing:.9f}', f'{amplitude:.3f}')
@@ -147,7 +151,7 @@ def write(
         def begin(file):
             return stack.enter_context(written(folder / file, newline=''))
 
-        _write_table(begin('own_ship.csv'), (*OWN_SHIP, *VELOCITY, 'end_s'), own_ship)
+        _write_table(begin('own_ship.csv'), (*OWN_SHIP, *VELOCITY, 'end_s', HEADING), own_ship)
         _write_table(begin('plots.csv'), header, plots)
         _write_table(begin('truth.csv'), (*TRUTH, *VELOCITY), truth)
         lines = [f'{key}: {json.dumps(value)}\n' for key, value in tracker_parameters.items()]
@@ -187,7 +191,11 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
                 f'{table.where(row)}: end_s is {end[row]:g}; it must not lie before '
                 f'time_s, {time[row]:g}'
             )
-    return numbers, OwnShip(time, position, velocity), end
+    heading = None
+    if HEADING in table.columns:
+        heading = np.radians(table.numbers(HEADING, low=-360.0, high=360.0, missing=True))
+        heading = wrap_bearing(heading)
+    return numbers, OwnShip(time, position, velocity, heading), end
 
 
 def _spans(begin: Array, end: Array, plots: list[Array]) -> Iterator[tuple[float, float]]:

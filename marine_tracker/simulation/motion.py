@@ -119,9 +119,7 @@ def locate_ships(
     t = time - paths.start[row]
     speed, acceleration = paths.speed[row], paths.acceleration[row]
     wave, rate, phase = paths.wave[row], paths.wave_rate[row], paths.wave_phase[row]
-    run = t * (speed + 0.5 * acceleration * t) + wave / rate * (
-        np.cos(phase) - np.cos(rate * t + phase)
-    )
+    run = _run(paths, row, t)
     now = speed + acceleration * t + wave * np.sin(rate * t + phase)
     half_turn = 0.5 * paths.curvature[row] * run
     course = paths.course[row]
@@ -141,9 +139,24 @@ def locate_ships(
     return position, velocity
 
 
+def courses(paths: Paths, ship: NDArray[np.int64], time: float | FloatArray) -> Array:
+    """Course [...] rad that the numbered ships [...] steer at times [...], also at rest; 0 of one
+    that is driven by reports."""
+    row = _row(paths, ship, time)
+    return paths.course[row] + paths.curvature[row] * _run(paths, row, time - paths.start[row])
+
+
 def exist(paths: Paths, ship: NDArray[np.int64], time: float | FloatArray) -> NDArray[np.bool_]:
     """Whether the numbered ships [...] exist at times [...]."""
     return paths.exists[_row(paths, ship, time)]
+
+
+def _run(paths, row, t):
+    """Distance run, m, on the pieces `row` in the t s since they began."""
+    wave, rate, phase = paths.wave[row], paths.wave_rate[row], paths.wave_phase[row]
+    return t * (paths.speed[row] + 0.5 * paths.acceleration[row] * t) + wave / rate * (
+        np.cos(phase) - np.cos(rate * t + phase)
+    )
 
 
 def _row(paths, ship, time):

@@ -53,7 +53,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import config, yaml_file
-from ..geometry import NAUTICAL_MILE
+from ..geometry import NAUTICAL_MILE, heading_from
 from ..parameters import VESSEL_CLASSES, TrackerParameters
 from ..types import Numbers, OwnShip, Truth
 from . import land, motion, sensor_errors, ships
@@ -159,10 +159,10 @@ class Scenario:
     def own_ship_at(self, times: float | Numbers) -> OwnShip:
         """Own ship's true motion at the times [K]."""
         times = np.atleast_1d(np.asarray(times, dtype=float))
-        position, velocity = motion.locate_ships(
-            self.fleet.paths, np.zeros(len(times), np.int64), times
-        )
-        return OwnShip(times, position, velocity)
+        paths, own = self.fleet.paths, np.zeros(len(times), np.int64)
+        position, velocity = motion.locate_ships(paths, own, times)
+        stated = motion.courses(paths, own, times) + (0.0 if self.fleet.steers else np.nan)
+        return OwnShip(times, position, velocity, heading_from(velocity, stated))
 
     def truth_at(self, time: float) -> Truth:
         """Every target that exists at the time."""

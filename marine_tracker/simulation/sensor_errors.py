@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry import KNOT, NAUTICAL_MILE, unit_vector
+from ..geometry import KNOT, NAUTICAL_MILE, heading_from, unit_vector
 from ..types import Array, OwnShip
 
 ROLL_BEARING = np.radians(0.22)  # mean and sine of the quadrantal error at 10 deg of roll
@@ -118,4 +118,6 @@ def reckon(
     wrong = velocity - true.velocity
     steps = 0.5 * (wrong[1:] + wrong[:-1]) * np.diff(true.time)[:, None]
     drifts = drift + np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
-    return OwnShip(true.time, true.position + drifts, velocity), drifts[-1]
+    stated = np.full(count, np.nan) if true.heading is None else true.heading
+    heading = heading_from(velocity, stated)
+    return OwnShip(true.time, true.position + drifts, velocity, heading), drifts[-1]

@@ -55,6 +55,7 @@ class Fleet(NamedTuple):
     length     [T]  m
     hulls      T rows
     remarks    what people should know of the files that were read
+    steers     whether own ship's course is stated: then she heads there at rest, too
     """
 
     origin: LocalFrame | None
@@ -65,6 +66,7 @@ class Fleet(NamedTuple):
     length: Array
     hulls: Hulls
     remarks: tuple[str, ...] = ()
+    steers: bool = False
 
 
 def read(top: Section, folder: Path, duration: float) -> Fleet:
@@ -116,6 +118,7 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
         np.array(lengths),
         Hulls(*np.array(hulls).T),
         remarks,
+        'course_deg' in own,
     )
 
 

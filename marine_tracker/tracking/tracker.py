@@ -19,6 +19,7 @@ from .look import look
 from .merge import duplicates
 from .noise import noise_of
 from .radars import HELD_REVOLUTIONS, held_updates, radars_of
+from .silence import unmistakable
 from .sweep import sweep_of
 
 
@@ -134,6 +135,7 @@ class Tracker:
         expected = expect(ahead, lone, scan, speed)
         pairs, left_out = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
         pairs = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
+        pairs = unmistakable(pairs, ahead, plots, tracks.last_time, scan.start, p.scan_period_s)
         pairs, starts = split(pairs, count)
 
         # associate

@@ -10,6 +10,8 @@ from sensor_msgs.msg import PointCloud2, PointField
 
 from marine_tracker.geometry import own_ship_at
 from marine_tracker.nodes import convert
+from marine_tracker.nodes.faults import ConversionError
+from marine_tracker.nodes.readable_plots import plots_to_readable
 from marine_tracker.types import OwnShip, PolarPlots, Scan
 
 SECOND = 1_000_000_000
@@ -104,9 +106,9 @@ def test_a_radial_speed_that_is_no_float_is_refused():
 
 def test_radial_speeds_can_be_read():
     sent = with_doppler()
-    channels = {c.name: c.values for c in convert.plots_to_readable(sent, 0).channels}
+    channels = {c.name: c.values for c in plots_to_readable(sent, 0).channels}
     assert channels['radial_speed_mps'] == pytest.approx(sent.plots.radial_speed, abs=1 / 32)
-    channels = {c.name for c in convert.plots_to_readable(scan(), 0).channels}
+    channels = {c.name for c in plots_to_readable(scan(), 0).channels}
     assert 'radial_speed_mps' not in channels
 
 
@@ -234,7 +236,7 @@ def test_random_clouds_are_read_or_refused_and_nothing_else():
 
 def test_the_readable_plots_print_short_numbers():
     sent = scan()
-    message = over_the_wire(convert.plots_to_readable(sent, SECOND))
+    message = over_the_wire(plots_to_readable(sent, SECOND))
     columns = {channel.name: np.array(channel.values) for channel in message.channels}
     assert list(columns) == ['range_m', 'bearing_deg', 'amplitude_db', 'time_offset_s']
     assert columns['range_m'] == pytest.approx(sent.plots.range, abs=0.25)
@@ -306,3 +308,43 @@ def test_the_course_of_a_target_at_rest_is_as_uncertain_as_can_be():
         np.array([0]), ['track_01'], np.zeros((1, 2)), np.zeros((1, 2)), np.eye(4)[None]
     )[0]
     assert message.pose.covariance[35] == pytest.approx(np.pi**2 / 3)
+
+
+def test_a_heading_goes_out_and_comes_back_also_at_rest():
+    for velocity in ((0.0, 0.0), (1.5, -2.0)):
+        message = over_the_wire(convert.own_ship_to_odometry(SECOND, [3.0, 4.0], velocity, 3.5))
+        assert convert.heading_of_odometry(message) == pytest.approx(3.5)
+        assert convert.odometry_to_own_ship(message)[1] == pytest.approx(velocity)
+
+
+def test_who_lies_still_and_has_no_compass_tells_no_heading():
+    message = over_the_wire(convert.own_ship_to_odometry(SECOND, [3.0, 4.0], (0.1, 0.0)))
+    assert np.isnan(convert.heading_of_odometry(message))
+    assert convert.odometry_to_own_ship(message)[1] == pytest.approx([0.1, 0.0])
+
+
+def test_an_orientation_left_as_it_was_made_tells_no_heading_beside_a_known_position():
+    message = Odometry()
+    message.pose.pose.orientation.w = 1.0
+    assert convert.heading_of_odometry(message) == pytest.approx(np.pi / 2)
+    assert np.isnan(convert.heading_of_odometry(message, doubtful=True))
+    message.pose.covariance[0] = message.pose.covariance[7] = 4.0
+    assert np.isnan(convert.heading_of_odometry(message))
+    message.pose.covariance[35] = 0.01
+    assert convert.heading_of_odometry(message) == pytest.approx(np.pi / 2)
+
+
+def test_a_twist_whose_frame_is_the_grounds_is_not_turned():
+    message = Odometry(child_frame_id='map')
+    message.header.frame_id = '/map'
+    message.pose.pose.orientation.z = message.pose.pose.orientation.w = np.sqrt(0.5).item()
+    message.twist.twist.linear.x, message.twist.twist.linear.y = 2.0, 7.0
+    assert convert.odometry_to_own_ship(message)[1].tolist() == [2.0, 7.0]
+
+
+@pytest.mark.parametrize('nanosec', [1_000_000_000, 2_147_483_648, 4_294_967_295])
+def test_a_stamp_with_too_many_nanoseconds_is_refused(nanosec):
+    stamp = convert.time_message(7 * SECOND)
+    stamp.nanosec = nanosec
+    with pytest.raises(ConversionError, match=f'nanosec is {nanosec}'):
+        convert.nanoseconds(stamp)

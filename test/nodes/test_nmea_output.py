@@ -19,6 +19,7 @@ from std_msgs.msg import String
 
 from marine_tracker.geometry import KNOT, unit_vector
 from marine_tracker.nodes import convert, topics
+from marine_tracker.nodes.nmea_output_input import FIX_BY_ARRIVAL, TIME_BY_ARRIVAL
 from marine_tracker.nodes.nmea_output_node import NmeaOutputNode
 
 OUTPUT = 'nodes.run nmea_output'
@@ -455,3 +456,69 @@ def test_simulator_tracker_and_output_as_processes_tell_every_target_once_a_scan
     simulator.stop()
     tracker.stop()
     output.stop(signal.SIGTERM)
+
+
+def place_of(line):
+    """Degrees of latitude and longitude, status and mode of an RMC."""
+    rmc = pynmea2.parse(line, check=True)
+    return rmc.latitude, rmc.longitude, line.split(',')[2], line.split('*')[0].split(',')[-1]
+
+
+def warned(here, text):
+    """Wait until /diagnostics says so."""
+    here.wait(lambda: here.output() and text in here.output().message)
+    return here.output().level == DiagnosticStatus.WARN
+
+
+@pytest.mark.parametrize('apart_s', [-37, 21, -7200, None])
+def test_a_fix_whose_stamp_is_of_another_clock_is_paired_as_it_arrived(rig, apart_s):
+    """None: no stamp at all."""
+    here = rig(own_ship_period_s=60.0)
+    speed = 6.0  # m/s, east; at 60 N a degree of longitude is half as long
+    for k in range(6):
+        here.send_own_ship(k, (speed * k, 0.0), speed, fix=None)
+        fix = convert.fix_message(NOON, 60.0, 10.25 + np.degrees(speed * k / 6371008.8 / 0.5))
+        stamp = 0 if apart_s is None else NOON + (k + apart_s) * SECOND
+        fix.header.stamp = convert.time_message(stamp)
+        here.fix.publish(fix)
+        here.wait(lambda k=k: here.node._bad.counts[FIX_BY_ARRIVAL] == k + 1)
+    latitude, longitude, status, _ = place_of(here.scan(seconds=7.0)[0])
+    away = np.radians(longitude - 10.25) * 6371008.8 * 0.5
+    assert status == 'A' and away == pytest.approx(speed * 7, abs=1.0)
+    assert latitude == pytest.approx(60.0, abs=1e-6)
+    assert warned(here, 'paired as they arrived')
+
+
+def test_a_moored_ship_stays_where_she_is_whatever_the_stamps_are(rig):
+    here = rig(own_ship_period_s=60.0)
+    for k in range(4):
+        here.send_own_ship(k, speed=0.002)
+    for stamp in (1_000_000, 86_400 * 400):  # s: a clock that was never set
+        here.fix.publish(convert.fix_message(stamp * SECOND, 54.5, 10.25))
+    here.wait(lambda: here.node._bad.counts[FIX_BY_ARRIVAL] == 2)
+    assert place_of(here.scan(seconds=4.0)[0])[:3] == (
+        pytest.approx(54.5, abs=1e-6),
+        pytest.approx(10.25, abs=1e-6),
+        'A',
+    )
+    # Targets of another clock: own ship is told where she was last.
+    assert place_of(here.scan(seconds=5000.0)[0])[0] == pytest.approx(54.5, abs=1e-6)
+    assert here.node._bad.counts[TIME_BY_ARRIVAL]
+
+
+def test_a_lost_fix_is_told_as_an_estimate_then_as_none_and_warned_of(rig):
+    here = rig(fix_timeout_s=0.7, own_ship_period_s=60.0)
+    here.send_own_ship()
+    assert place_of(here.scan(seconds=0.1)[0])[2:] == ('A', 'A')
+    here.wait(lambda: here.node._own.fix_age > 0.7)
+    latitude, *told = place_of(here.scan(seconds=0.2)[0])
+    assert told[1:] == ['V', 'E'] and latitude == pytest.approx(54.5, abs=1e-6)
+    assert warned(here, 'position estimated (mode E)')
+    here.wait(lambda: here.node._own.fix_age > 6 * 0.7)
+    said = here.scan(entry('TT01'), seconds=0.3)
+    assert ',V,,,,,10.00,' in said[0] and said[0].split('*')[0].endswith(',N')
+    assert warned(here, 'no TLL')
+    here.send_own_ship(0.4)
+    fixed = here.node._own.fix_age
+    here.wait(lambda: here.node._own.fix_age < min(fixed, 0.5))
+    assert place_of(here.scan(seconds=0.5)[0])[2:] == ('A', 'A')

@@ -283,3 +283,15 @@ def test_radial_speeds_are_written_and_come_back(tmp_path):
     first, second = csv_folder.read(tmp_path / 'out').scans
     np.testing.assert_array_equal(first.plots.radial_speed, [-7.25, np.nan])
     assert np.isnan(second.plots.radial_speed).all()
+
+
+def test_a_heading_is_written_and_read_where_it_is_known(tmp_path):
+    none, still = np.empty(0), np.zeros((2, 2))
+    nothing = Truth(none, np.empty(0, int), np.empty((0, 2)), np.empty((0, 2)))
+    pairs = []
+    for start, heading in ((0.0, 205.0), (2.0, np.nan)):
+        own = OwnShip(np.array([start, start + 2]), still, still, np.radians([heading] * 2))
+        pairs.append((Scan(start, start + 2, PolarPlots(none, none, none, none), own), nothing))
+    csv_folder.write(tmp_path / 'moored', 'moored', pairs, {})
+    told = csv_folder.read(tmp_path / 'moored').own_ship.heading
+    np.testing.assert_allclose(np.degrees(told), [205.0, np.nan])

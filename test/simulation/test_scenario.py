@@ -355,6 +355,23 @@ def test_a_doppler_band_without_doppler_is_a_mistake(make_scenario):
         make_scenario(radar={'max_radial_speed_mps': 20})
 
 
+def test_own_ship_at_rest_heads_where_her_course_is_stated_and_else_nowhere():
+    for own, heading in (({'course_deg': 305, 'speed_kn': 0}, 305.0), ({}, math.nan)):
+        at_rest = scenario.build({'duration_s': 60, 'own_ship': own, 'targets': [SHIP]}, 'x')
+        told = np.degrees(at_rest.own_ship_at([0.0, 30.0]).heading)
+        np.testing.assert_allclose(told, heading)
+
+
+def test_own_ship_that_stops_goes_on_heading_where_she_went():
+    legs = [
+        {'turn': {'angle_deg': 60, 'rate_deg_per_s': 2}},
+        {'speed': {'to_kn': 0, 'duration_s': 20}},
+    ]
+    own = {'course_deg': 320, 'speed_kn': 9, 'legs': legs}
+    made = scenario.build({'duration_s': 90, 'own_ship': own, 'targets': [SHIP]}, 'x')
+    assert np.degrees(made.own_ship_at([15.0, 80.0]).heading) == pytest.approx([350.0, 20.0])
+
+
 def test_angles_are_decimal_with_or_without_leading_noughts(tmp_path):
     file = tmp_path / 'noughts.yaml'
     file.write_text(

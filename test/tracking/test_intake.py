@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from marine_tracker.geometry import KNOT
 from marine_tracker.tracking import intake
 from marine_tracker.types import PolarPlots, append
 
@@ -117,77 +116,6 @@ def test_stamps_at_random_do_not_move_the_order():
     wild = rng.uniform(-1e9, 1e9, 200)
     results = run_scans([0.0, *wild, 2.7])
     assert results[-1] == (True, '', 2.7)
-
-
-def run_own_ship(samples):
-    log, reasons = intake.empty_log(), []
-    for time, east, north, *velocity in samples:
-        log, reason = intake.admit_own_ship(
-            log, time, np.array([east, north]), np.array(velocity or [0.0, 5.0])
-        )
-        reasons.append(reason)
-    return log, reasons
-
-
-@pytest.mark.parametrize(
-    'bad, reason',
-    [
-        ((3.0, np.nan, 0.0), intake.OWN_NOT_FINITE),
-        ((3.0, 1e12, 0.0), intake.OWN_NOT_FINITE),
-        ((np.inf, 0.0, 0.0), intake.OWN_NOT_FINITE),
-        ((3.0, 0.0, 15.0, np.inf, 0.0), intake.OWN_NOT_FINITE),
-        ((2.0, 0.0, 10.0), intake.OWN_REPEATED),
-        ((1.5, 0.0, 10.0), intake.OWN_WENT_BACK),
-        ((3.0, 5000.0, 15.0), intake.OWN_TELEPORTED),
-        ((3.0, 0.0, 15.0, 101 * KNOT, 0.0), intake.OWN_TELEPORTED),
-    ],
-)
-def test_a_bad_own_ship_sample_is_left_out(bad, reason):
-    log, reasons = run_own_ship([(1.0, 0.0, 5.0), (2.0, 0.0, 10.0), bad, (4.0, 0.0, 20.0)])
-    assert reasons == ['', '', reason, '']
-    assert log.taken.time.tolist() == [1.0, 2.0, 4.0]
-
-
-def test_own_ship_elsewhere_for_good_is_believed_after_five_samples():
-    there = [(3.0 + k, 90e3, 5.0 * k) for k in range(6)]
-    log, reasons = run_own_ship([(1.0, 0.0, 5.0), (2.0, 0.0, 10.0), *there])
-    assert reasons == ['', ''] + [intake.OWN_TELEPORTED] * 4 + [intake.OWN_REBASED, '']
-    assert log.taken.position[-1].tolist() == [90e3, 25.0]
-    assert log.taken.time[0] == 3.0
-
-
-def test_own_ship_that_teleports_to_and_fro_is_never_believed():
-    samples = [(1.0 + k, 80e3 * (k % 3), 0.0) for k in range(1, 30)]
-    log, reasons = run_own_ship([(1.0, 0.0, 0.0), *samples])
-    assert intake.OWN_REBASED not in reasons
-    assert (log.taken.position[:, 0] == 0).all()
-
-
-def test_the_log_does_not_grow_for_ever():
-    log, _ = run_own_ship([(0.1 * k, 0.0, 0.5 * k) for k in range(intake.MAX_OWN_SAMPLES + 100)])
-    assert len(log.taken.time) == intake.MAX_OWN_SAMPLES
-
-
-def test_own_ship_during_a_scan_is_what_lies_around_it():
-    log, _ = run_own_ship([(0.1 * k, 0.0, 0.5 * k) for k in range(100)])
-    own_ship, fallback = intake.own_ship_for(log, 2.05, 4.0, 10.0)
-    assert fallback == ''
-    assert own_ship.time[0] <= 2.05 and own_ship.time[-1] >= 4.0
-    assert len(own_ship.time) < 25
-
-
-def test_a_silent_own_ship_is_taken_at_rest_where_it_was():
-    log, _ = run_own_ship([(1.0, 0.0, 5.0), (2.0, 0.0, 10.0)])
-    assert intake.own_ship_for(log, 11.0, 13.0, 10.0)[1] == ''
-    own_ship, fallback = intake.own_ship_for(log, 12.1, 14.0, 10.0)
-    assert fallback == intake.OWN_SILENT
-    assert own_ship.position.tolist() == [[0.0, 10.0]] and not own_ship.velocity.any()
-
-
-def test_own_ship_never_heard_is_taken_at_rest_at_the_origin():
-    own_ship, fallback = intake.own_ship_for(intake.empty_log(), 5.0, 7.0, 10.0)
-    assert fallback == intake.OWN_NEVER_HEARD
-    assert not own_ship.position.any() and not own_ship.velocity.any()
 
 
 def test_a_bad_radial_speed_is_forgotten_and_counted_but_its_plot_stays():

@@ -61,6 +61,7 @@ class Rig:
             )
         )
         self.shift_ns = EPOCH_NS
+        self.odometry = convert.own_ship_to_odometry  # a message of stamp, position, velocity
 
     # -- in ------------------------------------------------------------------------------------
 
@@ -68,7 +69,7 @@ class Rig:
         return self.shift_ns + round(seconds * 1e9)
 
     def send_own_ship(self, time, position, velocity):
-        self.own_ship.publish(convert.own_ship_to_odometry(self.stamp(time), position, velocity))
+        self.own_ship.publish(self.odometry(self.stamp(time), position, velocity))
 
     def send_own_ship_of(self, scans):
         """Own ship at the ends of the scans, waited for."""

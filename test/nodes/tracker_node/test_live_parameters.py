@@ -13,7 +13,7 @@ from sensor_msgs.msg import PointCloud2
 
 from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.radar_input import MISSED
-from marine_tracker.tracking import intake
+from marine_tracker.tracking import intake, own_ship
 
 
 def test_a_live_change_keeps_every_track(rig, clean):
@@ -107,7 +107,7 @@ def test_diagnostics_come_each_second_with_names_and_hardware_ids(rig, clean):
         *convert.CLOUD_REASONS,
         *intake.PLOT_REASONS,
         *intake.SCAN_REASONS,
-        *intake.OWN_REASONS,
+        *own_ship.OWN_REASONS,
         MISSED,
     ):
         assert values[reason] == '0'

@@ -8,7 +8,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.tracker_node import TrackerNode
-from marine_tracker.tracking import intake
+from marine_tracker.tracking import intake, own_ship
 from marine_tracker.types import Scan
 
 SECOND = 1_000_000_000
@@ -41,7 +41,7 @@ def test_own_ship_that_was_never_heard_is_at_the_origin_and_that_is_said(rig, cl
             entry
             for message in diagnostics.messages
             for entry in message.status
-            if entry.name == 'tracker: own ship' and entry.message == intake.OWN_NEVER_HEARD
+            if entry.name == 'tracker: own ship' and entry.message == own_ship.OWN_NEVER_HEARD
         ]
     )
     assert said[0].level == DiagnosticStatus.WARN
@@ -54,7 +54,7 @@ def test_own_ship_gone_silent_stands_where_it_was_and_that_is_said(rig, clean):
     here.send(clean[0][4:10])
     here.wait(
         lambda: any(
-            entry.message == intake.OWN_SILENT and entry.level == DiagnosticStatus.WARN
+            entry.message == own_ship.OWN_SILENT and entry.level == DiagnosticStatus.WARN
             for message in diagnostics.messages
             for entry in message.status
             if entry.name == 'tracker: own ship'
@@ -69,9 +69,9 @@ def test_own_ship_that_teleports_is_not_believed(rig, clean):
     here.play(scans[:8])
     before = here.names()
     here.send_own_ship(scans[8].start + 0.5, [300e3, 0.0], [0.0, 0.0])
-    here.wait(lambda: here.told(intake.OWN_TELEPORTED) == 1)
+    here.wait(lambda: here.told(own_ship.OWN_TELEPORTED) == 1)
     here.send_own_ship(scans[8].start + 0.6, [np.nan, 0.0], [0.0, 0.0])
-    here.wait(lambda: here.told(intake.OWN_NOT_FINITE) == 1)
+    here.wait(lambda: here.told(own_ship.OWN_NOT_FINITE) == 1)
     here.play(scans[8:12])
     assert len(before) == 6 and here.names() == before
     assert [entry.message for entry in here.targets[-1].status] == ['TRACKING'] * 6
