@@ -8,6 +8,7 @@ give to this machine (a foreign name that points here is how such pages get arou
 import ipaddress
 import secrets
 import socket
+from collections.abc import Collection
 from urllib.parse import urlsplit
 
 
@@ -21,8 +22,8 @@ def same_token(given: str, token: str) -> bool:
     return secrets.compare_digest(given.encode(errors='replace'), token.encode())
 
 
-def host_trusted(host: str) -> bool:
-    """Whether the header Host has an address as numbers, or a name of this machine."""
+def host_trusted(host: str, names: Collection[str] = ()) -> bool:
+    """Whether the header Host has an address as numbers, or a name of this machine or of names."""
     try:
         name = (urlsplit(f'//{host}').hostname or '').rstrip('.').lower()
     except ValueError:
@@ -34,7 +35,8 @@ def host_trusted(host: str) -> bool:
         return True
     except ValueError:
         own = socket.gethostname().lower()
-        return name in {'localhost', own, own.split('.')[0], f'{own.split(".")[0]}.local'}
+        others = {other.rstrip('.').lower() for other in names}
+        return name in others | {'localhost', own, own.split('.')[0], f'{own.split(".")[0]}.local'}
 
 
 def origin_trusted(origin: str | None, host: str) -> bool:

@@ -15,7 +15,7 @@ import sys
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
 from importlib import resources
 from typing import Any
@@ -70,6 +70,7 @@ class DisplayServer:
     on_command(command) is called in the server's thread; it returns a future of the answer, a
     text, or raises ValueError with what is wrong.
 
+    names: under which browsers reach the page, beside this machine's own.
     anybody_commands: viewers on other machines may command, too, where they have the token.
 
     port, token: as in the address of the page; counts: what went wrong, by name
@@ -81,9 +82,11 @@ class DisplayServer:
         on_command: Callable[[Command], Future[str]],
         anybody_commands: bool = False,
         token: str | None = None,
+        names: Collection[str] = (),
     ) -> None:
         self._host, self.port = read_address(address)
         self._on_command, self._anybody = on_command, anybody_commands
+        self._names = tuple(names)
         self.token = token or access.new_token()
         self.counts: Counter[str] = Counter({name: 0 for name in (FOREIGN, FULL, BAD, DENIED)})
         self._files = _static_files()
@@ -185,7 +188,7 @@ class DisplayServer:
             await runner.cleanup()
 
     async def _file(self, request: web.Request) -> web.Response:
-        if not access.host_trusted(request.host):
+        if not access.host_trusted(request.host, self._names):
             raise web.HTTPForbidden(text='this name is not one of this machine\n')
         found = self._files.get(request.match_info['name'] or 'index.html')
         if found is None:
@@ -195,7 +198,10 @@ class DisplayServer:
 
     async def _live(self, request: web.Request) -> web.StreamResponse:
         origin = request.headers.get('Origin')
-        if not (access.host_trusted(request.host) and access.origin_trusted(origin, request.host)):
+        if not (
+            access.host_trusted(request.host, self._names)
+            and access.origin_trusted(origin, request.host)
+        ):
             self.counts[FOREIGN] += 1
             raise web.HTTPForbidden(text='pages of other servers are refused\n')
         if len(self._sockets) >= MOST_VIEWERS:
@@ -247,8 +253,10 @@ class DisplayServer:
             try:
                 answer = asyncio.wrap_future(self._on_command(command))
                 said, done = await asyncio.wait_for(answer, ANSWER_S), True
-            except (ValueError, TimeoutError) as error:
-                said, done = str(error) or 'no answer in time', False
+            except ValueError as error:
+                said, done = str(error) or 'refused', False
+            except TimeoutError:
+                said, done = 'no answer in time', False
             viewer.answer(_text('answer', id=number, ok=done, text=said))
 
 

@@ -1,7 +1,7 @@
 """Commands of the page, given to the tracker by its topics, services and parameters."""
 
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
 from typing import Any
 
 from geometry_msgs.msg import PointStamped
@@ -15,6 +15,7 @@ from . import topics
 from .base_node import RunnableNode
 from .convert import header
 
+PATIENCE = 10  # s until an answer about the limits counts as lost
 LIMITS = ('cpa_limit_nm', 'tcpa_limit_min', 'vector_time_min')
 
 
@@ -44,13 +45,15 @@ class TrackerCommands:
         self._trial = node.create_client(SetBool, topics.TRIAL_MANOEUVRE)
         self._set = node.create_client(SetParameters, f'{tracker}/set_parameters')
         self._get = node.create_client(GetParameters, f'{tracker}/get_parameters')
+        self._asked: Any = None  # the future of its last answer
+        self._patience = 0
 
     def run(self, command: Command, answer: Future[str]) -> None:
         """Give one command; the answer, or the ValueError that says why not, comes later."""
         try:
             self._run(command, answer)
         except ValueError as error:
-            answer.set_exception(error)
+            _settle(answer, error)
 
     def _run(self, command: Command, answer: Future[str]) -> None:
         name, values = command.name, command.values
@@ -71,31 +74,45 @@ class TrackerCommands:
                 {'cpa_limit_nm': values['cpa_nm'], 'tcpa_limit_min': values['tcpa_min']}, answer
             )
         else:  # a trial: its values first, then it is switched on
-            values_set: Future[str] = Future()
-            values_set.add_done_callback(
-                lambda done: (
-                    self._call(self._trial, SetBool.Request(data=True), answer, _told)
-                    if done.exception() is None
-                    else answer.set_exception(done.exception())
-                )
-            )
-            self._put({f'trial_{key}': value for key, value in values.items()}, values_set)
+            self._try(values, answer)
+
+    def _try(self, values: dict[str, Any], answer: Future[str]) -> None:
+        taken: Future[str] = Future()
+
+        def go_on(done: Future[str]) -> None:
+            try:
+                done.result()
+                self._call(self._trial, SetBool.Request(data=True), answer, _told)
+            except (ValueError, CancelledError) as error:
+                _settle(answer, error)
+
+        taken.add_done_callback(go_on)
+        answer.add_done_callback(lambda done: taken.cancel() if done.cancelled() else None)
+        self._put({f'trial_{key}': value for key, value in values.items()}, taken)
 
     def ask_limits(self, hear: Callable[[dict[str, float]], None]) -> None:
-        """hear(the tracker's LIMITS), later, if the tracker is there."""
-        if self._get.service_is_ready():
-            future = self._get.call_async(GetParameters.Request(names=list(LIMITS)))
-            future.add_done_callback(
-                lambda done: hear(
-                    {name: value.double_value for name, value in zip(LIMITS, done.result().values)}
-                )
+        """hear(the tracker's LIMITS), later, if the tracker is there; to be called every second."""
+        self._patience -= 1
+        if self._asked is not None and not self._asked.done():
+            if self._patience > 0:
+                return
+            self._get.remove_pending_request(self._asked)  # that tracker has gone
+        self._asked = None
+        if not self._get.service_is_ready():
+            return
+        self._asked = future = self._get.call_async(GetParameters.Request(names=list(LIMITS)))
+        self._patience = PATIENCE
+        future.add_done_callback(
+            lambda done: hear(
+                {name: value.double_value for name, value in zip(LIMITS, done.result().values)}
             )
+        )
 
     def _publish(self, publisher, message, answer: Future[str], said: str) -> None:
         if not publisher.get_subscription_count():
             raise ValueError(f'no tracker listens to {publisher.topic_name}')
         publisher.publish(message)
-        answer.set_result(said)
+        _settle(answer, said)
 
     def _put(self, values: dict[str, float], answer: Future[str]) -> None:
         request = SetParameters.Request(
@@ -112,11 +129,26 @@ class TrackerCommands:
 
         def finish(done) -> None:
             try:
-                answer.set_result(read(done.result()))
+                _settle(answer, read(done.result()))
             except ValueError as error:
-                answer.set_exception(error)
+                _settle(answer, error)
 
-        client.call_async(request).add_done_callback(finish)
+        asked = client.call_async(request)
+        asked.add_done_callback(finish)
+        # Who asked does not wait for ever: what is not answered by then is forgotten.
+        answer.add_done_callback(
+            lambda done: client.remove_pending_request(asked) if done.cancelled() else None
+        )
+
+
+def _settle(answer: Future[str], result: str | BaseException) -> None:
+    """The answer, unless whoever asked has given up meanwhile."""
+    if not answer.set_running_or_notify_cancel():
+        return
+    if isinstance(result, BaseException):
+        answer.set_exception(result)
+    else:
+        answer.set_result(result)
 
 
 def _told(response) -> str:

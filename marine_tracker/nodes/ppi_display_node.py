@@ -30,6 +30,7 @@ from .declare import declare
 from .diagnostics import FAILED, OK, WARN, Tally
 from .display_commands import TrackerCommands
 
+FIX_S = 10.0  # a position that is older is not shown
 OWN_EVERY_S = 0.1  # between two positions of own ship sent to the page
 SAMPLES = 400  # of own ship, to place plots by
 BAD_TARGETS, BAD_OWN, BAD_FIX = 'targets not read', 'own ship not finite', 'fixes not finite'
@@ -48,11 +49,15 @@ class PpiDisplayNode(RunnableNode):
         self._own: deque[tuple[int, float, float]] = deque(maxlen=SAMPLES)  # ns, m, m
         self._own_told = -math.inf  # s of the wall
         self._fix: tuple[float, float] | None = None
+        self._fixed = -math.inf  # s of the wall, when it was heard
         self._trails = Trails()
         self._scanned: deque[float] = deque(maxlen=6)  # s of the wall
         self._health: dict[str, dict[str, str]] = {}
         self._limits: dict[str, float] = {}
-        self.server = DisplayServer(p.address, self._on_command, p.remote_commands, p.token or None)
+        self._alarmed = False
+        self.server = DisplayServer(
+            p.address, self._on_command, p.remote_commands, p.token or None, p.names.split()
+        )
         for kind, topic, callback, quality in (
             (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort(1)),
@@ -91,7 +96,8 @@ class PpiDisplayNode(RunnableNode):
         self._own_told = wall
         heading = convert.heading_of_odometry(message)
         x, y, vx, vy = display_messages.plain(np.hstack([position, velocity]), 3)
-        latitude, longitude = self._fix or (None, None)
+        fresh = wall - self._fixed < FIX_S
+        latitude, longitude = (self._fix if fresh else None) or (None, None)
         self.server.publish(
             'own',
             {
@@ -110,6 +116,7 @@ class PpiDisplayNode(RunnableNode):
     def _on_fix(self, message: NavSatFix) -> None:
         if math.isfinite(message.latitude) and math.isfinite(message.longitude):
             self._fix = message.latitude, message.longitude
+            self._fixed = time.monotonic()
         else:
             self._fix = None
             self._bad.add(BAD_FIX, time.monotonic())
@@ -168,9 +175,11 @@ class PpiDisplayNode(RunnableNode):
             self.server.publish('trails', self._trails.plain())
 
     def _on_alarms(self, message: DiagnosticArray) -> None:
+        self._alarmed = True
         self.server.publish('alarms', {'alarms': display_messages.alarms(message)})
 
     def _on_trial(self, message: DiagnosticArray) -> None:
+        self._alarmed = True
         self.server.publish('trial', display_messages.trial(message))
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
@@ -196,6 +205,7 @@ class PpiDisplayNode(RunnableNode):
     def _on_second(self) -> None:
         self._run_commands()
         self._commands.ask_limits(self._hear_limits)
+        self._forget()
         wall = time.monotonic()
         fresh = self._bad.fresh(wall)
         values = {
@@ -217,6 +227,13 @@ class PpiDisplayNode(RunnableNode):
             diagnostics.array(self.get_clock().now().nanoseconds, [status])
         )
         self.server.publish('health', {'parts': self._health})
+
+    def _forget(self) -> None:
+        """Of a tracker that has gone no alarm and no trial is left standing."""
+        if self._alarmed and not self.count_publishers(topics.ALARMS):
+            self._alarmed = False
+            self.server.publish('alarms', {'alarms': []})
+            self.server.publish('trial', {'on': False})
 
     def _hear_limits(self, limits: dict[str, float]) -> None:
         if limits != self._limits:

@@ -24,6 +24,11 @@ class PpiDisplayParameters:
         'What a viewer needs to command; it stands behind # in the printed address. Empty: a new '
         'one at each start.',
     )
+    names: str = parameter(
+        '',
+        'Other names under which browsers reach this page, with blanks between: of a proxy, say. '
+        "Under any other name than this machine's own the page is refused.",
+    )
     tracker: str = parameter('tracker', 'Name of the tracker node that commands are for.')
     plots_topic: str = parameter('radar/plots', 'Topic of the plots that are drawn.')
 

@@ -141,6 +141,22 @@ def test_pages_of_other_servers_are_refused_before_the_upgrade(served):
     assert one.server.counts[FOREIGN] == 5
 
 
+def test_a_proxy_has_a_name_that_is_told_to_the_server(served):
+    one = served(names=['ppi.example.org'])
+
+    async def get(host):
+        async with aiohttp.ClientSession() as session:
+            headers = {'Host': host, 'Origin': f'https://{host}'}
+            try:
+                async with session.ws_connect(one.base + '/live', headers=headers):
+                    return 101
+            except aiohttp.WSServerHandshakeError as error:
+                return error.status
+
+    assert asyncio.run(get('ppi.example.org')) == asyncio.run(get('PPI.example.org:443')) == 101
+    assert asyncio.run(get('other.example.org')) == 403
+
+
 def test_commands_need_the_token(served):
     one = served(token='sesame')
     acquire = {'command': 'acquire', 'x': -741.5, 'y': 3.0, 'id': 7}

@@ -9,8 +9,12 @@ import pytest
 pytest.importorskip('rclpy')
 pytest.importorskip('aiohttp', reason='no aiohttp: the display is not tested')
 import aiohttp
+from rcl_interfaces.srv import SetParameters
+from rclpy.node import Node
 from sensor_msgs.msg import PointCloud2
+from std_srvs.srv import Trigger
 
+from marine_tracker.display import server
 from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.ppi_display_node import PpiDisplayNode
 
@@ -183,6 +187,50 @@ def test_without_a_tracker_a_command_is_answered_with_what_is_missing(graph):
             assert not said['ok'] and said['text'].startswith('no tracker'), said
     finally:
         node.close()
+
+
+def test_a_tracker_that_answers_late_or_never_harms_nothing(graph, node_helpers, monkeypatch):
+    wait, _ = node_helpers
+    monkeypatch.setattr(server, 'ANSWER_S', 0.5)
+    display = graph.make(PpiDisplayNode, address='127.0.0.1:0', token='pass')
+    mute = Node('mute', context=graph.context)  # serves, but is not spun yet
+    for name in (topics.CANCEL_ALL, topics.ACKNOWLEDGE):
+        mute.create_service(Trigger, name, lambda request, response: response)
+    mute.create_service(SetParameters, 'tracker/set_parameters', lambda request, response: response)
+    wait(lambda: all(client.service_is_ready() for client in display._commands._triggers.values()))
+    wait(display._commands._set.service_is_ready)
+    try:
+
+        async def act(viewer):
+            said = [
+                await viewer.command('cancel_all'),
+                await viewer.command('trial', course_deg=4, speed_kn=5, delay_min=6),
+            ]
+            graph.add(mute)
+            await asyncio.sleep(1.0)  # now it answers what nobody waits for any more
+            return [*said, await viewer.command('acknowledge_all')]
+
+        late, trial, last = look(display, act)
+        assert not late['ok'] and not trial['ok'] and 'no answer in time' in late['text']
+        assert last['text'] == 'refused'  # as the service leaves its answer
+        assert not display.failures.counts and not graph.errors
+    finally:
+        display.close()
+
+
+def test_alarms_go_with_their_tracker(graph, bridge, sea, display):
+    here = bridge(sea, cpa_limit_nm=2.0, tcpa_limit_min=60.0)
+    node = display(here)
+
+    async def act(viewer):
+        await asyncio.to_thread(here.sail, 14)
+        await viewer.until(lambda me: me.newest.get('alarms', {}).get('alarms'))
+        graph.executor.remove_node(here.tracker)
+        graph.nodes.remove(here.tracker)
+        here.tracker.destroy_node()
+        await viewer.until(lambda me: me.newest['alarms']['alarms'] == [])
+
+    look(node, act)
 
 
 def test_the_tracks_are_the_same_with_and_without_a_display(
