@@ -307,6 +307,15 @@ def test_a_clock_that_is_off_is_told_and_changes_no_age():
     on_stage(act)
 
 
+def test_alarms_sound_where_sound_is_on_until_silenced():
+    async def act(page, stage):
+        await page.until('ppi.sound.played > 0')
+        await page.evaluate("document.getElementById('silence').click()")
+        assert await page.evaluate('ppi.sound.until > performance.now() / 1000 + 25')
+
+    on_stage(act, '?sound=on')
+
+
 def test_night_has_no_bright_pixel():
     async def act(page, stage):
         brightest = """(() => { const c = document.getElementById('picture');

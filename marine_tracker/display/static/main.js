@@ -5,6 +5,7 @@ import { rangeBearing, toMap, toScreen } from './geometry.js';
 import { Link } from './link.js';
 import * as panel from './panel.js';
 import { draw, scopeOf, targetAt } from './picture.js';
+import { Sound } from './sound.js';
 import { CHOICES, RANGES, keep, load, next } from './settings.js';
 import { emptyState, receive, reconnected, staleness, unacknowledged } from './state.js';
 
@@ -19,6 +20,7 @@ const canvas = /** @type {HTMLCanvasElement} */ (panel.element('picture'));
 const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
 /** @type {import('./surround.js').Marks} */
 const marks = { id: null, cursor: null, lines: [], drag: null };
+const sound = new Sound();
 const sorted = { column: 6, sign: 1, danger: true };
 /** @type {[number, number]|null} */
 let pointer = null; // px, while the mouse is over the picture
@@ -91,8 +93,10 @@ function showTitle() {
   document.title = count ? `(${count}) alarm${count > 1 ? 's' : ''} - PPI` : 'PPI';
 }
 
-/** By a timer, not by messages: silence shows itself. */
+/** By a timer, not by messages: silence shows itself. The alarms' sound goes by it, too. */
 function showStale() {
+  if (settings.sound === 'on') sound.update(state.alarms, seconds());
+  panel.element('silence').hidden = settings.sound !== 'on';
   const why = staleness(state, seconds());
   const stale = panel.element('stale');
   stale.hidden = !why;
@@ -135,6 +139,7 @@ function applySettings() {
     rings: `Rings ${settings.rings}`,
     labels: `Numbers ${settings.labels}`,
     palette: settings.palette,
+    sound: `Sound ${settings.sound}`,
   };
   for (const button of document.querySelectorAll('[data-next]')) {
     panel.say(button, words[/** @type {HTMLElement} */ (button).dataset.next]);
@@ -257,6 +262,7 @@ const KEYS = {
   r: () => change('rings', next(settings, 'rings')),
   p: () => change('palette', next(settings, 'palette')),
   n: chooseNext,
+  s: () => sound.silence(seconds()),
   e: mark,
   q: acquire,
   a: () =>
@@ -295,6 +301,7 @@ for (const button of document.querySelectorAll('[data-next]')) {
 for (const [id, act] of Object.entries({
   nearer: () => zoom(-1),
   farther: () => zoom(1),
+  silence: () => sound.silence(seconds()),
   mark,
   acquire,
   cancel,
@@ -327,6 +334,7 @@ window.ppi = {
   state,
   settings,
   marks,
+  sound,
   scopeNow,
   toScreen,
   toMap,

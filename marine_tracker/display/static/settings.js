@@ -21,6 +21,7 @@ export const CHOICES = {
   rings: ['on', 'off'],
   offCentre: ['off', 'on'],
   palette: ['day', 'dusk', 'night'],
+  sound: ['off', 'on'],
 };
 const KEY = 'marine_tracker ppi';
 
@@ -36,6 +37,7 @@ const KEY = 'marine_tracker ppi';
  * @property {string} rings
  * @property {string} offCentre
  * @property {string} palette
+ * @property {string} sound
  */
 
 /** The defaults, with what was chosen before, and what the address asks for (?range=12&...). */
@@ -52,6 +54,7 @@ export function load(/** @type {string} */ search) {
     rings: 'on',
     offCentre: 'off',
     palette: 'day',
+    sound: 'off',
   };
   let kept = {};
   try {
