@@ -11,7 +11,8 @@ What an alert is and how it lives: alerts.py. Here are the kinds and their cause
                      target already or not; one alert for each zone
     near capacity    NEARLY_FULL of the targets that may be
     capacity         as many targets as may be
-    heading, position, plots missing    not heard for too long; plots of each radar
+    heading, position, plots, log missing    not heard for too long; plots of each radar; the log
+                     where it is asked for
     fallback         at least a share of the confirmed targets have fallen back from their filter
     swap risk        the gate of a target overlaps that of another track
     own speed        what is told of own ship's velocity is not the way that her positions make
@@ -42,6 +43,7 @@ NAMES = (
     'fallback',
     'swap risk',
     'own speed doubtful',
+    'log missing',
 )
 (
     DANGER,
@@ -55,6 +57,7 @@ NAMES = (
     FALLBACK,
     SWAP_RISK,
     OWN_SPEED,
+    LOG_MISSING,
 ) = range(len(NAMES))
 PRIORITY = (
     'alarm',
@@ -67,6 +70,7 @@ PRIORITY = (
     'warning',
     'caution',
     'caution',
+    'warning',
     'warning',
 )
 CAUTION = np.array([priority == 'caution' for priority in PRIORITY])
@@ -111,12 +115,14 @@ class Silence(NamedTuple):
     """For how long, s, each has not been heard; inf for never. plots: of each radar.
 
     speed_off  m/s, how far own ship's velocity as told is off that of her positions; 0: they agree
+    log        s; 0 where it is not asked for
     """
 
     heading: float
     position: float
     plots: tuple[float, ...]
     speed_off: float = 0.0
+    log: float = 0.0
 
 
 def step(
@@ -173,6 +179,7 @@ def watch(
     sensors = [
         (HEADING_MISSING, 0, silence.heading),
         (POSITION_MISSING, 0, silence.position),
+        (LOG_MISSING, 0, silence.log),
         *((PLOTS_MISSING, radar, silent) for radar, silent in enumerate(silence.plots)),
     ]
     causes = [

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..gaussian.linear import invert_2x2, squared_distance
-from ..geometry import AT_REST, KNOT, NAUTICAL_MILE, locate, polar_to_position, unit_vector
+from ..geometry import AT_REST, NAUTICAL_MILE, locate, polar_to_position
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
@@ -20,6 +20,7 @@ from .cpa import Approach, OwnMotion, approach
 from .motion import Motion
 from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
+from .stabilisation import OwnSensors, Stabilisation, stabilisation
 from .swap_risk import swap_risk
 from .targets import Events, Targets
 
@@ -44,7 +45,7 @@ class Picture(NamedTuple):
     own       own ship then
     row       [T]  of each target in the tracker's report
     targets   T rows; those that were lost in this scan are among them
-    motion    T rows, as stabilised: course and speed through the water where a current is given
+    motion    T rows, as stabilised: course and speed over ground or through the water
     approach  T rows
     past      past positions of all tracks
     at_rest   [T]  neither the target, as far as is known, nor own ship makes way
@@ -53,6 +54,7 @@ class Picture(NamedTuple):
     events    what happened to targets in this scan
     alerts    those that are not normal
     changed   the alerts that changed in this scan, to normal as well
+    stabilised   what courses and speeds are measured against
     """
 
     time: float
@@ -68,6 +70,7 @@ class Picture(NamedTuple):
     events: Events
     alerts: Alerts
     changed: Alerts
+    stabilised: Stabilisation
 
 
 BY_CHANCE = 11.8  # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
@@ -102,13 +105,7 @@ class Arpa:
         self.motion = motion.PRESETS[tracker.vessel_class]._replace(
             speed_sigma=0.5 * tracker.max_target_speed_mps
         )
-        self.current = p.current_drift_kn * KNOT * unit_vector(np.radians(p.current_set_deg))
         self.gate_size = gate_size(tracker.gate_probability)
-
-    @property
-    def stabilised(self) -> str:
-        """What courses and speeds are measured against: 'sea' where a current is given."""
-        return 'sea' if self.current.any() else 'ground'
 
     def start(self) -> ArpaMemory:
         """No targets yet."""
@@ -123,20 +120,27 @@ class Arpa:
         )
 
     def step(
-        self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen=False
+        self,
+        memory: ArpaMemory,
+        scan: Scan,
+        report: Report,
+        heading: float,
+        fallen=False,
+        sensors: OwnSensors = OwnSensors(),
     ) -> tuple[ArpaMemory, Picture]:
         """One antenna revolution; all is reckoned to its end.
 
         heading  rad, own ship's, true; nan where it is not known
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
+        sensors  what is known of own ship beside her positions
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
         bearing_sigma = np.radians(radar.bearing_sigma_deg)
         samples = lately(memory.own, scan.own_ship, now)
-        own = own_motion(samples, now, heading)
+        own = own_motion(samples, now, heading)._replace(north=sensors.north)
 
         # motion: course and speed from a memory of their own
-        plots = locate(scan.plots, scan.own_ship, radar.range_sigma_m, bearing_sigma)
+        plots = locate(scan.plots, scan.measured_from, radar.range_sigma_m, bearing_sigma)
         remembered = motion.step(memory.motion, report, plots, self.motion, scan.radar)
         moving = motion.at(remembered, now)
         past = past_positions.step(
@@ -152,7 +156,10 @@ class Arpa:
 
         # cpa: how the tracks pass own ship
         at_rest = ~makes_way(moving) & (np.hypot(*own.velocity) < AT_REST)
-        moving, own = sea_stabilised(moving, own, self.current)
+        stabilised = stabilisation(
+            self.parameters, own, sensors, self._stationary(tracks, moving)
+        )
+        moving, own = sea_stabilised(moving, own, stabilised.drift)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
             tracks, report.reason, moving.position, passing, at_rest, self.zones, own, self.limits
@@ -195,7 +202,14 @@ class Arpa:
             events,
             alive,
             changed,
+            stabilised,
         )
+
+    def _stationary(self, tracks: Tracks, moving: Motion) -> Array:
+        """Velocity [2] m/s of the target that the operator says is stationary; nan for none."""
+        number = self.parameters.reference_target
+        row = ((tracks.number == number) & (tracks.status != LOST) & (number > 0)).nonzero()[0]
+        return moving.velocity[row[0]] if len(row) else np.full(2, np.nan)
 
     def _approach(
         self, moving: Motion, own: OwnMotion, acquired: Acquisition, tracks: Tracks

@@ -23,12 +23,15 @@ class OwnMotion(NamedTuple):
     covariance  [4, 4]  of position and velocity, as far as they err against the positions from
                         which the plots were placed; an error common to both (a wrong log by which
                         own ship is reckoned) leaves range, relative motion and CPA as they are
+    north       whether the heading is known; else it is the last one, right only to tell what is
+                relative to the bow
     """
 
     position: Array
     velocity: Array
     heading: float
     covariance: Array
+    north: bool = True
 
 
 class Approach(NamedTuple):

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..estimators import ACCOUNTS, Account
 from ..extent.hull_clearance import hull_clearance
 from ..extent.hulls import Shapes
+from ..geometry import wrap_bearing
 from ..tracking import lifecycle
 from ..tracking.lifecycle import CONFIRMED
 from ..tracking.tracker import Report
@@ -17,6 +18,7 @@ from .alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
 from .arpa import Picture
 from .cpa import Approach
 from .motion import Motion
+from .stabilisation import NONE
 from .targets import label
 
 
@@ -30,7 +32,10 @@ class View(NamedTuple):
     reason      [N]  why a lost one was lost: one of lifecycle.REASONS' numbers
     acquired    [N]  AUTOMATIC or MANUAL
     motion      N rows, at the end of the scan
-    approach    N rows
+    approach    N rows; nan for what cannot be told: see `told`
+    bow         [N]  rad, bearing from own ship's bow; nan without a heading
+    reference   [N]  the stationary target that the ground is known by
+    stabilised  what courses and speeds are measured against: ground, sea or none
     at_rest     [N]  neither the target nor own ship makes way
     dangerous   [N]  a danger alarm is active
     swap_risk   [N]  the gate overlaps that of another track
@@ -49,6 +54,9 @@ class View(NamedTuple):
     acquired: NDArray[np.int8]
     motion: Motion
     approach: Approach
+    bow: Array
+    reference: NDArray[np.bool_]
+    stabilised: str
     at_rest: NDArray[np.bool_]
     dangerous: NDArray[np.bool_]
     swap_risk: NDArray[np.bool_]
@@ -84,7 +92,10 @@ def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None
         report.reason[picture.row],
         targets.acquired,
         picture.motion,
-        picture.approach,
+        told(picture),
+        wrap_bearing(picture.approach.bearing - picture.own.heading),
+        (tracks.number > 0) & (tracks.number == picture.stabilised.target),
+        picture.stabilised.reference,
         picture.at_rest,
         np.isin(targets.id, alerts.id[active]),
         picture.overlap < 1,
@@ -93,6 +104,20 @@ def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None
         picture.time - tracks.first_time,
         ACCOUNTS[estimator](tracks.state) if estimator in ACCOUNTS else no_account(len(tracks.id)),
         None if shapes is None else _hulls(picture, take(shapes, picture.row)),
+    )
+
+
+def told(picture: Picture) -> Approach:
+    """The approach, nan where it cannot be known: courses and speeds without a stabilisation; and
+    without a heading all that counts from north. Range, CPA, TCPA and bow crossing stay."""
+    fields: list[str] = []
+    if picture.stabilised.reference == NONE:
+        fields += ['course', 'speed']
+    if not picture.own.north:
+        fields += ['bearing', 'course', 'relative_course']
+    unknown = np.full_like(picture.approach.range, np.nan)
+    return picture.approach._replace(
+        **{name + sigma: unknown for name in fields for sigma in ('', '_sigma')}
     )
 
 

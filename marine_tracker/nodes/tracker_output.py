@@ -65,9 +65,7 @@ class TrackerOutput:
         name = service.tracker.parameters.estimator
         arpa = service.arpa
         seen = view(output.picture, output.report, name, output.shapes)
-        self._to_targets.publish(
-            self._targets.message(seen, name, arpa.stabilised, output.scan.end, end_ns)
-        )
+        self._to_targets.publish(self._targets.message(seen, name, output.scan.end, end_ns))
         if self._to_markers.get_subscription_count():
             self._to_markers.publish(
                 self._markers.message(seen, output.picture, arpa.zones, arpa.parameters, end_ns)

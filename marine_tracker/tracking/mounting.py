@@ -1,0 +1,71 @@
+"""Where the antennas are on board: one reference point for all that is measured.
+
+A ship has one reference point (IMO MSC.192(79), 5.9: CCRP), mostly where the officer of the watch
+stands. Positions are told for the GPS antenna and plots are measured from the radar antenna; here,
+and nowhere else, both are brought to the reference point. That takes own ship's heading. Where it
+was never told, nothing is moved, and `needs_heading` says so.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..geometry import heading_at, on_deck, wrap_bearing
+from ..parameters import TrackerParameters
+from ..types import Array, OwnShip, Scan
+
+
+def mounted(scan: Scan, radar: TrackerParameters, heading: float) -> Scan:
+    """The scan with own ship's reference point, its antenna's place, and true bearings.
+
+    scan     as it came: own ship is where the GPS antenna is, bearings are as the radar counts them
+    radar    the parameters of its radar
+    heading  rad, own ship's where a sample does not tell hers; nan: not known
+
+    A radar whose bearings count from the bow takes the bow for north as long as no heading is known.
+    """
+    gps = radar.gps_ahead_m, radar.gps_starboard_m
+    antenna = radar.antenna_ahead_m, radar.antenna_starboard_m
+    relative = radar.bearings == 'relative'
+    if not (any(gps) or any(antenna) or radar.bearing_offset_deg or relative):
+        return scan
+    own = _with_heading(scan.own_ship, heading)
+    bearing = scan.plots.bearing + np.radians(radar.bearing_offset_deg)
+    if relative:
+        bearing = bearing + np.nan_to_num(heading_at(own, scan.plots.time))
+    scan = scan._replace(plots=scan.plots._replace(bearing=wrap_bearing(bearing)))
+    if np.isnan(own.heading).any():
+        return scan
+    own = _moved(own, *(-distance for distance in gps))
+    return scan._replace(own_ship=own, antenna=_moved(own, *antenna) if any(antenna) else None)
+
+
+def needs_heading(radars: Iterable[TrackerParameters]) -> bool:
+    """Whether anything that the parameters tell can be applied with a heading only."""
+    return any(
+        radar.bearings == 'relative'
+        or radar.gps_ahead_m
+        or radar.gps_starboard_m
+        or radar.antenna_ahead_m
+        or radar.antenna_starboard_m
+        for radar in radars
+    )
+
+
+def _with_heading(own: OwnShip, heading: float) -> OwnShip:
+    """The samples, those without a heading with this one."""
+    told = np.full(len(own.time), np.nan) if own.heading is None else own.heading
+    return own._replace(heading=np.where(np.isnan(told), heading, told))
+
+
+def _moved(own: OwnShip, ahead: float, starboard: float) -> OwnShip:
+    """The samples of a place so many m ahead and to starboard; a turn moves it, too."""
+    step = on_deck(ahead, starboard, own.heading)
+    return own._replace(position=own.position + step, velocity=own.velocity + _rate(own.time, step))
+
+
+def _rate(time: Array, step: Array) -> Array:
+    """m/s [2], how the step [K, 2] m changes: of a straight line in time through all samples."""
+    centred = time - time.mean()
+    square = centred @ centred
+    return centred @ step / square if square else np.zeros(2)
