@@ -3,8 +3,10 @@
 #
 #   make demo  [ARGS='--scenario ...']   simulator and tracker as two processes; Ctrl-C ends both
 #   make test  [ARGS='-k gate']          the fast tests
-#   make check                           ruff, mypy and the fast tests: what CI runs
+#   make check                           ruff, mypy, API pages and the fast tests: what CI runs
+#   make api                             pages from the docstrings, in build/api
 #   make slow                            the slow tests
+#   make fuzz                            46,000 broken files and messages, the same ones each time
 #   make clean                           removes .venv, caches and colcon's folders
 #
 # PYTHON=/path/to/python3.11 chooses the interpreter of .venv.
@@ -13,39 +15,55 @@ PYTHON ?=
 export PYTHON
 
 BIN := .venv/bin
-DESCRIPTION := setup.py setup.cfg pyproject.toml package.xml .ci/setup
-# One stamp for each choice of interpreter: asking for another one makes .venv anew.
-INSTALLED := .venv/.installed$(addprefix -,$(notdir $(PYTHON)))
-TOOLS := $(INSTALLED)-dev
+DESCRIPTION := setup.py setup.cfg pyproject.toml package.xml Makefile .ci/setup
+# What each target needs, the extras of setup.py. Every one has more than the one before.
+FOR_DEMO := ros
+FOR_TEST := $(FOR_DEMO),test,parallel,plot,bench,cluster
+FOR_CHECK := $(FOR_TEST),dev
+# A stamp for each, and for each choice of interpreter: asking for another one makes .venv anew.
+CHOICE := $(addprefix -,$(notdir $(PYTHON)))
+DEMO := .venv/.for-demo$(CHOICE)
+TEST := .venv/.for-test$(CHOICE)
+CHECK := .venv/.for-check$(CHOICE)
 
-.PHONY: demo test check slow clean
+.PHONY: demo test check api slow clean
 
-demo: $(INSTALLED)
+demo: $(DEMO)
 	@exec $(BIN)/python .ci/foreground.py $(BIN)/marine_tracker demo $(ARGS)
 
 # Arithmetic on all processors, then the nodes by themselves, which run in real time. Code 5: ARGS
 # leaves no test in this half.
-test: $(INSTALLED)
-	$(BIN)/python -m pytest -m 'not slow and not nodes' -n auto --maxprocesses 4 --dist loadfile \
-	    $(ARGS) || [ $$? = 5 ]
-	$(BIN)/python -m pytest -m 'not slow and nodes' $(ARGS) || [ $$? = 5 ]
+test: $(TEST)
+	$(BIN)/python -m pytest -m 'not slow and not fuzz and not nodes' -n auto --maxprocesses 4 \
+	    --dist loadfile $(ARGS) || [ $$? = 5 ]
+	$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' $(ARGS) || [ $$? = 5 ]
 
-check: $(TOOLS)
+check: $(CHECK)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	@$(MAKE) --no-print-directory test
+	@$(MAKE) --no-print-directory api test
 
-slow: $(INSTALLED)
+api: $(CHECK)
+	$(BIN)/python doc/api/build.py build/api
+
+slow: $(TEST)
 	$(BIN)/python -m pytest -m slow $(ARGS)
 
-$(INSTALLED): $(DESCRIPTION)
-	@.ci/setup ros,test,parallel,plot,bench
+fuzz: $(INSTALLED)
+	$(BIN)/python -m pytest -m fuzz -s $(ARGS)
+
+$(DEMO): $(DESCRIPTION)
+	@.ci/setup $(FOR_DEMO)
 	@touch $@
 
-$(TOOLS): $(INSTALLED)
-	@.ci/setup ros,test,parallel,plot,bench,dev
-	@touch $@
+$(TEST): $(DESCRIPTION)
+	@.ci/setup $(FOR_TEST)
+	@touch $(DEMO) $@
+
+$(CHECK): $(DESCRIPTION)
+	@.ci/setup $(FOR_CHECK)
+	@touch $(DEMO) $(TEST) $@
 
 clean:
 	rm -rf .venv build install log *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -6,7 +6,7 @@ import os
 import sys
 from importlib import metadata
 
-from .processes import one_thread
+from .processes import one_thread, stop_on_sigterm
 
 COMMANDS = (
     'demo',
@@ -36,9 +36,13 @@ first steps:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run a command line; returns the exit code: 0 well, 1 found wanting, 2 bad usage or input."""
+    """Runs a command line. Returns the exit code: 0 success, 1 a check failed, 2 bad usage or
+    input.
+    """
     argv = sys.argv[1:] if arguments is None else arguments
     one_thread()
+    if arguments is None:
+        stop_on_sigterm()
     try:
         args = _parser(argv).parse_args(argv)
         return args.run(args)
@@ -56,14 +60,14 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser that tells a usage error in one line."""
+    """A parser that reports a usage error in one line."""
 
     def error(self, message):
         self.exit(2, f'{self.prog}: {message} (see {self.prog} --help)\n')
 
 
 def _parser(argv: list[str]) -> _Parser:
-    """The parser; only the command that is asked for is imported."""
+    """The parser. Only the requested command is imported."""
     parser = _Parser(
         'marine_tracker',
         description=DESCRIPTION,

@@ -6,17 +6,17 @@ from pathlib import Path
 def path(*parts: str) -> Path:
     """A file or folder of the shipped configuration, e.g. path('scenarios', 'paper_track.yaml').
 
-    It is always the configuration that belongs to the code that runs: config/ of the source tree,
-    or share/marine_tracker/config of the prefix into which pip, colcon or a distribution put the
-    package. FileNotFoundError where the package stands without its configuration.
+    It is always the configuration that belongs to the running code: config/ of the source tree, or
+    share/marine_tracker/config of the prefix into which pip, colcon or a distribution installed the
+    package. FileNotFoundError if the package has no configuration.
     """
     return _root(Path(__file__).resolve().parent).joinpath(*parts)
 
 
 def _root(package: Path) -> Path:
-    """The configuration folder for a package folder, without asking the environment.
+    """The configuration folder for a package folder. It does not use the environment.
 
-    A look-up by AMENT_PREFIX_PATH or sys.prefix could meet another version of the package.
+    A search by AMENT_PREFIX_PATH or sys.prefix could find another version of the package.
     """
     if (package.parent / 'package.xml').is_file():
         return package.parent / 'config'

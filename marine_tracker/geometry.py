@@ -3,28 +3,30 @@
 Bearings are radians clockwise from true north; vectors are [east, north].
 """
 
+from typing import TypeVar
+
 import numpy as np
 
-from .types import OwnShip, Plots, PolarPlots
+from .types import Array, OwnShip, Plots, PolarPlots
 
 NAUTICAL_MILE = 1852.0  # m
 KNOT = NAUTICAL_MILE / 3600.0  # m/s
-EARTH_RADIUS = 6371008.8  # m, mean
-AT_REST = 0.25  # m/s, below which own ship makes no way
+AT_REST = 0.25  # m/s; below this own ship makes no way
+Angle = TypeVar('Angle', float, Array)
 
 
-def wrap_bearing(angle):
+def wrap_bearing(angle: Angle) -> Angle:
     """The same angle in [0, 2 pi)."""
-    wrapped = np.mod(angle, 2 * np.pi)
+    wrapped: Angle = np.mod(angle, 2 * np.pi)
     return wrapped * (wrapped < 2 * np.pi)  # -1e-17 % 2 pi rounds up to 2 pi
 
 
-def wrap_angle(angle):
+def wrap_angle(angle: Angle) -> Angle:
     """The same angle in [-pi, pi): for differences of bearings."""
     return wrap_bearing(angle + np.pi) - np.pi
 
 
-def unit_vector(bearing):
+def unit_vector(bearing: float | Array) -> Array:
     """[..., 2] east and north of a unit step along the bearing [...]."""
     unit = np.empty(np.shape(bearing) + (2,))
     np.sin(bearing, out=unit[..., 0])
@@ -32,25 +34,25 @@ def unit_vector(bearing):
     return unit
 
 
-def to_range_bearing(offset):
+def to_range_bearing(offset: Array) -> tuple[Array, Array]:
     """Range [...] m and bearing [...] rad in [0, 2 pi) of offsets [..., 2] m from the radar."""
     east, north = offset[..., 0], offset[..., 1]
     return np.hypot(east, north), wrap_bearing(np.arctan2(east, north))
 
 
-def bearing_from_yaw(yaw):
+def bearing_from_yaw(yaw: Angle) -> Angle:
     """Bearing, rad in [0, 2 pi), of a ROS yaw (counter-clockwise from east), and nan of nan."""
     return wrap_bearing(np.pi / 2 - yaw)
 
 
-def on_deck(ahead, starboard, heading):
+def on_deck(ahead: float, starboard: float, heading: Angle) -> Array:
     """East and north [..., 2] m from one place on own ship to another that lies so many m ahead and
     to starboard of it, or of a velocity likewise; at the headings [...] rad."""
     bow = unit_vector(heading)
     return ahead * bow + starboard * np.stack([bow[..., 1], -bow[..., 0]], -1)
 
 
-def heading_from(velocity, stated):
+def heading_from(velocity: Array, stated: Array) -> Array:
     """Heading [...] rad: the course of the velocity [..., 2] m/s, or of who makes no way the stated
     one [...], nan for none."""
     course = wrap_bearing(np.arctan2(velocity[..., 0], velocity[..., 1]))
@@ -58,7 +60,7 @@ def heading_from(velocity, stated):
     return np.where(still, wrap_bearing(stated), course)
 
 
-def heading_at(own_ship: OwnShip, time):
+def heading_at(own_ship: OwnShip, time: float | Array) -> Array:
     """Own ship's heading [...] rad at the times [...]; nan where it is not known."""
     if own_ship.heading is None:
         return np.full(np.shape(time), np.nan)
@@ -68,7 +70,9 @@ def heading_at(own_ship: OwnShip, time):
     return wrap_bearing(np.arctan2(east, north))
 
 
-def polar_to_position(range_, bearing, range_sigma, bearing_sigma):
+def polar_to_position(
+    range_: Array, bearing: Array, range_sigma: float | Array, bearing_sigma: float | Array
+) -> tuple[Array, Array]:
     """Unbiased position and covariance of polar measurements relative to the radar.
 
     range_, bearing  [M] m, rad; range_sigma m; bearing_sigma rad (scalars or [M]).
@@ -92,7 +96,7 @@ def polar_to_position(range_, bearing, range_sigma, bearing_sigma):
     return position, covariance
 
 
-def own_ship_at(own_ship: OwnShip, time):
+def own_ship_at(own_ship: OwnShip, time: float | Array) -> tuple[Array, Array]:
     """Own ship's position [..., 2] m and velocity [..., 2] m/s at the times [...].
 
     Linear between samples; beyond the first and last one the ship holds its velocity.
@@ -130,23 +134,3 @@ def locate(polar: PolarPlots, own_ship: OwnShip, range_sigma: float, bearing_sig
         covariance,
         polar.radial_speed,
     )
-
-
-def local_from_geodetic(latitude_deg, longitude_deg, origin_latitude_deg, origin_longitude_deg):
-    """East and north [..., 2] m of geodetic positions near an origin, on a sphere."""
-    north = np.radians(np.subtract(latitude_deg, origin_latitude_deg)) * EARTH_RADIUS
-    east = (
-        np.radians(np.subtract(longitude_deg, origin_longitude_deg))
-        * EARTH_RADIUS
-        * np.cos(np.radians(origin_latitude_deg))
-    )
-    return np.stack([east, north], -1)
-
-
-def geodetic_from_local(position, origin_latitude_deg, origin_longitude_deg):
-    """Latitude [...] and longitude [...] in degrees of local positions [..., 2] m."""
-    latitude = origin_latitude_deg + np.degrees(position[..., 1] / EARTH_RADIUS)
-    longitude = origin_longitude_deg + np.degrees(
-        position[..., 0] / (EARTH_RADIUS * np.cos(np.radians(origin_latitude_deg)))
-    )
-    return latitude, longitude

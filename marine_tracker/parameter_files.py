@@ -8,8 +8,8 @@ import json
 import textwrap
 from pathlib import Path
 
-import yaml
-
+from . import yaml_file
+from .files import write_text
 from .parameters import NODES
 
 COMMAND = 'python -m marine_tracker.parameter_files'
@@ -37,7 +37,9 @@ def limits(field) -> str:
 def yaml_value(value) -> str:
     """A parameter's value as YAML that every reader takes for the same type."""
     if isinstance(value, str):
-        plain = value.isidentifier() and yaml.safe_load(value) == value  # not yes, no, null
+        # Not null, and none of the words that YAML 1.1, which ROS reads, takes for a bool.
+        word = value.isidentifier() and value.lower() not in ('y', 'n', 'yes', 'no', 'on', 'off')
+        plain = word and yaml_file.parse(value, '') == value
         return value if plain else json.dumps(value)
     return json.dumps(value)
 
@@ -112,7 +114,7 @@ def main() -> None:
     for name, text in files().items():
         path = root / name
         path.parent.mkdir(exist_ok=True)
-        path.write_text(text)
+        write_text(path, text)
 
 
 if __name__ == '__main__':

@@ -2,12 +2,18 @@
 
 import contextlib
 import ctypes
+import faulthandler
+import fcntl
 import os
 import signal
+import sys
+from typing import NoReturn
 
 PR_SET_PDEATHSIG = 1  # sys/prctl.h
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h of the GNU C library
 KEEP = 64 * 1024 * 1024  # bytes
+GRACE_S = 10  # to close in order, after a signal
+LATE = int(signal.SIGALRM)  # exit code of a process that did not
 THREADS = ('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS', 'MKL_NUM_THREADS')
 
 
@@ -15,6 +21,54 @@ def end_with_parent() -> None:
     """In a child: be told to end should the parent be killed. Linux only; elsewhere nothing."""
     with contextlib.suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+def end_in_time() -> None:
+    """From now on the process ends within GRACE_S of a signal that a Python handler takes.
+
+    It ends with the exit code LATE, and says on stderr where each thread stood. No line of Python
+    runs for that: a call into a library that never returns may hold the interpreter's lock, and
+    then no handler and no thread of Python ever runs again. Python's own handler, in C, writes the
+    signal's number into a pipe. The kernel answers with the signal number 10, which stands for
+    nothing (SIGUSR1). Its handler is `alarm` of the C library: called with that 10, it asks for
+    SIGALRM in 10 s, which shows the threads and calls `_exit` with its own number, 14.
+
+    Where SIGUSR1 is another number, as on macOS, Python's handler has to run and call `closing`.
+    """
+    library = ctypes.CDLL(None)
+    library.signal.argtypes = ctypes.c_int, ctypes.c_void_p
+    library.signal(signal.SIGALRM, ctypes.cast(library._exit, ctypes.c_void_p))
+    if sys.stderr is not None:
+        faulthandler.register(signal.SIGALRM, chain=True)
+    if signal.SIGUSR1 != GRACE_S:
+        return
+    library.signal(GRACE_S, ctypes.cast(library.alarm, ctypes.c_void_p))
+    read, write = os.pipe()
+    fcntl.fcntl(read, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(read, fcntl.F_SETSIG, GRACE_S)
+    fcntl.fcntl(read, fcntl.F_SETFL, os.O_ASYNC)
+    os.set_blocking(write, False)
+    signal.set_wakeup_fd(write, warn_on_full_buffer=False)
+
+
+def stop_on_sigterm() -> None:
+    """From now on SIGTERM raises SystemExit, so that what was begun is put in order."""
+
+    def stop(*_: object) -> NoReturn:
+        raise SystemExit(128 + signal.SIGTERM)
+
+    signal.signal(signal.SIGTERM, stop)
+
+
+def closing() -> None:
+    """To be called once the process is about to end, by a signal or by itself.
+
+    Another signal gives no more time from here on; where none came, the time begins now.
+    """
+    signal.set_wakeup_fd(-1)
+    left = signal.alarm(GRACE_S)
+    if left:
+        signal.alarm(left)
 
 
 def one_thread() -> None:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .arpa.arpa import Arpa, ArpaMemory, Picture
-from .arpa.stabilisation import OwnSensors
+from .arpa.stabilisation import ALL_WELL, OwnSensors
 from .arpa.view import Standing, standing
 from .estimators import Estimator
 from .extent.extents import Extents, ExtentsMemory
@@ -43,7 +43,7 @@ class Tracking(NamedTuple):
               cluster
     report    of the tracker
     estimate  N rows, at the report's times
-    shapes    N rows: sizes and headings; None with extent off
+    shapes    N rows: sizes and headings; None with extent none
     """
 
     scan: Scan
@@ -82,8 +82,6 @@ class Service:
     ):
         self.tracker = Tracker(tracker, estimator)
         self.extents = Extents(tracker)
-        # Whose account is asked for; of one of your own nobody knows how it fares.
-        self._name = '' if estimator else tracker.estimator
         self.arpa = Arpa(arpa or ArpaParameters(), self.tracker.parameters)
 
     def start(self) -> ServiceMemory:
@@ -95,7 +93,7 @@ class Service:
         memory: ServiceMemory,
         scan: Scan,
         heading: float | None = None,
-        sensors: OwnSensors = OwnSensors(),
+        sensors: OwnSensors = ALL_WELL,
     ) -> tuple[ServiceMemory, Output]:
         """One antenna revolution.
 
@@ -105,7 +103,7 @@ class Service:
         if heading is None:
             heading = heading_of(scan.own_ship)
         memory, done = self.track(memory, scan, heading)
-        fares = standing(done.report, self._name)
+        fares = standing(done.report, self.tracker.estimator)
         known, picture = self.arpa.step(
             memory.arpa, done.scan, done.report, heading, fares.fallen_at, sensors
         )
@@ -155,4 +153,4 @@ def heading_of(own_ship: OwnShip) -> float:
     for it, and nan where she makes no way."""
     if own_ship.heading is not None and np.isfinite(own_ship.heading[-1]):
         return float(own_ship.heading[-1])
-    return float(heading_from(own_ship.velocity[-1], np.nan))
+    return float(heading_from(own_ship.velocity[-1], np.array(np.nan)))

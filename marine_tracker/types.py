@@ -7,7 +7,8 @@ Axes: M plots, N tracks, K own-ship samples. Positions are [east, north] in metr
 ground-stabilised frame `map`; times are seconds; bearings are radians clockwise from true north.
 """
 
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 CodeArray = NDArray[np.int8]  # one of a few named numbers, such as Tracks.status
+Numbers = Sequence[float] | Array
 HISTORY = 20  # scans of hits and misses that a track remembers, bits of Tracks.history
 
 
@@ -90,7 +92,7 @@ class Truth(NamedTuple):
     """
 
     time: Array
-    target: NDArray[np.int64]
+    target: IntArray
     position: Array
     velocity: Array
 
@@ -148,24 +150,27 @@ class Tracks(NamedTuple):
     bearing     [N]  rad from own ship when last swept: tells when the beam will pass again
     state       estimator state, N rows
     radar       [N]  which radar had the last plot; None with one radar
-    past        the last updates (tracking.order.Update), the last first; () with one radar
+    past        the last updates (tracking.late_plots.Update), the last first; () with one radar
     """
 
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    status: NDArray[np.int8]
-    history: NDArray[np.int64]
+    id: IntArray
+    number: IntArray
+    status: CodeArray
+    history: IntArray
     score: Array
-    age: NDArray[np.int64]
+    age: IntArray
     first_time: Array
     last_time: Array
     bearing: Array
     state: Any
-    radar: Any = None
-    past: tuple = ()
+    radar: CodeArray | None = None
+    past: tuple[Any, ...] = ()
 
 
-def take(rows_of: Any, rows: Any) -> Any:
+Rows = TypeVar('Rows', bound=tuple[Any, ...])  # a NamedTuple of arrays, or a tuple of such
+
+
+def take(rows_of: Rows, rows: IntArray | BoolArray | slice) -> Rows:
     """The chosen rows (indices, mask or slice) of a NamedTuple of arrays, nested ones included.
 
     A field that is None stays None; so it does with the functions below.
@@ -178,27 +183,27 @@ def take(rows_of: Any, rows: Any) -> Any:
         take(a, rows) if isinstance(a, tuple) else None if a is None else a.take(rows, 0)
         for a in rows_of
     ]
-    return rows_of._make(parts) if hasattr(rows_of, '_make') else tuple(parts)
+    return _like(rows_of, parts)
 
 
-def append(first: Any, second: Any) -> Any:
+def append(first: Rows, second: Rows) -> Rows:
     """The rows of `first`, then those of `second`."""
     return _map(lambda *pair: np.concatenate(pair), first, second)
 
 
-def where(choose_first: Any, first: Any, second: Any) -> Any:
+def where(choose_first: BoolArray, first: Rows, second: Rows) -> Rows:
     """Row by row: `first` where the mask [N] holds, else `second`."""
-    return _map(
-        lambda a, b: np.where(choose_first.reshape((-1,) + (1,) * (a.ndim - 1)), a, b),
-        first,
-        second,
-    )
+
+    def one(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
+        return np.where(choose_first.reshape((-1,) + (1,) * (a.ndim - 1)), a, b)
+
+    return _map(one, first, second)
 
 
-def put(into: Any, rows: Any, new: Any) -> Any:
+def put(into: Rows, rows: IntArray, new: Rows) -> Rows:
     """A copy of `into` with the named rows replaced by the rows of `new`."""
 
-    def one(a, b):
+    def one(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
         a = a.copy()
         a[rows] = b
         return a
@@ -206,7 +211,7 @@ def put(into: Any, rows: Any, new: Any) -> Any:
     return _map(one, into, new)
 
 
-def row_of(ids, wanted) -> NDArray[np.int64]:
+def row_of(ids: IntArray, wanted: IntArray) -> IntArray:
     """Row [K] in ids [N], all different, of each wanted id [K]; -1 where it is not there."""
     if not len(ids):
         return np.full(len(wanted), -1)
@@ -216,8 +221,7 @@ def row_of(ids, wanted) -> NDArray[np.int64]:
     return np.where(ids[row] == wanted, row, -1)
 
 
-def _map(f, *structures):
-    first = structures[0]
+def _map(f: Callable[..., NDArray[Any]], *structures: Rows) -> Rows:
     parts = [
         _map(f, *column)
         if isinstance(column[0], tuple)
@@ -226,4 +230,10 @@ def _map(f, *structures):
         else f(*column)
         for column in zip(*structures)
     ]
-    return first._make(parts) if hasattr(first, '_make') else tuple(parts)
+    return _like(structures[0], parts)
+
+
+def _like(example: Rows, parts: list[Any]) -> Rows:
+    """The parts as the tuple that the example is."""
+    same: Any = example._make(parts) if hasattr(example, '_make') else tuple(parts)
+    return cast(Rows, same)

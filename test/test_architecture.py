@@ -10,7 +10,17 @@ import marine_tracker
 PACKAGE = Path(marine_tracker.__file__).resolve().parent
 
 # What each part of the package may import of the others: the table of doc/architecture.md.
-BASE = {'types', 'geometry', 'parameters', 'config', 'processes'}
+BASE = {
+    'types',
+    'geometry',
+    'geodesy',
+    'parameters',
+    'config',
+    'processes',
+    'files',
+    'yaml_file',
+    'tables',
+}
 CORE = BASE | {'gaussian', 'networks', 'estimators', 'tracking', 'extent'}
 SOURCES = {'simulation', 'recording'}
 SERVICE = CORE | {'arpa', 'service'}
@@ -18,7 +28,11 @@ MAY_IMPORT = {
     'config': set(),
     'types': set(),
     'geometry': {'types'},
-    'parameters': set(),
+    'geodesy': {'types', 'geometry'},
+    'files': set(),
+    'yaml_file': {'files'},
+    'tables': {'files', 'types'},
+    'parameters': {'files'},
     'processes': set(),
     'parameter_files': BASE,
     'simulation': BASE,

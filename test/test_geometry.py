@@ -6,10 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from marine_tracker.geometry import (
-    EARTH_RADIUS,
     bearing_from_yaw,
-    geodetic_from_local,
-    local_from_geodetic,
     locate,
     own_ship_at,
     polar_to_position,
@@ -211,27 +208,3 @@ def test_no_plots_are_placed_nowhere():
     none = np.zeros(0)
     plots = locate(PolarPlots(none, none, none, none), SHIP, 5.0, 0.01)
     assert plots.position.shape == (0, 2) and plots.covariance.shape == (0, 2, 2)
-
-
-def great_circle(lat1, lon1, lat2, lon2):
-    """Distance m on the sphere, by the haversine formula; degrees."""
-    a, b, c, d = map(math.radians, (lat1, lon1, lat2, lon2))
-    h = math.sin((c - a) / 2) ** 2 + math.cos(a) * math.cos(c) * math.sin((d - b) / 2) ** 2
-    return 2 * EARTH_RADIUS * math.asin(math.sqrt(h))
-
-
-@pytest.mark.parametrize('origin', [(63.44, 10.4), (-33.8, 151.2), (0.0, 0.0)])
-@pytest.mark.parametrize('offset', [(0.05, 0.0), (0.0, 0.05), (-0.03, 0.07)])
-def test_local_distances_agree_with_the_great_circle(origin, offset):
-    latitude, longitude = origin[0] + offset[0], origin[1] + offset[1]
-    local = local_from_geodetic(latitude, longitude, *origin)
-    assert np.hypot(*local) == pytest.approx(great_circle(*origin, latitude, longitude), rel=2e-3)
-    assert np.sign(local[0]) == np.sign(offset[1])
-    assert np.sign(local[1]) == np.sign(offset[0])
-
-
-def test_geodetic_positions_come_back_from_local_ones():
-    rng = np.random.default_rng(3)
-    local = rng.uniform(-50_000, 50_000, (20, 2))
-    latitude, longitude = geodetic_from_local(local, 63.44, 10.4)
-    assert local_from_geodetic(latitude, longitude, 63.44, 10.4) == pytest.approx(local, abs=1e-6)

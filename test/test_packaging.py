@@ -11,7 +11,7 @@ from importlib.metadata import Distribution
 from pathlib import Path
 
 import pytest
-import yaml
+from ruamel.yaml import YAML
 
 import marine_tracker
 
@@ -24,15 +24,20 @@ ROSDEP_KEY = {
     'numpy': 'python3-numpy',
     'psutil': 'python3-psutil',
     'pynmea2': 'python3-pynmea2',
+    'pyproj': 'python3-pyproj',
     'pytest': 'python3-pytest',
     'pytest-timeout': 'python3-pytest-timeout',
     'PyWavelets': 'python3-pywavelets',
-    'PyYAML': 'python3-yaml',
     'rich': 'python3-rich',
+    'ruamel.yaml': 'python3-ruamel.yaml',
     'ros-jazzy-domain-coordinator': 'domain_coordinator',
     'scipy': 'python3-scipy',
     'setuptools': 'python3-setuptools',
 }
+
+
+def read_yaml(name):
+    return YAML(typ='safe', pure=True).load((ROOT / name).read_text())
 
 
 def manifest(tag):
@@ -100,7 +105,8 @@ def requirements(distribution):
 def test_version_is_the_same_everywhere(distribution):
     version = MANIFEST.findtext('version')
     latest = re.search(r'^(\d+\.\d+\.\d+) \(', (ROOT / 'CHANGELOG.rst').read_text(), re.M)
-    assert distribution.version == version == latest.group(1)
+    cited = read_yaml('CITATION.cff')['version']
+    assert distribution.version == version == latest.group(1) == cited
 
 
 def test_requirements_of_setup_py_and_package_xml_agree(requirements):
@@ -136,7 +142,7 @@ def test_every_ros_package_imported_is_in_package_xml():
 
 
 def test_every_rosdep_key_of_our_own_has_a_rule_for_debian_and_ubuntu():
-    rules = yaml.safe_load((ROOT / 'rosdep.yaml').read_text())
+    rules = read_yaml('rosdep.yaml')
     assert set(rules) == {'python3-pywavelets'} <= manifest('exec_depend')
     assert all({'debian', 'ubuntu'} <= set(rule) for rule in rules.values())
 

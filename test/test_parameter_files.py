@@ -1,9 +1,8 @@
 from pathlib import Path
 
 import pytest
-import yaml
 
-from marine_tracker import parameter_files
+from marine_tracker import parameter_files, yaml_file
 from marine_tracker.parameters import NODES, from_mappings
 
 CHECKOUT = Path(__file__).resolve().parents[1]
@@ -18,7 +17,7 @@ def test_the_shipped_file_is_what_the_dataclasses_say(name):
 
 @pytest.mark.parametrize('node', NODES)
 def test_the_yaml_of_a_node_reads_back_as_its_defaults(node):
-    values = yaml.safe_load(parameter_files.node_yaml(node))['/**']['ros__parameters']
+    values = yaml_file.parse(parameter_files.node_yaml(node), 'it')['/**']['ros__parameters']
     assert from_mappings(NODES[node], values) == tuple(kind() for kind in NODES[node])
 
 
@@ -31,5 +30,5 @@ def test_every_parameter_stands_in_the_document_with_its_limits():
 @pytest.mark.parametrize('value', ['', 'yes', '1.5', '~', 'a: b', '/tmp/x', 'imm', 2.0, 7, True])
 def test_yaml_values_keep_their_type(value):
     written = parameter_files.yaml_value(value)
-    read = yaml.safe_load(f'key: {written}')['key']
+    read = yaml_file.parse(f'key: {written}', 'it')['key']
     assert read == value and type(read) is type(value)

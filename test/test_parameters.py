@@ -3,13 +3,15 @@ import re
 
 import pytest
 
+from marine_tracker import yaml_file
 from marine_tracker.estimators import ESTIMATORS
 from marine_tracker.parameters import (
     NODES,
     VESSEL_CLASSES,
+    ArpaParameters,
     TrackerParameters,
+    description,
     from_mapping,
-    read_yaml_mapping,
 )
 
 KINDS = [kind for kinds in NODES.values() for kind in kinds]
@@ -149,7 +151,7 @@ def test_a_mapping_gives_the_parameters_it_names():
 def test_a_yaml_file_gives_its_mapping(tmp_path, text, expected):
     file = tmp_path / 'some.yaml'
     file.write_text(text)
-    assert read_yaml_mapping(file) == expected
+    assert yaml_file.read_mapping(file) == expected
 
 
 @pytest.mark.parametrize('text', ['a: [1\n', '- 1\n- 2\n', 'just words', '5'])
@@ -157,14 +159,37 @@ def test_another_yaml_file_is_refused_by_name(tmp_path, text):
     file = tmp_path / 'some.yaml'
     file.write_text(text)
     with pytest.raises(ValueError, match='some.yaml'):
-        read_yaml_mapping(file)
+        yaml_file.read_mapping(file)
 
 
-def test_off_is_off_though_yaml_reads_it_as_false(tmp_path):
-    file = tmp_path / 'tracker.yaml'
-    file.write_text('extent: off')
-    values = read_yaml_mapping(file)
-    assert values == {'extent': False}
-    assert from_mapping(TrackerParameters, values).extent == 'off'
+@pytest.mark.parametrize(
+    ('kind', 'text', 'name', 'expected'),
+    [
+        (TrackerParameters, 'extent: off', 'extent', 'none'),
+        (TrackerParameters, 'extent: false', 'extent', 'none'),
+        (ArpaParameters, 'vectors: true', 'vectors', 'absolute'),
+        (ArpaParameters, 'vectors: "true"', 'vectors', 'absolute'),
+    ],
+)
+def test_words_of_earlier_versions_are_read_with_a_hint(kind, text, name, expected, caplog):
+    description._tell_once.cache_clear()
+    for _ in range(2):
+        read = from_mapping(kind, yaml_file.parse(text, 'it'))
+        assert getattr(read, name) == expected
+    assert len(caplog.records) == 1
+    assert f'write {expected}' in caplog.text and name in caplog.text
+
+
+def test_other_bools_are_no_words():
     with pytest.raises(ValueError, match='extent is True, a bool; it must be a str'):
         TrackerParameters(extent=True)
+    with pytest.raises(ValueError, match='vectors is False, a bool; it must be a str'):
+        ArpaParameters(vectors=False)
+
+
+def test_no_word_of_a_choice_is_read_as_another_type():
+    for kinds in NODES.values():
+        for field in (field for kind in kinds for field in dataclasses.fields(kind)):
+            for word in field.metadata['choices']:
+                assert word.lower() not in ('y', 'n', 'yes', 'no', 'on', 'off', 'true', 'false')
+                assert yaml_file.parse(word, 'it') == word

@@ -1,22 +1,21 @@
-"""Acquisition: which tracks are targets.
+"""Acquisition: decides which tracks are targets.
 
-The tracker initiates and confirms by itself; the operator's rules stand here. Automatic
-acquisition takes confirmed tracks everywhere or in guard zones only, never in exclusion zones. A
-click acquires any track near it, tentative ones too: such a target is shown at once, as acquiring
-and by its track's id, for it has no number before the tracker confirms it (targets.label).
+The tracker initiates and confirms tracks by itself. This module has the operator's rules. Automatic
+acquisition takes confirmed tracks everywhere, or in guard zones only, and never in exclusion zones.
+A click acquires any track near it, tentative ones too. Such a target is shown at once as acquiring,
+by its track's id, because it gets a number only when the tracker confirms it (targets.label).
 
-How targets end: the track is lost, leaves by range or is merged into another track, which takes
-the target over; it is cancelled; it enters an exclusion zone, unless acquired by hand; or it gives
-way where there are more than may be (capacity.py).
+A target ends when its track is lost or moves out of range; when the operator cancels it; when it
+enters an exclusion zone, unless it was acquired by hand; or when it is displaced because there are
+too many targets (capacity.py). If its track is merged into another, that track becomes the target.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..tracking.lifecycle import LOST
-from ..types import Array, append, row_of, take
+from ..types import Array, BoolArray, CodeArray, IntArray, append, row_of, take
 from .capacity import make_room
 from .situation import Situation
 from .targets import (
@@ -37,20 +36,20 @@ from .targets import (
 )
 
 EVERYWHERE, ZONES, NOWHERE = WHERE = ('everywhere', 'zones', 'nowhere')
-MAX_CLICKS = 20  # that may be pending
+MAX_CLICKS = 20  # clicks that may be pending
 
 
 class AcquisitionSettings(NamedTuple):
     """How targets are acquired.
 
-    automatic     where tracks are acquired by themselves: everywhere, zones or nowhere
-    capacity      most targets
-    click_radius  m, how far from a click its track may be
+    automatic     where tracks are acquired automatically: everywhere, zones or nowhere
+    capacity      largest number of targets
+    click_radius  m, largest distance of a track from a click
     click_wait    s, how long a click waits for a track to appear
-    border        s, how long a target must be outside of a zone before it enters or leaves anew:
-                  keeps those at the border from being acquired and dropped again and again
-    brief         s, within which the loss of a target that was acquired automatically is told as an
-                  event, but raises no alarm: most such tracks are clutter's; 0 alarms for all
+    border        s, how long a target must be outside of a zone before it can enter or leave
+                  again; so a target at the border is not acquired and dropped again and again
+    brief         s; if a target that was acquired automatically is lost within this time, it is an
+                  event but not an alarm, because most such tracks are clutter; 0: always an alarm
     """
 
     automatic: str = EVERYWHERE
@@ -65,27 +64,27 @@ class Barred(NamedTuple):
     """Tracks that are not acquired automatically for now, one row each.
 
     id         [R]  track id
-    cancelled  [R]  by the operator: until it enters a guard zone anew; else it was in an
-                    exclusion zone: until it has left it
-    last       [R]  s, when it was last inside that zone; nan: not looked yet, -inf: never
+    cancelled  [R]  True: by the operator, until it enters a guard zone again; False: it was in an
+                    exclusion zone, until it has left it
+    last       [R]  s, when it was last inside that zone; nan: not checked yet, -inf: never
     """
 
-    id: NDArray[np.int64]
-    cancelled: NDArray[np.bool_]
+    id: IntArray
+    cancelled: BoolArray
     last: Array
 
 
 class Clicks(NamedTuple):
-    """Clicks for which there is no track yet: position [C, 2] m and since [C] s."""
+    """Clicks that have no track yet: position [C, 2] m and since [C] s."""
 
     position: Array
     since: Array
 
 
 class Acquisition(NamedTuple):
-    """All that is known between two scans.
+    """The memory between two scans.
 
-    waiting  tracks that were not acquired in the last scan because there was no room
+    waiting  number of tracks that were not acquired in the last scan because there was no room
     """
 
     targets: Targets
@@ -105,10 +104,10 @@ def begin() -> Acquisition:
     )
 
 
-def acquire(state: Acquisition, position, now: float) -> Acquisition:
-    """The operator's click at position [2] m; the next `step` finds its track.
+def acquire(state: Acquisition, position: Array, now: float) -> Acquisition:
+    """The operator's click at position [2] m. The next `step` finds its track.
 
-    ValueError where the position is not finite or MAX_CLICKS are pending already.
+    ValueError if the position is not finite, or if MAX_CLICKS are pending already.
     """
     position = np.asarray(position, float)
     if position.shape != (2,) or not np.isfinite(position).all():
@@ -119,9 +118,10 @@ def acquire(state: Acquisition, position, now: float) -> Acquisition:
 
 
 def cancel(state: Acquisition, number: int) -> tuple[Acquisition, Events]:
-    """The target is none any more. ValueError where there is no target of that number.
+    """Ends a target. ValueError if there is no target with that number.
 
-    It is not acquired automatically again unless it enters a guard zone anew; a click does.
+    It is acquired automatically again only if it enters a guard zone again. A click acquires it
+    too.
     """
     row = (state.targets.number == number).nonzero()[0]
     if number <= 0 or not len(row):
@@ -130,12 +130,12 @@ def cancel(state: Acquisition, number: int) -> tuple[Acquisition, Events]:
 
 
 def cancel_all(state: Acquisition) -> tuple[Acquisition, Events]:
-    """No target is one any more, those being acquired included, and no click waits."""
+    """Ends all targets, including those being acquired, and all waiting clicks."""
     nothing = state._replace(clicks=begin().clicks, waiting=0)
     return _cancel(nothing, np.arange(len(state.targets.id)))
 
 
-def how_acquired(state: Acquisition, ids) -> NDArray[np.int8]:
+def how_acquired(state: Acquisition, ids: IntArray) -> CodeArray:
     """AUTOMATIC or MANUAL [N] for the tracks that are targets, -1 for the others."""
     row = row_of(state.targets.id, ids)
     return np.where(row >= 0, np.append(state.targets.acquired, 0)[row], -1).astype(np.int8)
@@ -144,9 +144,9 @@ def how_acquired(state: Acquisition, ids) -> NDArray[np.int8]:
 def step(
     state: Acquisition, settings: AcquisitionSettings, situation: Situation, now: float
 ) -> tuple[Acquisition, Events]:
-    """One scan; now s. Afterwards the targets are tracks of the situation that live.
+    """Processes one scan; now s. Afterwards all targets are live tracks of the situation.
 
-    ValueError where the settings do not say where targets are to be acquired.
+    ValueError if the settings do not say where targets are acquired.
     """
     if settings.automatic not in WHERE:
         raise ValueError(
@@ -211,12 +211,12 @@ def _bar(
 
 
 def _answer_clicks(
-    clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how, now: float
-):
-    """Clicks that wait on, rows of the tracks clicked, and positions of clicks that lapse.
+    clicks: Clicks, settings: AcquisitionSettings, situation: Situation, how: CodeArray, now: float
+) -> tuple[Clicks, IntArray, Array]:
+    """Clicks that still wait, rows of the tracks clicked, and positions of clicks that lapse.
 
-    A click takes the nearest track that is no target yet; where there are only targets, the
-    nearest of them becomes one acquired by hand.
+    A click takes the nearest track that is not a target yet. If there are only targets, the nearest
+    one becomes acquired by hand.
     """
     free, clicked, wait = (how < 0) & (situation.status != LOST), [], []
     targets = how >= 0
@@ -237,7 +237,7 @@ def _answer_clicks(
     )
 
 
-def _cancel(state: Acquisition, rows) -> tuple[Acquisition, Events]:
+def _cancel(state: Acquisition, rows: IntArray) -> tuple[Acquisition, Events]:
     chosen = take(state.targets, rows)
     count = len(chosen.id)
     stay = np.ones(len(state.targets.id), bool)

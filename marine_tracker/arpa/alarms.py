@@ -2,9 +2,9 @@
 
 What an alert is and how it lives: alerts.py. Here are the kinds and their causes:
 
-    danger           CPA and TCPA of a target below the limits, or likely so (situation.danger);
-                     raised only by a scan in which the target shows, for a track that clutter
-                     began does not show again, while its course is a guess
+    danger           CPA and TCPA of a target below the limits, or likely so (situation.danger).
+                     Only a scan in which the target shows raises it: a track that clutter began
+                     does not show again. Once acknowledged: see encounters.py
     lost target      its track ended for want of plots; not one that left by range, was merged,
                      cancelled, lay in an exclusion zone, or had hardly been acquired
     new target       a confirmed track in a guard zone, whether it entered or was first seen there,
@@ -23,11 +23,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..tracking.lifecycle import CONFIRMED, LOST
-from ..types import Array, row_of, take
+from ..types import Array, CodeArray, IntArray, row_of, take
 from . import alerts as machine
+from . import encounters
 from .acquisition import Acquisition, how_acquired
 from .alerts import KEEP, OFF, ON, VALUES, Alerts, Causes, Rule
-from .situation import Situation
+from .situation import Limits, Situation
 from .targets import LOST_FROM_SIGHT, Events
 from .zones import Zones
 
@@ -75,8 +76,12 @@ PRIORITY = (
 )
 CAUTION = np.array([priority == 'caution' for priority in PRIORITY])
 MOMENTARY = np.arange(len(NAMES)) == LOST_TARGET
+REMEMBERED = np.arange(len(NAMES)) == DANGER
 NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level that keeps an alert
 APART = 1.44  # overlap of gates (see swap_risk) that ends a swap risk
+
+
+Named = tuple[int, int, Causes]  # the kind of alert, its zone or radar, and what causes it
 
 
 class AlarmSettings(NamedTuple):
@@ -87,6 +92,7 @@ class AlarmSettings(NamedTuple):
     lapse_after     s, after which an alert without a cause lapses that nobody acknowledged
     sensor_timeout  s without heading, position or plots
     fallback_share  of the confirmed targets
+    limits          of danger
     """
 
     danger_after: float = 5.0
@@ -94,6 +100,7 @@ class AlarmSettings(NamedTuple):
     lapse_after: float = 1800.0
     sensor_timeout: float = 10.0
     fallback_share: float = 0.5
+    limits: Limits = Limits()
 
 
 class Tracking(NamedTuple):
@@ -108,7 +115,7 @@ class Tracking(NamedTuple):
     capacity: int
     fallen: int
     overlap: Array
-    other: Array
+    other: IntArray
 
 
 class Silence(NamedTuple):
@@ -142,7 +149,11 @@ def step(
     target = how_acquired(acquisition, situation.id) >= 0
     numbered = (target & (situation.number > 0)).nonzero()[0]
     confirmed = int((target & (situation.status == CONFIRMED)).sum())
+    alerts = encounters.marked(alerts, alerts.kind == DANGER, situation, settings.limits, now)
     danger = np.minimum(situation.danger, np.where(situation.status == CONFIRMED, ON, KEEP))
+    danger = encounters.level(
+        danger, alerts, alerts.kind == DANGER, situation, settings.limits, now
+    )
     lost = row_of(situation.id, events.id[events.kind == LOST_FROM_SIGHT])
     count, capacity, fallen = len(acquisition.targets.id), tracking.capacity, tracking.fallen
     swap = np.where(tracking.overlap < 1, ON, np.where(tracking.overlap < APART, KEEP, OFF))
@@ -191,10 +202,18 @@ def watch(
 
 
 def acknowledge(
-    alerts: Alerts, now: float, kind: int | None = None, number: int | None = None
+    alerts: Alerts,
+    now: float,
+    kind: int | None = None,
+    number: int | None = None,
+    duration: float = 0.0,
 ) -> tuple[Alerts, Alerts]:
-    """The operator has seen one alert, all of a kind, all of a target, or all (alerts.py)."""
-    return machine.acknowledge(alerts, now, MOMENTARY, kind, number)
+    """The operator has seen one alert, all of a kind, all of a target, or all (alerts.py).
+
+    duration  s, after which it is to be acknowledged anew; 0: not before its cause has ended
+    """
+    until = now + duration if duration > 0 else np.inf
+    return machine.acknowledge(alerts, now, MOMENTARY, kind, number, until, REMEMBERED)
 
 
 def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
@@ -206,12 +225,15 @@ def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
             settings.lapse_after,
             bool(CAUTION[kind]),
             bool(MOMENTARY[kind]),
+            bool(REMEMBERED[kind]),
         )
         for kind in range(len(NAMES))
     )
 
 
-def _advance(alerts, causes, settings, now):
+def _advance(
+    alerts: Alerts, causes: list[Named], settings: AlarmSettings, now: float
+) -> tuple[Alerts, Alerts]:
     """Each kind and zone by itself; those without causes here stay as they are."""
     by_kind, parts, changes = rules(settings), [], [machine.begin()]
     rest = np.ones(len(alerts.kind), bool)
@@ -226,7 +248,9 @@ def _advance(alerts, causes, settings, now):
     return _join([take(alerts, rest), *parts]), _join(changes)
 
 
-def _in_guard_zones(alerts, situation, acquisition, zones):
+def _in_guard_zones(
+    alerts: Alerts, situation: Situation, acquisition: Acquisition, zones: Zones
+) -> list[Named]:
     """Causes of `new target`, zone by zone; a zone that is no more has none."""
     cancelled = acquisition.barred.id[acquisition.barred.cancelled]
     rows = (
@@ -246,7 +270,9 @@ def _in_guard_zones(alerts, situation, acquisition, zones):
     ]
 
 
-def _of_tracks(situation, rows, level, *told):
+def _of_tracks(
+    situation: Situation, rows: IntArray, level: CodeArray | IntArray, *told: Array
+) -> Causes:
     """Causes of the tracks at the rows; level [N], and what else is told of each [N]."""
     values = np.full((len(rows), VALUES), np.nan)
     for column, value in enumerate((situation.range, situation.bearing, *told)):
@@ -260,12 +286,12 @@ def _of_tracks(situation, rows, level, *told):
     )
 
 
-def _single(value, limit, *told):
+def _single(value: float, limit: float, *told: float) -> Causes:
     """The cause of a kind that concerns no track, there from a value of `limit` on."""
     return _causes(value >= limit, *told, keep=value >= NO_LONGER * limit)
 
 
-def _causes(there, *told, keep=False):
+def _causes(there: bool, *told: float, keep: bool = False) -> Causes:
     values = np.full((1, VALUES), np.nan)
     values[0, : len(told)] = told
     none = np.zeros(1, np.int64)
@@ -278,5 +304,5 @@ def _causes(there, *told, keep=False):
     )
 
 
-def _join(parts):
+def _join(parts: list[Alerts]) -> Alerts:
     return Alerts(*(np.concatenate(column) for column in zip(*parts)))

@@ -9,8 +9,10 @@ States and transitions are those of bridge alert management (IEC 62923-1):
 
 A cause must hold for a time before it raises and be gone for a time before it ends, and its level
 knows a middle that neither raises nor ends, nor interrupts what holds: hysteresis in time and in
-value. Cautions need no
-acknowledgement: they are raised as acknowledged. An alert on something momentary (a loss) has no
+value. An acknowledgement may hold for some time only. Of kinds that are remembered it outlives the
+alert: a cause that comes back raises it as acknowledged, until the cause has been clearly gone for
+a time; one that has become clearly worse raises it anew. Cautions need no acknowledgement: they are
+raised as acknowledged. An alert on something momentary (a loss) has no
 cause that could end: it stays active until acknowledged. What nobody acknowledges, as in a tracker
 without an operator, lapses some time after its cause, or alerts would pile up for ever.
 """
@@ -18,14 +20,14 @@ without an operator, lapses some time after its cause, or alerts would pile up f
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array, append, row_of, take
+from ..types import Array, BoolArray, CodeArray, IntArray, append, row_of, take
 
 NORMAL, ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED = range(4)
 STATES = ('normal', 'active unacknowledged', 'active acknowledged', 'rectified unacknowledged')
 VALUES = 5  # numbers that an alert tells
-OFF, KEEP, ON = range(3)  # levels of a cause: gone, not enough to raise, there
+# Levels of a cause: clearly gone, gone, not enough to raise, there, worse than acknowledged.
+CLEAR, OFF, KEEP, ON, WORSE = range(-1, 4)
 
 
 class Alerts(NamedTuple):
@@ -41,31 +43,37 @@ class Alerts(NamedTuple):
     turn      [A]     s, since when the cause has called for a change of state; nan: it does not
     position  [A, 2]  m, of the target when the state began; nan for none
     values    [A, 5]  what the text tells, at that time; see alarms.py
+    until     [A]     s, until when it is acknowledged; inf: until its cause has ended; nan: it is
+                      not, or needs no acknowledgement. In state NORMAL: the cause that comes back
+                      is acknowledged already
+    mark      [A, 2]  what would be clearly worse, see encounters.py; nan: not looked at yet
     """
 
-    kind: NDArray[np.int8]
-    zone: NDArray[np.int64]
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    state: NDArray[np.int8]
+    kind: CodeArray
+    zone: IntArray
+    id: IntArray
+    number: IntArray
+    state: CodeArray
     since: Array
     turn: Array
     position: Array
     values: Array
+    until: Array
+    mark: Array
 
 
 class Causes(NamedTuple):
     """What may raise alerts of one kind: one row a subject; a subject not there has gone away.
 
     id, number  [S]     as in Alerts
-    level       [S]     OFF, KEEP or ON
+    level       [S]     CLEAR, OFF, KEEP, ON or WORSE
     position    [S, 2]  m
     values      [S, 5]
     """
 
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    level: NDArray[np.int8]
+    id: IntArray
+    number: IntArray
+    level: CodeArray
     position: Array
     values: Array
 
@@ -74,8 +82,11 @@ class Rule(NamedTuple):
     """How a kind of alert behaves: raised and ended after its cause held or was gone for so long.
 
     raise_after, end_after, lapse_after  s
-    caution    needs no acknowledgement
-    momentary  active until acknowledged
+    caution       needs no acknowledgement
+    momentary     active until acknowledged
+    remembered    the acknowledgement outlives the alert ...
+    forget_after  s, ... until the cause has been CLEAR for so long
+    worse_after   s, how long the cause must be WORSE to end the acknowledgement
     """
 
     raise_after: float = 0.0
@@ -83,13 +94,17 @@ class Rule(NamedTuple):
     lapse_after: float = 1800.0
     caution: bool = False
     momentary: bool = False
+    remembered: bool = False
+    forget_after: float = 60.0
+    worse_after: float = 15.0
 
 
 def begin() -> Alerts:
     """All normal."""
     ids, times, kinds = np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int8)
+    pairs = np.zeros((0, 2))
     return Alerts(
-        kinds, ids, ids, ids, kinds, times, times, np.zeros((0, 2)), np.zeros((0, VALUES))
+        kinds, ids, ids, ids, kinds, times, times, pairs, np.zeros((0, VALUES)), times, pairs
     )
 
 
@@ -104,24 +119,46 @@ def advance(
     level = np.append(causes.level, OFF)[row]  # -1, gone away: the last
     gone = row < 0
     active = (alerts.state == ACTIVE_UNACKNOWLEDGED) | (alerts.state == ACTIVE_ACKNOWLEDGED)
-    calls = np.where(active, (level == OFF) & (not rule.momentary), level == ON)
+    known = ~np.isnan(alerts.until)  # acknowledged
+    worse = known & (level == WORSE)
+    calls = np.where(
+        active,
+        ((level <= OFF) & (not rule.momentary)) | worse,
+        (level >= ON) | (known & (level == CLEAR)),
+    )
     holds = calls | (~active & (level == KEEP))
     turn = np.where(calls & np.isnan(alerts.turn), now, np.where(holds, alerts.turn, np.nan))
-    wait = np.where(active, np.where(gone, 0.0, rule.end_after), rule.raise_after)
-    due = calls & (now - turn >= wait)
+    wait = np.select(
+        [worse, active, level >= ON],
+        [rule.worse_after, rule.end_after, rule.raise_after],
+        rule.forget_after,
+    )
+    due = calls & (now - turn >= np.where(gone, 0.0, wait))
+    over = known & (now >= alerts.until)
     raised = ACTIVE_ACKNOWLEDGED if rule.caution else ACTIVE_UNACKNOWLEDGED
+    again = np.where(known & ~worse, ACTIVE_ACKNOWLEDGED, raised)
     ended = np.where(alerts.state == ACTIVE_UNACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED, NORMAL)
     idle = (alerts.state == RECTIFIED_UNACKNOWLEDGED) | (active & rule.momentary)
-    state = np.where(
-        due,
-        np.where(active, ended, raised),
-        np.where(idle & (now - alerts.since > rule.lapse_after), NORMAL, alerts.state),
+    state = np.select(
+        [
+            due & active & ~worse,
+            (due & (level >= ON)) | (over & active & (level >= KEEP)),
+            idle & (now - alerts.since > rule.lapse_after),
+        ],
+        [ended, np.where(over, raised, again), NORMAL],
+        alerts.state,
     ).astype(np.int8)
     changed = state != alerts.state
+    forgotten = (not rule.remembered) | gone | over | (due & ~active & (level == CLEAR))
     told = alerts._replace(
         state=state,
         since=np.where(changed, now, alerts.since),
-        turn=np.where(changed, np.nan, turn),
+        turn=np.where(changed | (due & ~active), np.nan, turn),
+        until=np.where(
+            np.where(state == NORMAL, forgotten, state == ACTIVE_UNACKNOWLEDGED),
+            np.nan,
+            alerts.until,
+        ),
     )
     fresh = (changed & ~gone).nonzero()[0]
     if len(fresh):
@@ -129,7 +166,7 @@ def advance(
         position[fresh], values[fresh] = causes.position[row[fresh]], causes.values[row[fresh]]
         told = told._replace(position=position, values=values)
 
-    new = ((causes.level == ON) & (row_of(alerts.id, causes.id) < 0)).nonzero()[0]
+    new = ((causes.level >= ON) & (row_of(alerts.id, causes.id) < 0)).nonzero()[0]
     at_once = rule.raise_after <= 0
     count = len(new)
     begun = Alerts(
@@ -142,6 +179,8 @@ def advance(
         np.full(count, np.nan if at_once else now),
         causes.position[new],
         causes.values[new],
+        np.full(count, np.nan),
+        np.full((count, 2), np.nan),
     )
     everything = append(told, begun)
     return (
@@ -153,15 +192,21 @@ def advance(
 def acknowledge(
     alerts: Alerts,
     now: float,
-    momentary: NDArray[np.bool_],
+    momentary: BoolArray,
     kind: int | None = None,
     number: int | None = None,
+    until: float = np.inf,
+    remembered: BoolArray | None = None,
 ) -> tuple[Alerts, Alerts]:
     """The operator has seen the alerts of this kind and target number; None stands for all.
 
-    momentary [kinds]: which kinds have no cause that lasts. Returns the alerts and those changed;
-    what was acknowledged already stays as it is. ValueError where kind or number are given and
-    there is no such alert.
+    momentary   [kinds]  which kinds have no cause that lasts
+    until       s, when the acknowledgement ends if the cause lasts; inf: not before the cause
+    remembered  [kinds]  which acknowledgements outlive the alert (Rule); None: of no kind
+
+    Returns the alerts and those changed. What was acknowledged already stays as it is, but that of
+    a target that is named is then acknowledged until `until`. ValueError where kind or number are
+    given and there is no such alert.
     """
     chosen = alerts.state != NORMAL
     for value, column in ((kind, alerts.kind), (number, alerts.number)):
@@ -175,23 +220,35 @@ def acknowledge(
         ]
         raise ValueError(f'there is no alert of {" and ".join(what)} to acknowledge')
     active = chosen & (alerts.state == ACTIVE_UNACKNOWLEDGED)
-    ends = (chosen & (alerts.state == RECTIFIED_UNACKNOWLEDGED)) | (active & momentary[alerts.kind])
+    rectified = chosen & (alerts.state == RECTIFIED_UNACKNOWLEDGED)
+    ends = rectified | (active & momentary[alerts.kind])
+    kept = active & ~momentary[alerts.kind]
+    if remembered is not None:
+        kept |= rectified & remembered[alerts.kind]
+    longer = chosen & ~np.isnan(alerts.until) & (number is not None)
     return _change(
-        alerts, np.where(ends, NORMAL, np.where(active, ACTIVE_ACKNOWLEDGED, alerts.state)), now
+        alerts._replace(
+            until=np.where(kept | longer, until, alerts.until),
+            mark=np.where(kept[:, None], np.nan, alerts.mark),
+        ),
+        np.where(ends, NORMAL, np.where(active, ACTIVE_ACKNOWLEDGED, alerts.state)),
+        now,
     )
 
 
-def dismiss(alerts: Alerts, ids, now: float) -> tuple[Alerts, Alerts]:
+def dismiss(alerts: Alerts, ids: IntArray, now: float) -> tuple[Alerts, Alerts]:
     """All alerts of these tracks are normal: the operator has cancelled them. As `acknowledge`."""
     chosen = np.isin(alerts.id, ids) & (alerts.id > 0)
     return _change(
-        alerts._replace(turn=np.where(chosen, np.nan, alerts.turn)),
+        alerts._replace(
+            turn=np.where(chosen, np.nan, alerts.turn), until=np.where(chosen, np.nan, alerts.until)
+        ),
         np.where(chosen, NORMAL, alerts.state),
         now,
     )
 
 
-def _change(alerts: Alerts, state, now: float) -> tuple[Alerts, Alerts]:
+def _change(alerts: Alerts, state: CodeArray, now: float) -> tuple[Alerts, Alerts]:
     changed = state != alerts.state
     alerts = alerts._replace(
         state=state.astype(np.int8), since=np.where(changed, now, alerts.since)
@@ -199,6 +256,7 @@ def _change(alerts: Alerts, state, now: float) -> tuple[Alerts, Alerts]:
     return take(alerts, _alive(alerts)), take(alerts, changed)
 
 
-def _alive(alerts: Alerts):
-    """Mask of the rows worth keeping: not normal, or about to be raised."""
-    return (alerts.state != NORMAL) | np.isfinite(alerts.turn)
+def _alive(alerts: Alerts) -> BoolArray:
+    """Mask of the rows worth keeping: not normal, about to be raised, or acknowledged."""
+    found: BoolArray = (alerts.state != NORMAL) | np.isfinite(alerts.turn) | ~np.isnan(alerts.until)
+    return found

@@ -1,34 +1,47 @@
-"""One scan's tracks in, targets and alarms out: the whole way of the ARPA on one page."""
+"""From one scan's tracks to targets and alarms: all steps of the ARPA on one page."""
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..gaussian.linear import invert_2x2, squared_distance
-from ..geometry import AT_REST, NAUTICAL_MILE, locate, polar_to_position
+from ..geometry import NAUTICAL_MILE, polar_to_position
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
+from ..tracking.noise import noise_of
 from ..tracking.radars import radars_of
 from ..tracking.tracker import Report
-from ..types import Array, OwnShip, Scan, Tracks, append, row_of, take
+from ..types import (
+    Array,
+    BoolArray,
+    CodeArray,
+    IntArray,
+    OwnShip,
+    Scan,
+    Tracks,
+    append,
+    row_of,
+    take,
+)
 from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
+from .anchor import at_anchor, harmless
 from .cpa import Approach, OwnMotion, approach
 from .motion import Motion
 from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
-from .stabilisation import OwnSensors, Stabilisation, stabilisation
+from .stabilisation import ALL_WELL, NONE, OwnSensors, Stabilisation, stabilisation
 from .swap_risk import swap_risk
 from .targets import Events, Targets
 
+Mask = bool | BoolArray  # for all rows, or [N]
+
 
 class ArpaMemory(NamedTuple):
-    """All that the ARPA knows between two scans; see the modules of the same names.
+    """The memory of the ARPA between two scans; see the modules with the same names.
 
-    own  own ship's samples of late
+    own  own ship's recent samples
     """
 
     own: OwnShip
@@ -39,33 +52,34 @@ class ArpaMemory(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """The targets after a scan, in the order of their numbers; T rows but for own and events.
+    """The targets after a scan, in the order of their numbers. All fields have T rows except own
+    and events.
 
     time      s, end of the scan
     own       own ship then
     row       [T]  of each target in the tracker's report
-    targets   T rows; those that were lost in this scan are among them
+    targets   T rows, including those that were lost in this scan
     motion    T rows, as stabilised: course and speed over ground or through the water
     approach  T rows
     past      past positions of all tracks
-    at_rest   [T]  neither the target, as far as is known, nor own ship makes way
+    harmless  [T]  own ship is at anchor and the target does not certainly come nearer
     danger    [T]  one of situation.SAFE, NEARLY, DANGEROUS
-    overlap   [T]  of the gate with that of another track: below 1 they may be swapped
+    overlap   [T]  of the gate with that of another track: below 1 the two may be swapped
     events    what happened to targets in this scan
     alerts    those that are not normal
-    changed   the alerts that changed in this scan, to normal as well
-    stabilised   what courses and speeds are measured against
+    changed   the alerts that changed in this scan, also those that became normal
+    stabilised   the reference of courses and speeds
     """
 
     time: float
     own: OwnMotion
-    row: NDArray[np.int64]
+    row: IntArray
     targets: Targets
     motion: Motion
     approach: Approach
     past: PastPositions
-    at_rest: NDArray[np.bool_]
-    danger: NDArray[np.int8]
+    harmless: BoolArray
+    danger: CodeArray
     overlap: Array
     events: Events
     alerts: Alerts
@@ -73,24 +87,15 @@ class Picture(NamedTuple):
     stabilised: Stabilisation
 
 
-BY_CHANCE = 11.8  # squared distance of a velocity from 0, of 2 dimensions: 3 sigma
-
-
-def makes_way(moving: Motion) -> NDArray[np.bool_]:
-    """Whether [N] tracks surely move over ground; a new one at anchor shows some speed by noise."""
-    inverse, _ = invert_2x2(moving.covariance[:, 2:, 2:])
-    return ~moving.stationary & (squared_distance(moving.velocity, inverse) > BY_CHANCE)
-
-
 class Arpa:
-    """The pure core, without a state of its own: parameters in.
+    """The pure core: it takes parameters and has no state.
 
     arpa = Arpa(ArpaParameters(), tracker.parameters)
     memory = arpa.start()
     memory, picture = arpa.step(memory, scan, report, heading)      # of each step of the tracker
 
-    A change of parameters is a new Arpa, which goes on from the same memory.
-    ValueError where the zones are wrong.
+    After a change of parameters, make a new Arpa and continue with the same memory. ValueError if
+    the zones are wrong.
     """
 
     def __init__(self, parameters: ArpaParameters, tracker: TrackerParameters):
@@ -101,7 +106,7 @@ class Arpa:
         self.acquisition = acquisition.AcquisitionSettings(
             p.acquisition, p.max_targets, p.click_radius_m, p.click_wait_s
         )
-        self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s)
+        self.alarms = alarms.AlarmSettings(sensor_timeout=p.sensor_timeout_s, limits=self.limits)
         self.motion = motion.PRESETS[tracker.vessel_class]._replace(
             speed_sigma=0.5 * tracker.max_target_speed_mps
         )
@@ -125,96 +130,78 @@ class Arpa:
         scan: Scan,
         report: Report,
         heading: float,
-        fallen=False,
-        sensors: OwnSensors = OwnSensors(),
+        fallen: Mask = False,
+        sensors: OwnSensors = ALL_WELL,
     ) -> tuple[ArpaMemory, Picture]:
-        """One antenna revolution; all is reckoned to its end.
+        """Processes one antenna revolution. All results are for its end.
 
-        heading  rad, own ship's, true; nan where it is not known
+        heading  rad, own ship's, true; nan if unknown
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
         sensors  what is known of own ship beside her positions
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
-        bearing_sigma = np.radians(radar.bearing_sigma_deg)
         samples = lately(memory.own, scan.own_ship, now)
         own = own_motion(samples, now, heading)._replace(north=sensors.north)
 
         # motion: course and speed from a memory of their own
-        plots = locate(scan.plots, scan.measured_from, radar.range_sigma_m, bearing_sigma)
+        plots = noise_of(radar, scan).locate(scan)
         remembered = motion.step(memory.motion, report, plots, self.motion, scan.radar)
         moving = motion.at(remembered, now)
-        past = past_positions.step(
-            memory.past,
-            tracks.id,
-            tracks.first_time,
-            moving.position,
-            moving.velocity,
-            own.position,
-            own.velocity,
-            now,
-        )
+        past = past_positions.step(memory.past, tracks.id, tracks.first_time, moving, own, now)
 
         # cpa: how the tracks pass own ship
-        at_rest = ~makes_way(moving) & (np.hypot(*own.velocity) < AT_REST)
-        stabilised = stabilisation(
-            self.parameters, own, sensors, self._stationary(tracks, moving)
-        )
-        moving, own = sea_stabilised(moving, own, stabilised.drift)
+        own, no_danger = self._anchored(samples, moving, own, now, sensors)
+        moving, own, against = self._stabilised(moving, own, sensors, tracks)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
-            tracks, report.reason, moving.position, passing, at_rest, self.zones, own, self.limits
+            tracks, report.reason, moving.position, passing, no_danger, self.zones, own, self.limits
         )
 
         # acquisition: which of them are targets
-        before = memory.acquisition.targets
         acquired, events = acquisition.step(memory.acquisition, self.acquisition, seen, now)
-
-        # alarms
-        overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        target = acquisition.how_acquired(acquired, tracks.id) >= 0
-        fallen = int(np.sum(fallen & target & (tracks.status == CONFIRMED)))
-        alive, changed = alarms.step(
-            memory.alerts,
-            self.alarms,
-            seen,
-            acquired,
-            events,
-            self.zones,
-            alarms.Tracking(self.acquisition.capacity, fallen, overlap, other),
-            now,
-        )
-
-        lost = tracks.id[tracks.status == LOST]
-        targets = append(acquired.targets, take(before, np.isin(before.id, lost)))
-        targets = take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+        targets = _shown(acquired, memory.acquisition, tracks)
         row = row_of(tracks.id, targets.id)
-        return ArpaMemory(samples, remembered, acquired, alive, past), Picture(
-            now,
-            own,
-            row,
-            targets,
-            take(moving, row),
-            take(passing, row),
-            past,
-            at_rest[row],
-            seen.danger[row],
-            overlap[row],
-            events,
-            alive,
-            changed,
-            stabilised,
+
+        # alarms: those after the scan, and those that changed
+        overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
+        down = _fallen(fallen, acquired, tracks)
+        tracking = alarms.Tracking(self.acquisition.capacity, down, overlap, other)
+        alarm = alarms.step(
+            memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
 
-    def _stationary(self, tracks: Tracks, moving: Motion) -> Array:
-        """Velocity [2] m/s of the target that the operator says is stationary; nan for none."""
-        number = self.parameters.reference_target
+        # the picture: the rows of the targets
+        moving, passing = take(moving, row), take(passing, row)
+        told = no_danger[row], seen.danger[row], overlap[row], events, *alarm, against
+        return (
+            ArpaMemory(samples, remembered, acquired, alarm[0], past),
+            Picture(now, own, row, targets, moving, passing, past, *told),
+        )
+
+    def _stabilised(
+        self, moving: Motion, own: OwnMotion, sensors: OwnSensors, tracks: Tracks
+    ) -> tuple[Motion, OwnMotion, Stabilisation]:
+        """Motion of the tracks and of own ship relative to ground or water, and to which."""
+        number, stationary = self.parameters.reference_target, np.full(2, np.nan)
         row = ((tracks.number == number) & (tracks.status != LOST) & (number > 0)).nonzero()[0]
-        return moving.velocity[row[0]] if len(row) else np.full(2, np.nan)
+        if len(row):
+            stationary = moving.velocity[row[0]]
+        against = stabilisation(self.parameters, own, sensors, stationary)
+        return *sea_stabilised(moving, own, against.drift), against
+
+    def _anchored(
+        self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float, sensors: OwnSensors
+    ) -> tuple[OwnMotion, BoolArray]:
+        """Own ship, at rest if she is at anchor; and the tracks [N] that are no danger then."""
+        status = self.parameters.own_ship_status
+        if sensors.way == NONE or not at_anchor(samples, own, now, status):
+            return own, np.zeros(len(moving.position), bool)
+        return own._replace(velocity=np.zeros(2)), harmless(moving, own)
 
     def _approach(
         self, moving: Motion, own: OwnMotion, acquired: Acquisition, tracks: Tracks
     ) -> Approach:
-        """Of the tracks that are or may become targets in this scan; nan for the others."""
+        """Approach of tracks that are or may become targets in this scan; nan for the others."""
         asked = (tracks.number > 0) | np.isin(tracks.id, acquired.targets.id)
         if len(acquired.clicks.since):
             asked[:] = True
@@ -223,14 +210,14 @@ class Arpa:
 
     def _swap_risk(
         self,
-        tracks,
+        tracks: Tracks,
         remembered: motion.MotionMemory,
         passing: Approach,
         own: OwnMotion,
         now: float,
         radar: TrackerParameters,
-    ):
-        """Overlap [N] of the gates of the radar's next scan and the rows [N] of the others."""
+    ) -> tuple[Array, IntArray]:
+        """Overlap [N] of the gates in the radar's next scan, and rows [N] of the other tracks."""
         overlap, other = np.full(len(tracks.id), np.inf), np.full(len(tracks.id), -1)
         rows = ((tracks.number > 0) & (tracks.status != LOST)).nonzero()[0]
         ahead = motion.at(take(remembered, rows), now + radar.scan_period_s)
@@ -245,3 +232,18 @@ class Arpa:
         )
         other[rows] = np.where(found >= 0, np.append(rows, -1)[found], -1)
         return overlap, other
+
+
+def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Targets:
+    """The targets in the order of their numbers, including those that were lost in this scan."""
+    lost = np.isin(before.targets.id, tracks.id[tracks.status == LOST])
+    targets = append(acquired.targets, take(before.targets, lost))
+    return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+
+
+def _fallen(fallen: Mask, acquired: Acquisition, tracks: Tracks) -> int:
+    """Number of confirmed targets that have fallen back; `fallen` [N] for the tracks, or one for
+    all.
+    """
+    target = acquisition.how_acquired(acquired, tracks.id) >= 0
+    return int(np.sum(fallen & target & (tracks.status == CONFIRMED)))

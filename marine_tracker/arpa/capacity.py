@@ -1,29 +1,32 @@
-"""Who gives way where there are more targets than may be.
+"""Which targets are displaced when there are too many.
 
-Targets acquired by hand and dangerous ones (`Situation.danger` above SAFE) never give way. The
-others stand in the order of their least distance to own ship within the TCPA limit
-(`Situation.nearest`). What is acquired by hand, or dangerous, takes the place of the last of them;
-any other track only if it comes nearer than CLOSER times that, so that the two do not change places
-again and again. The rest waits.
+Targets acquired by hand and dangerous ones (`Situation.danger` above SAFE) are never displaced. The
+others are sorted by their least distance to own ship within the TCPA limit (`Situation.nearest`). A
+new target that is acquired by hand, or is dangerous, displaces the last of them. Any other track
+does so only if its least distance is below CLOSER times that of the last one. This prevents that
+two of them displace each other again and again. All other tracks wait.
 """
 
 import numpy as np
 
+from ..types import BoolArray, CodeArray, IntArray
 from .situation import SAFE, Situation
 from .targets import AUTOMATIC
 
 CLOSER = 0.8
 
 
-def make_room(capacity: int, situation: Situation, how, candidate, clicked):
-    """Who becomes a target and who gives way, by the rule that stands above: rows of tracks.
+def make_room(
+    capacity: int, situation: Situation, how: CodeArray, candidate: BoolArray, clicked: IntArray
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Which tracks become targets and which are displaced, by the rule above: rows of tracks.
 
-    how        [N]  AUTOMATIC or MANUAL, -1 where the track is no target; the clicked ones are in
-    candidate  [N]  tracks to be acquired automatically, as far as there is room
+    how        [N]  AUTOMATIC or MANUAL, -1 if the track is not a target; includes the clicked ones
+    candidate  [N]  tracks to acquire automatically if there is room
     clicked    [C]  new targets by hand
 
-    Returns the candidates taken, the targets that give way, and those of the clicked that find no
-    room because nobody may give way to them.
+    Returns the candidates taken, the displaced targets, and the clicked tracks that find no room
+    because no target may be displaced.
     """
     safe = situation.danger == SAFE
     yielding = ((how == AUTOMATIC) & safe).nonzero()[0]

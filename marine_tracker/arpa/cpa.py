@@ -1,30 +1,31 @@
-"""What the navigator reads of each target: where, which way, how near, when, and how surely."""
+"""What the navigator reads of each target: position, course, CPA and TCPA, with deviations."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector
-from ..types import Array
+from ..types import Array, BoolArray
 from .directions import polar_sigma
 from .miss_distance import cpa_sigma, danger_probability
 from .motion import Motion
 
-LEAST_SPEED = 0.25  # m/s: of relative motion, below which nothing approaches
-HAIR = 1e-9  # m^2, m^2/s^2: keeps covariances regular where all is known exactly
+LEAST_SPEED = 0.25  # m/s of relative motion; below this nothing approaches
+HAIR = 1e-9  # m^2, m^2/s^2: keeps covariances invertible if all is known exactly
 
 
 class OwnMotion(NamedTuple):
     """Own ship at the time of the targets' motion.
 
     position    [2]     m, east and north
-    velocity    [2]     m/s, over ground or through the water, as the targets' motion is
+    velocity    [2]     m/s, over ground or through the water, as the targets' motion
     heading     rad, clockwise from true north
-    covariance  [4, 4]  of position and velocity, as far as they err against the positions from
-                        which the plots were placed; an error common to both (a wrong log by which
-                        own ship is reckoned) leaves range, relative motion and CPA as they are
-    north       whether the heading is known; else it is the last one, right only to tell what is
-                relative to the bow
+    covariance  [4, 4]  of position and velocity, relative to the positions from which the plots
+                        were placed. An error common to both (a wrong log, for example) does not
+                        change range, relative motion and CPA
+    north       whether the heading is known. If not, it is the last one, and is right only for what
+                is relative to the bow
     """
 
     position: Array
@@ -35,16 +36,16 @@ class OwnMotion(NamedTuple):
 
 
 class Approach(NamedTuple):
-    """N targets; every value has its standard deviation, in its own unit, as `<name>_sigma`.
+    """N targets. Every value has its standard deviation, in the same unit, as `<name>_sigma`.
 
     range            m
     bearing          rad in [0, 2 pi), true
     course, speed    rad, m/s: over ground or through the water, as the motion was given
     relative_course, relative_speed    rad, m/s: of the motion relative to own ship
-    cpa              m, of the straight relative track, be it ahead or past
-    tcpa             s, negative when past; nan where there is next to no relative motion
+    cpa              m, of the straight relative track, ahead or past
+    tcpa             s, negative when past; nan if there is almost no relative motion
     bow_range        m, where the target will cross own ship's bow
-    bow_time         s, when; both nan where it will not
+    bow_time         s, when; both nan if it will not
     danger_probability  P(CPA < limit and 0 <= TCPA < limit); 0 without relative motion
     """
 
@@ -71,10 +72,10 @@ class Approach(NamedTuple):
     danger_probability: Array
 
 
-def cpa_of(position, velocity):
-    """CPA [...] m and TCPA [...] s of relative positions [..., 2] m and velocities [..., 2] m/s.
+def cpa_of(position: Array, velocity: Array) -> tuple[Array, Array]:
+    """CPA [...] m and TCPA [...] s from relative positions [..., 2] m and velocities [..., 2] m/s.
 
-    Without relative motion the CPA is the range and the TCPA nan.
+    Without relative motion the CPA is the range and the TCPA is nan.
     """
     e, n = position[..., 0], position[..., 1]
     ve, vn = velocity[..., 0], velocity[..., 1]
@@ -86,11 +87,12 @@ def cpa_of(position, velocity):
     return cpa, tcpa
 
 
-def bow_crossing(position, velocity, heading):
-    """Range [...] m at which the line of own ship's keel is crossed and time [...] s of it.
+def bow_crossing(position: Array, velocity: Array, heading: float) -> tuple[Array, Array]:
+    """Range [...] m at which the target crosses own ship's keel line, and time [...] s of the
+    crossing.
 
-    Relative positions and velocities as in `cpa_of`. A range below 0 is astern, a time below 0
-    past; not finite where the target moves along the line.
+    Relative positions and velocities as in `cpa_of`. A negative range is astern, a negative time is
+    past. Not finite if the target moves along the line.
     """
     ahead = unit_vector(heading)
     abeam = position[..., 0] * ahead[1] - position[..., 1] * ahead[0]
@@ -101,12 +103,12 @@ def bow_crossing(position, velocity, heading):
 
 
 def approach(motion: Motion, own: OwnMotion, cpa_limit: float, tcpa_limit: float) -> Approach:
-    """Everything of `Approach` for the targets' motion [N]; limits in m and s, above 0.
+    """All fields of `Approach` for the targets' motion [N]; limits in m and s, above 0.
 
     Deviations of range, bearing, courses, speeds and CPA are exact for Gaussian errors (see
-    `directions`); those of TCPA and bow crossing come from a quadrature of degree 5 (`spread`) and
-    say no more than "large" where the relative speed is but a few times its own deviation: there
-    they have no variance. Rows whose motion is not known (nan) are nan, their probability 0.
+    `directions`). Those of TCPA and bow crossing come from a quadrature of degree 5 (`spread`). If
+    the relative speed is only a few times its own deviation, these have no variance, and the result
+    means only "large". Rows with unknown motion (nan) are nan, with probability 0.
     """
     for name, limit, unit in (('cpa_limit', cpa_limit, 'm'), ('tcpa_limit', tcpa_limit, 's')):
         if not 0 < limit < np.inf:
@@ -131,16 +133,25 @@ def approach(motion: Motion, own: OwnMotion, cpa_limit: float, tcpa_limit: float
 
 
 def _values(
-    position, velocity, covariance, true_velocity, true_covariance, heading, cpa_limit, tcpa_limit
-):
+    position: Array,
+    velocity: Array,
+    covariance: Array,
+    true_velocity: Array,
+    true_covariance: Array,
+    heading: float,
+    cpa_limit: float,
+    tcpa_limit: float,
+) -> Array:
     """The fields of Approach, in their order, of targets relative to own ship."""
 
-    def polar(vector, covariance):
+    def polar(vector: Array, covariance: Array) -> tuple[Array, Array, Array, Array]:
         length, angle = to_range_bearing(vector)
         length_sigma, angle_sigma = polar_sigma(vector, covariance)
         return length, length_sigma, angle, angle_sigma
 
-    def swapped(length, length_sigma, angle, angle_sigma):
+    def swapped(
+        length: Array, length_sigma: Array, angle: Array, angle_sigma: Array
+    ) -> tuple[Array, Array, Array, Array]:
         return angle, angle_sigma, length, length_sigma
 
     moving = np.hypot(*velocity.T) >= LEAST_SPEED
@@ -148,14 +159,14 @@ def _values(
     bow_range, bow_time = bow_crossing(position, velocity, heading)
     crosses = moving & (bow_range > 0) & (bow_time >= 0) & np.isfinite(bow_range)
 
-    def timed(position, velocity):
+    def timed(position: Array, velocity: Array) -> Array:
         return np.stack([cpa_of(position, velocity)[1], *bow_crossing(position, velocity, heading)])
 
     tcpa_sigma, bow_range_sigma, bow_time_sigma = spread(
         timed, position, velocity, covariance, np.stack([tcpa, bow_range, bow_time])
     )
 
-    def where(mask, value):
+    def where(mask: BoolArray, value: Array) -> Array:
         return np.where(mask, value, np.nan)
 
     return np.stack(
@@ -180,12 +191,12 @@ def _values(
     )
 
 
-def _points():
-    """Points [24, 4] of the degree-5 rule for a standard normal law of four dimensions.
+def _points() -> Array:
+    """Points [24, 4] of the degree-5 rule for a standard normal distribution in four dimensions.
 
-    McNamee and Stenger, Numerische Mathematik 10, 1967: at sqrt(3) along every pair of axes, of
-    weight 1/36 each. In four dimensions the points on the axes have none; the centre has the rest,
-    and no deviation.
+    McNamee and Stenger, Numerische Mathematik 10, 1967: at sqrt(3) along every pair of axes, with
+    weight 1/36 each. In four dimensions the points on the axes have weight 0. The centre has the
+    rest, and no deviation.
     """
     i, j = np.triu_indices(4, 1)
     points = np.zeros((len(i), 4, 4))
@@ -198,13 +209,20 @@ def _points():
 POINTS = _points()
 
 
-def spread(function, position, velocity, covariance, shown):
-    """RMS deviations [K, N] of function(position, velocity) [K, ...] from what is shown [K, N].
+def spread(
+    function: Callable[[Array, Array], Array],
+    position: Array,
+    velocity: Array,
+    covariance: Array,
+    shown: Array,
+) -> Array:
+    """RMS deviations [K, N] of function(position, velocity) [K, ...] from the shown values [K, N].
 
-    Not finite where what is shown is not.
+    Not finite where the shown value is not finite.
     """
     factor = np.linalg.cholesky(covariance)
     off = POINTS @ factor.swapaxes(1, 2)  # [N, 24, 4]
     found = function(position[:, None] + off[..., :2], velocity[:, None] + off[..., 2:])
     with np.errstate(invalid='ignore', over='ignore'):
-        return np.sqrt(np.square(found - shown[..., None]).sum(-1) / 36)
+        value: Array = np.sqrt(np.square(found - shown[..., None]).sum(-1) / 36)
+        return value

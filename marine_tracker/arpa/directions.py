@@ -1,13 +1,13 @@
-"""Uncertain vectors by direction: exact where a Jacobian is not.
+"""Distributions of uncertain vectors, by direction: exact where a Jacobian is not.
 
-Range and bearing, course and speed, CPA: all follow from vectors that are Gaussian in east and
-north, and none is near Gaussian itself once the vector is no longer than its error (a ship at
-rest, a target close by, a CPA of nothing). Seen along one direction, though, all is Gaussian and in
-closed form, so one integral over the direction remains.
+Range and bearing, course and speed, and CPA all come from vectors that are Gaussian in east and
+north. They are not nearly Gaussian themselves if the vector is not much longer than its error: a
+ship at rest, a target close by, a CPA near 0. But for a given direction everything is Gaussian and
+in closed form. So only one integral over the direction remains.
 
-The direction is counted where the vector's errors are round: v = A z, z Gaussian of unit
-covariance, A A' the covariance of v. There the density of the direction is a bell as wide as the
-length of the mean of z is short, whatever the shape of the errors.
+The direction is measured where the vector's errors are round: v = A z, z Gaussian of unit
+covariance, A A' the covariance of v. There the density of the direction is a bell whose width
+depends only on the length of the mean of z: the shorter the mean, the wider the bell.
 """
 
 from typing import NamedTuple
@@ -18,8 +18,9 @@ from scipy.special import ndtr
 from ..types import Array, take
 
 NODES = 32
-EVEN = (np.arange(NODES) + 0.5) * 2 / NODES - 1, np.full(NODES, 2 / NODES)  # bells, full turns
-GAUSS = np.polynomial.legendre.leggauss(NODES)  # what ends at an edge
+# Rules of nodes and weights: EVEN for bells and full turns.
+EVEN = (np.arange(NODES) + 0.5) * 2 / NODES - 1, np.full(NODES, 2 / NODES)
+GAUSS = np.polynomial.legendre.leggauss(NODES)  # for intervals that end at an edge
 BENT = 0.1  # of the deviation along a vector: where the arc of the deviation across
 # bends by less, a Jacobian is as good, and cheaper
 WIDE = 5.0  # deviations beyond which a Gaussian is held to be over
@@ -31,7 +32,7 @@ class Round(NamedTuple):
     ee, ne, nn   [N]  the entries of A, lower triangular: v = [ee z0, ne z0 + nn z1]
     length       [N]  of the mean of z
     angle        [N]  rad, of the mean of z, from its first axis to its second
-    arc          [N]  rad: z never points farther off that angle; pi where it may point anywhere
+    arc          [N]  rad: largest angle between z and its mean; pi if z may point anywhere
     """
 
     ee: Array
@@ -65,9 +66,10 @@ class Directions(NamedTuple):
 
 
 class Places(NamedTuple):
-    """A Gaussian position p beside v, given v's direction; all [N, Q].
+    """A Gaussian position p given the direction of v; all [N, Q].
 
-    A target that keeps the direction will miss by `miss`, and has -`along` to go to its CPA.
+    A target that keeps the direction will pass at distance `miss`, and has -`along` to go to its
+    CPA.
     miss, miss_variance    m, m^2: p across the direction, positive to starboard
     along, along_variance  m, m^2: p along it
     with_rho               m: covariance of `along` and rho
@@ -80,8 +82,8 @@ class Places(NamedTuple):
     with_rho: Array
 
 
-def rounded(vector, covariance) -> Round:
-    """Vectors [N, 2] of regular covariance [N, 2, 2]."""
+def rounded(vector: Array, covariance: Array) -> Round:
+    """Rounds vectors [N, 2] with invertible covariance [N, 2, 2]."""
     ee = np.sqrt(covariance[:, 0, 0])
     ne = covariance[:, 0, 1] / ee
     nn = np.sqrt(covariance[:, 1, 1] - ne * ne)
@@ -99,8 +101,10 @@ def rounded(vector, covariance) -> Round:
     )
 
 
-def directions(of: Round, low, high, rule) -> Directions:
-    """Those from low [N] to high [N] rad off the mean's, for z; rule: nodes and weights [Q]."""
+def directions(of: Round, low: Array, high: Array, rule: tuple[Array, Array]) -> Directions:
+    """Directions from low [N] to high [N] rad relative to the mean of z; rule: nodes and weights
+    [Q].
+    """
     nodes, weights = rule
     half = 0.5 * (high - low)[:, None]
     turn = 0.5 * (high + low)[:, None] + half * nodes
@@ -113,7 +117,7 @@ def directions(of: Round, low, high, rule) -> Directions:
     return Directions(cos, sin, off, rho, density, gain, east / gain, north / gain)
 
 
-def places(position, covariance, of: Round, at: Directions) -> Places:
+def places(position: Array, covariance: Array, of: Round, at: Directions) -> Places:
     """Positions [N, 2] of joint covariance [N, 4, 4] with the vectors `of`."""
     (ee, en, ce, cf), (_, nn, de, df) = covariance.transpose(1, 2, 0)[:2, :, :, None]
     # Regression on z: p = mean + G (z - mean of z) + rest; G = (covariance of p and v) A'^-1.
@@ -139,17 +143,17 @@ def places(position, covariance, of: Round, at: Directions) -> Places:
     )
 
 
-def moments(mean):
+def moments(mean: Array) -> tuple[Array, Array, Array, Array]:
     """E[x^k; mean + x > 0], k = 0..3, of a standard normal x."""
     over, bell = ndtr(mean), np.exp(-0.5 * mean * mean) / np.sqrt(2 * np.pi)
     return over, bell, over - mean * bell, (mean * mean + 2) * bell
 
 
-def polar_sigma(vector, covariance):
+def polar_sigma(vector: Array, covariance: Array) -> tuple[Array, Array]:
     """RMS deviations [N] of the length and [N] rad of the direction of Gaussian vectors.
 
-    vector [N, 2]; covariance [N, 2, 2]. Both are counted from the length and direction of
-    `vector` itself, which is what is shown.
+    vector [N, 2]; covariance [N, 2, 2]. Both are counted from the length and direction of `vector`
+    itself, because that is shown.
     """
     length = np.hypot(*vector.T)
     unit = vector / np.maximum(length, 1e-300)[:, None]
@@ -167,8 +171,8 @@ def polar_sigma(vector, covariance):
     return sigmas[0], sigmas[1]
 
 
-def _integrated(length, unit, of: Round):
-    """What `polar_sigma` gives, [2, N], by quadrature over the direction."""
+def _integrated(length: Array, unit: Array, of: Round) -> Array:
+    """The result of `polar_sigma`, [2, N], by quadrature over the direction."""
     at = directions(of, -of.arc, of.arc, EVEN)
     zeroth, first, second, third = moments(at.rho)
     weight = at.rho * zeroth + first  # E[rho; rho > 0]

@@ -1,21 +1,20 @@
-"""When did the target's present leg begin? Straight-line fits from every likely moment, weighed.
+"""Straight-line fits from every likely beginning of the target's present leg, with weights.
 
-The filter that best says where the next plot will be is not the one that best says course, speed
-and CPA. That one must remember for minutes while a ship holds on, and forget at once what lies
-before a turn. If the last turn's end were known, a straight-line fit to the plots since would be
-all there is to know. It is not, so several such fits run side by side, begun at different times,
-beside one filter for a target in manoeuvre; their weights are the probabilities that the plots
-give them.
+The best filter for predicting the next plot is not the best one for course, speed and CPA. That one
+must remember for minutes while a ship keeps its course, and must forget at once what was before a
+turn. If the end of the last turn were known, a straight-line fit to the plots since then would be
+optimal. It is not known. So several such fits run in parallel, with different beginnings, and with
+one filter for a target that manoeuvres. Their weights are their probabilities given the plots.
 
-The model: a target holds course and speed for `hold` s on average, then manoeuvres (white
-acceleration) for `manoeuvre` s on average. Within a hypothesis about the last change all is linear
-and Gaussian (Adams and MacKay 2007, "Bayesian online changepoint detection"). To keep their number,
-the two legs are merged that lose least by it (Runnalls, IEEE T-AES 43(3), 2007), and what turns
-into a manoeuvre is merged into that filter (as in Blom and Bar-Shalom's IMM). An IMM alone merges
-straight legs too, and so never settles: its manoeuvre mode's few per cent of the weight stir the
-steady one at every scan.
+The model: a target keeps course and speed for `hold` s on average, then manoeuvres (white
+acceleration) for `manoeuvre` s on average. Within a hypothesis about the last change, all is linear
+and Gaussian (Adams and MacKay 2007, "Bayesian online changepoint detection"). To keep the number of
+hypotheses constant, the two legs whose merging loses least are merged (Runnalls, IEEE T-AES 43(3),
+2007). What changes into a manoeuvre is merged into that filter (as in Blom and Bar-Shalom's IMM).
+An IMM alone also merges straight legs, so it never settles: the few per cent weight of its
+manoeuvre mode disturb the steady mode at every scan.
 
-Arrays are columns as in `estimators.linear_modes`: [14, 1 + LEGS, N], the manoeuvre first.
+Arrays are columns as in `gaussian.linear_modes`: [14, 1 + LEGS, N], the manoeuvre first.
 """
 
 from typing import NamedTuple
@@ -26,17 +25,17 @@ from ..gaussian import linear_modes
 from ..types import Array
 
 LEGS = 4
-STRAIGHT = 1e-6  # m^2/s^3, density of acceleration on a straight leg: next to none
+STRAIGHT = 1e-6  # m^2/s^3, density of acceleration on a straight leg: almost none
 AT_FIRST = 0.8  # probability that a new target is on a straight leg
-LEAST_SHOWN = 0.05  # hypotheses less likely are not part of what is shown
+LEAST_SHOWN = 0.05  # less likely hypotheses are not shown
 ONE, OTHER = np.triu_indices(LEGS + 1, 1)
 
 
 class Habits(NamedTuple):
     """How targets move.
 
-    hold       s, how long a course and speed is held on average
-    manoeuvre  s, how long a manoeuvre lasts on average
+    hold       s, how long they keep a course and speed, on average
+    manoeuvre  s, how long a manoeuvre lasts, on average
     noise      m^2/s^3, density of the white acceleration of each axis in a manoeuvre
     """
 
@@ -59,7 +58,7 @@ class Legs(NamedTuple):
     begun: Array
 
 
-def begin(position, covariance, time, speed_sigma: float) -> Legs:
+def begin(position: Array, covariance: Array, time: Array, speed_sigma: float) -> Legs:
     """Hypotheses from one plot each: position [N, 2] m, covariance [N, 2, 2] m^2, time [N] s.
 
     speed_sigma  m/s, deviation of each component of the velocity before anything is known
@@ -75,16 +74,23 @@ def begin(position, covariance, time, speed_sigma: float) -> Legs:
 
 
 def update(
-    legs: Legs, time, step, position, covariance, stretch, certainty, habits: Habits
+    legs: Legs,
+    time: Array,
+    step: Array,
+    position: Array,
+    covariance: Array,
+    stretch: Array,
+    certainty: Array,
+    habits: Habits,
 ) -> tuple[Legs, Array]:
-    """One plot for each of N tracks at `time` [N] s, `step` [N] s after the last.
+    """Takes one plot for each of N tracks at `time` [N] s, `step` [N] s after the last one.
 
     position    [N, 2]     m
     covariance  [N, 2, 2]  m^2
-    stretch     [N, 2, 2]  by which the deviations of all earlier plots turn out to have been
-                           misjudged: see `plot_noise`
-    certainty   [N]        degrees of freedom of `covariance`: so many plots does it rest on
-    Returns the hypotheses, and the mean and covariance [N, 14] of those likely enough.
+    stretch     [N, 2, 2]  correction for the wrong deviations of all earlier plots: see
+    `plot_noise`
+    certainty   [N]        degrees of freedom of `covariance`: number of plots that it is based on
+    Returns the hypotheses, and the mean and covariance [N, 14] of the likely ones.
     """
     columns = linear_modes.columns_of(legs.rows)
     _stretch(columns, stretch)
@@ -97,8 +103,8 @@ def update(
     noise = linear_modes.packed_noise(covariance)
     _, distance, (_, _, _, determinant) = linear_modes.innovate(columns, position.T, noise)
     columns, _ = linear_modes.correct(columns, position.T, noise)
-    # Of a covariance that is an estimate itself, Student's law is the evidence; it also lets one
-    # wrong plot pass.
+    # The covariance is an estimate itself, so the likelihood is Student's. It also tolerates one
+    # wrong plot.
     score = -0.5 * (np.log(determinant) + (certainty + 2) * np.log1p(distance / certainty))
     weight = linear_modes.reweigh(weight, score)
     likely = np.where(weight > LEAST_SHOWN, weight, 0.0)
@@ -112,10 +118,12 @@ def update(
     )
 
 
-def _change(columns, weight, begun, now, step, habits: Habits):
-    """What may have changed during the steps [N] s from the times `now` [N] s on.
+def _change(
+    columns: Array, weight: Array, begun: Array, now: Array, step: Array, habits: Habits
+) -> tuple[Array, Array, Array]:
+    """Possible changes during the steps [N] s from the times `now` [N] s on.
 
-    Every leg may have turned into a manoeuvre, and the manoeuvre into a new leg.
+    Every leg may have changed into a manoeuvre, and the manoeuvre into a new leg.
     """
     turn, settle = -np.expm1(-step / habits.hold), -np.expm1(-step / habits.manoeuvre)
     into = np.concatenate([(1 - settle) * weight[:1], turn * weight[1:]])
@@ -131,10 +139,10 @@ def _change(columns, weight, begun, now, step, habits: Habits):
     )
 
 
-def _merge(legs, weight, begun):
-    """LEGS legs of LEGS + 1, the last one new: the two are merged whose merger costs least.
+def _merge(legs: Array, weight: Array, begun: Array) -> tuple[Array, Array, Array]:
+    """LEGS legs out of LEGS + 1, the last one new: merges the two that cost least to merge.
 
-    Only velocities count: where the target is all legs agree.
+    Only velocities count, because all legs agree on the position.
     """
     mean, spread = legs[2:4], legs[11:14]
     size = weight * np.log(spread[0] * spread[2] - spread[1] * spread[1])
@@ -156,13 +164,13 @@ def _merge(legs, weight, begun):
     )
     begun[one, track] = share * begun[one, track] + (1 - share) * begun[other, track]
     weight[one, track] = both[pair, track]
-    for values in (legs, weight, begun):  # the last one takes the place that is free
+    for values in (legs, weight, begun):  # the last one moves to the free place
         values[..., other, track] = values[..., LEGS, track]
     return legs[:, :LEGS], weight[:LEGS], begun[:LEGS]
 
 
-def _stretch(columns, stretch):
-    """Covariances of columns [14, J, N] as they are for positions misjudged by [N, 2, 2], in place.
+def _stretch(columns: Array, stretch: Array) -> None:
+    """Corrects covariances of columns [14, J, N] by [N, 2, 2], in place, for misjudged plot errors.
 
     Straight-line fits scale with the errors of their plots, position and velocity alike.
     """

@@ -1,26 +1,26 @@
-"""The law of CPA and TCPA: how far off the CPA may be, and how likely it is that it is too small.
+"""The distribution of CPA and TCPA: the deviation of the CPA, and the probability of danger.
 
-On a straight relative track the CPA depends on where the target is and which way it goes, not on
-how fast. Given the way it goes, its signed miss distance is Gaussian and |miss distance| is the
-CPA; the TCPA is the distance left over the relative speed.
+On a straight relative track the CPA depends on the target's position and direction, not on its
+speed. For a given direction its signed miss distance is Gaussian, and |miss distance| is the CPA.
+The TCPA is the distance left divided by the relative speed.
 """
 
 import numpy as np
 from scipy.special import ndtr
 
 from ..geometry import wrap_angle
-from ..types import take
-from .directions import EVEN, GAUSS, WIDE, directions, moments, places, rounded
+from ..types import Array, take
+from .directions import EVEN, GAUSS, WIDE, Round, directions, moments, places, rounded
 
 
-def cpa_sigma(position, velocity, covariance, cpa):
-    """RMS deviation [N] m of the CPA from the value `cpa` [N] m shown.
+def cpa_sigma(position: Array, velocity: Array, covariance: Array, cpa: Array) -> Array:
+    """RMS deviation [N] m of the CPA from the shown value `cpa` [N] m.
 
-    position [N, 2] m, velocity [N, 2] m/s of the targets relative to own ship and their
-    covariance [N, 4, 4].
+    position [N, 2] m, velocity [N, 2] m/s of the targets relative to own ship and their covariance
+    [N, 4, 4].
 
-    Within a few per cent, but where the relative speed is below 5 of its deviations and these are
-    more than three times as long as wide.
+    Accurate to a few per cent, except if the relative speed is below 5 of its deviations and these
+    are more than three times as long as wide.
     """
     of = rounded(velocity, covariance[:, 2:, 2:])
     at = directions(of, -of.arc, of.arc, EVEN)
@@ -31,15 +31,18 @@ def cpa_sigma(position, velocity, covariance, cpa):
     square = (miss - cpa[:, None]) ** 2 + sigma**2 - 2 * cpa[:, None] * (folded - miss)
     over, bell, _, _ = moments(at.rho)
     weight = at.density * (at.rho * over + bell)
-    return np.sqrt(np.maximum((weight * square).sum(1) / weight.sum(1), 0.0))
+    found: Array = np.sqrt(np.maximum((weight * square).sum(1) / weight.sum(1), 0.0))
+    return found
 
 
-def danger_probability(position, velocity, covariance, cpa_limit: float, tcpa_limit: float):
-    """[N] P(CPA < cpa_limit m and 0 <= TCPA < tcpa_limit s), of the same arguments.
+def danger_probability(
+    position: Array, velocity: Array, covariance: Array, cpa_limit: float, tcpa_limit: float
+) -> Array:
+    """[N] P(CPA < cpa_limit m and 0 <= TCPA < tcpa_limit s), from the same arguments.
 
-    Given the direction, that a target has not passed and is there in time is taken as independent
-    of the miss distance. It is where position errors are round; elsewhere that puts the probability
-    out by a hundredth, and only about the limit of TCPA.
+    For a given direction, the events "not passed" and "in time" are taken as independent of the
+    miss distance. That is true if position errors are round. Otherwise the probability is wrong by
+    one hundredth, and only near the TCPA limit.
     """
     of = rounded(velocity, covariance[:, 2:, 2:])
     low, high = _dangerous(of, position, covariance, cpa_limit)
@@ -49,7 +52,7 @@ def danger_probability(position, velocity, covariance, cpa_limit: float, tcpa_li
     place = places(position[some], covariance[some], of, at)
     sigma = np.sqrt(place.miss_variance)
     near = ndtr((cpa_limit - place.miss) / sigma) - ndtr((-cpa_limit - place.miss) / sigma)
-    # Not past: along < 0. What that says of along and of rho: moments of a Gaussian cut off.
+    # Not past: along < 0. Its effect on along and rho: moments of a truncated Gaussian.
     along_sigma = np.sqrt(place.along_variance)
     left = -place.along / along_sigma
     ahead, bell, _, _ = moments(left)
@@ -70,8 +73,10 @@ def danger_probability(position, velocity, covariance, cpa_limit: float, tcpa_li
     return out
 
 
-def _dangerous(of, position, covariance, cpa_limit):
-    """From where [N] to where [N], rad off the mean of z, velocities may lead to danger."""
+def _dangerous(
+    of: Round, position: Array, covariance: Array, cpa_limit: float
+) -> tuple[Array, Array]:
+    """Range [N] to [N], rad from the mean of z, of the velocities that may lead to danger."""
     # The directions that pass own ship within the limit and are not away from it, position errors
     # allowed for.
     distance = np.maximum(np.hypot(*position.T), 1e-300)
@@ -86,7 +91,7 @@ def _dangerous(of, position, covariance, cpa_limit):
     middle = wrap_angle(turn[1])
     low = middle - np.mod(turn[1] - turn[0], 2 * np.pi)
     high = middle + np.mod(turn[2] - turn[1], 2 * np.pi)
-    # What lies beyond the arc of z is left out, but for arcs that meet twice.
+    # The part beyond the arc of z is left out, except for arcs that meet twice.
     beyond = (high > 2 * np.pi - of.arc) | (low < of.arc - 2 * np.pi) | everywhere
     limited = of.arc < np.pi
     low = np.where(
@@ -99,4 +104,4 @@ def _dangerous(of, position, covariance, cpa_limit):
         np.where(beyond, of.arc, np.minimum(high, of.arc)),
         np.where(everywhere, np.pi, high),
     )
-    return low, np.maximum(low, high)  # nothing in common: nothing
+    return low, np.maximum(low, high)  # no overlap: an empty range

@@ -1,34 +1,33 @@
-"""Course, speed and position of every track, from a memory of its own: what vectors and CPA use.
+"""Course, speed and position of every track from a memory of its own, for vectors and CPA.
 
-The tracker's estimator extrapolates and associates; the motion shown comes from the same plots
-through `plot_noise` and `legs`, whatever the estimator is.
+The tracker's estimator extrapolates and associates. The shown motion comes from the same plots
+through `plot_noise` and `leg_hypotheses`, and does not depend on the estimator.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..gaussian import linear_modes
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..parameters import GLINT_SIGMA
 from ..tracking.tracker import Report
-from ..types import Array, Plots, put, take
+from ..types import Array, BoolArray, IntArray, Plots, put, take
 from . import leg_hypotheses, plot_noise
 
 STEADY, MANOEUVRING = 0, 1
 MEMORY_NAMES = ('steady', 'manoeuvring')
-SURE = 0.5  # m/s: a steady target's velocity is known as well as this
+SURE = 0.5  # m/s; a steady target's velocity has at most this deviation
 
 
 class MotionSettings(NamedTuple):
     """What is expected of targets and their plots.
 
-    glint_sigma  m, deviation of the point that echoes from the middle of the target, each axis
+    glint_sigma  m, deviation of the echoing point from the middle of the target, each axis
     speed_sigma  m/s, deviation of each component of a new target's velocity
     habits       how targets move
     rest_speed   m/s, below which a target may count as stationary ...
-    rest_time    s, ... once its velocity has not differed from 0 for so long
+    rest_time    s, ... once its velocity has not differed from 0 for this time
     """
 
     glint_sigma: float = GLINT_SIGMA['ship']
@@ -47,53 +46,54 @@ PRESETS = {
 
 
 class MotionMemory(NamedTuple):
-    """What is remembered of each track, one row a track, by ascending id.
+    """The memory of each track, one row a track, by ascending id.
 
     id          [N]
     first       [N]      s, of the first plot; nan before it
     time        [N]      s, of the last plot
     scatter              rows of `plot_noise.Scatter`, for each radar
     legs                 rows of `leg_hypotheses.Legs`
-    shown       [N, 14]  mean and covariance at `time` of what is likely, as in `linear_modes`
-    noise       [N]      m^2/s^3, density of acceleration that is to be expected from then on
+    shown       [N, 14]  mean and covariance at `time` of the likely hypotheses, as in
+    `linear_modes`
+    noise       [N]      m^2/s^3, density of acceleration expected from then on
     memory      [N]      STEADY or MANOEUVRING
     since       [N]      s, when that began: see Motion
-    still       [N]      s, since when the velocity has not differed from 0; nan: it does
+    still       [N]      s, since when the velocity has not differed from 0; nan: it differs
     stationary  [N]      whether the target counts as at rest
     """
 
-    id: NDArray[np.int64]
+    id: IntArray
     first: Array
     time: Array
     scatter: tuple[plot_noise.Scatter, ...]
     legs: leg_hypotheses.Legs
     shown: Array
     noise: Array
-    memory: NDArray[np.int64]
+    memory: IntArray
     since: Array
     still: Array
-    stationary: NDArray[np.bool_]
+    stationary: BoolArray
 
 
 class Motion(NamedTuple):
-    """Where N tracks are and how they move; nan where a track had no plot yet.
+    """Position and motion of N tracks; nan if a track had no plot yet.
 
     position    [N, 2]     m, east and north
-    velocity    [N, 2]     m/s over ground; 0 where the target is stationary
+    velocity    [N, 2]     m/s over ground; 0 if the target is stationary
     covariance  [N, 4, 4]  of [position, velocity]
     memory      [N]        STEADY: the target is on a leg that has lasted; MANOEUVRING: it is not
     since       [N]        s: the leg's likeliest beginning; when the manoeuvre first showed
-    steady      [N]        whether the target holds course and speed, and these are well known
+    steady      [N]        whether the target keeps course and speed, and these are well known
     stationary  [N]        whether the target is at rest
     """
 
     position: Array
     velocity: Array
     covariance: Array
-    memory: NDArray[np.int64]
+    memory: IntArray
     since: Array
-    steady: NDArray[np.bool_]
-    stationary: NDArray[np.bool_]
+    steady: BoolArray
+    stationary: BoolArray
 
 
 def begin(radars: int = 1) -> MotionMemory:
@@ -104,12 +104,12 @@ def begin(radars: int = 1) -> MotionMemory:
 def step(
     memory: MotionMemory, report: Report, plots: Plots, settings: MotionSettings, radar: int = 0
 ) -> MotionMemory:
-    """The memory after one scan of the radar; its rows are those of `report.tracks`.
+    """The memory after one scan of the radar. Its rows are those of `report.tracks`.
 
-    plots  the scan's plots as `geometry.locate` gives them, to which `report.plot` refers
+    plots  the scan's plots as `geometry.locate` gives them; `report.plot` refers to them
 
-    Plots of two radars come out of order by up to a revolution. That does no harm to straight
-    legs: their fit is the same in any order.
+    Plots of two radars can be out of order by up to one revolution. Straight legs do not suffer:
+    their fit is the same in any order.
     """
     memory = _follow(memory, report.tracks.id)
     first = np.arange(len(memory.id) - len(report.begun.time), len(memory.id))
@@ -121,7 +121,7 @@ def step(
     return _next_plots(memory, rows[~blank], take(plots, ~blank), settings, radar)
 
 
-def at(memory: MotionMemory, time) -> Motion:
+def at(memory: MotionMemory, time: float) -> Motion:
     """The motion of every row at `time`, s: [N] or one for all. `types.take` chooses rows first."""
     bank = linear_modes.straight(memory.noise[None])
     mean, covariance = linear_modes.unpack(
@@ -142,7 +142,7 @@ def at(memory: MotionMemory, time) -> Motion:
     )
 
 
-def _blank(id_, radars: int) -> MotionMemory:
+def _blank(id_: IntArray, radars: int) -> MotionMemory:
     """Rows of tracks that had no plot yet."""
     count = len(id_)
     nothing = np.full(count, np.nan)
@@ -163,7 +163,7 @@ def _blank(id_, radars: int) -> MotionMemory:
     )
 
 
-def _follow(memory: MotionMemory, id_) -> MotionMemory:
+def _follow(memory: MotionMemory, id_: IntArray) -> MotionMemory:
     """The rows of the tracks `id_` [N], ascending; those not known yet are blank."""
     if np.array_equal(memory.id, id_):
         return memory
@@ -173,9 +173,9 @@ def _follow(memory: MotionMemory, id_) -> MotionMemory:
 
 
 def _first_plots(
-    memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int
+    memory: MotionMemory, rows: IntArray, plots: Plots, settings: MotionSettings, radar: int
 ) -> MotionMemory:
-    """The rows [K] begin with one plot each."""
+    """Starts the rows [K], with one plot each."""
     count = len(rows)
     if not count:
         return memory
@@ -204,16 +204,16 @@ def _first_plots(
 
 
 def _next_plots(
-    memory: MotionMemory, rows, plots: Plots, settings: MotionSettings, radar: int
+    memory: MotionMemory, rows: IntArray, plots: Plots, settings: MotionSettings, radar: int
 ) -> MotionMemory:
-    """The rows [K] take one more plot each."""
+    """Adds one more plot to each of the rows [K]."""
     if not len(rows):
         return memory
     before = take(memory, rows)
     scatters = list(before.scatter)
     scatter, covariance, stretch = plot_noise.observe(scatters[radar], plots, settings.glint_sigma)
     scatters[radar] = scatter
-    if len(scatters) > 1:  # a fit to the plots of several radars scales with none of them
+    if len(scatters) > 1:  # a fit to plots of several radars cannot scale with one of them
         stretch = np.broadcast_to(np.eye(2), stretch.shape)
     hypotheses, shown = leg_hypotheses.update(
         before.legs,
@@ -243,11 +243,13 @@ def _next_plots(
     )
 
 
-def _manoeuvre(before: MotionMemory, hypotheses: leg_hypotheses.Legs, time, lasting: float):
+def _manoeuvre(
+    before: MotionMemory, hypotheses: leg_hypotheses.Legs, time: Array, lasting: float
+) -> tuple[IntArray, Array]:
     """STEADY or MANOEUVRING [N], and since when [N] s, after the times [N] s.
 
-    In a turn every moment may be the beginning of a new leg, so one that is younger than `lasting`
-    s counts for nothing yet; but a new target is not taken to turn for that.
+    In a turn every moment may be the beginning of a new leg. So a leg younger than `lasting` s does
+    not count yet. But a new target is not taken as turning for this reason.
     """
     likeliest = hypotheses.weight.argmax(1)
     begun = hypotheses.begun[np.arange(len(time)), likeliest - 1]
@@ -258,11 +260,14 @@ def _manoeuvre(before: MotionMemory, hypotheses: leg_hypotheses.Legs, time, last
     return np.where(turns, MANOEUVRING, STEADY), np.where(turns, since, begun)
 
 
-def _rest(before: MotionMemory, shown, time, settings: MotionSettings):
+def _rest(
+    before: MotionMemory, shown: Array, time: Array, settings: MotionSettings
+) -> tuple[Array, BoolArray]:
     """Since when [N] tracks are still, and whether they count as stationary, after the times [N].
 
-    A target comes to rest when its velocity is within 2.4 deviations of 0, and surely slow, for a
-    time; it gets under way when it is beyond 3 and half the speed: so it does not flicker.
+    A target comes to rest when for some time its velocity is within 2.4 deviations of 0, and
+    certainly low. It gets under way when its velocity is beyond 3 deviations and above half the
+    speed limit. The gap between the two prevents flicker.
     """
     mean, covariance = linear_modes.unpack(shown)
     velocity, spread = mean[:, 2:], covariance[:, 2:, 2:]

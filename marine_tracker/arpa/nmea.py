@@ -1,13 +1,13 @@
 """NMEA 0183 sentences of targets and own ship, from arrays (IEC 61162-1)."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import KNOT, NAUTICAL_MILE
-from ..types import Array
+from ..types import Array, IntArray
 from .nmea_fields import (
     ANGLE,
     KNOTS,
@@ -27,23 +27,24 @@ GROUND, WATER = 'P', 'W'  # references of OSD: position fixes; a log through the
 NORTH_UP, HEAD_UP, COURSE_UP = 'N', 'H', 'C'
 LENGTH = 82  # IEC 61162-1: characters of a sentence, $ and CR LF included
 NAME = 20  # OpenCPN: characters of a target's name
-NUMBERS = range(1, 100)  # target numbers of two digits; 00 is left to "none"
+TWO_DIGITS, THREE_DIGITS = 99, 999  # greatest target numbers: by the standard; as OpenCPN reads
+NUMBERS = range(1, THREE_DIGITS + 1)  # 0 means "none"
 NEAREST = 0.001  # NM; OpenCPN takes a range of 0 for a target switched off
 
 
 class Targets(NamedTuple):
-    """N targets as TTM and TLL tell them; nan for a figure that is not known.
+    """N targets for TTM and TLL; nan for an unknown value.
 
-    number    [N]  of two digits, 1 to 99 (see nmea_targets.slots)
+    number    [N]  1 to 99, or to 999 if receivers accept that (see nmea_targets.slots)
     status    [N]  LOST, ACQUIRING or TRACKING
-    acquired  [N]  AUTOMATIC, MANUAL or REPORTED; '' for not said
+    acquired  [N]  AUTOMATIC, MANUAL or REPORTED; '' if not given
     name      [N]  text
     range     [N]  m, from own ship      bearing  [N]  rad, true
     speed     [N]  m/s                   course   [N]  rad, true
     cpa       [N]  m                     tcpa     [N]  s, negative when past
     """
 
-    number: NDArray[np.int64]
+    number: IntArray
     status: NDArray[np.str_]
     acquired: NDArray[np.str_]
     name: NDArray[np.str_]
@@ -56,7 +57,7 @@ class Targets(NamedTuple):
 
 
 class OwnShipData(NamedTuple):
-    """Own ship at one moment; nan for what is not known.
+    """Own ship at one moment; nan for an unknown value.
 
     latitude, longitude  deg
     speed m/s, course rad  over ground or through the water, as `reference` (GROUND, WATER) says
@@ -74,7 +75,7 @@ class OwnShipData(NamedTuple):
 
 
 def as_acquired(targets: Targets) -> Targets:
-    """The same, and those being acquired without speed, course and TCPA: so radars send them."""
+    """The same targets, without speed, course and TCPA while being acquired, as radars do."""
     acquiring = targets.status == ACQUIRING
     return targets._replace(
         **{
@@ -87,17 +88,17 @@ def as_acquired(targets: Targets) -> Targets:
 def ttm(
     targets: Targets, time: float, talker: str = 'RA', decimals: int = 3, reference: int = 0
 ) -> list[str]:
-    """TTM, tracked target message: 15 fields always, one sentence a target.
+    """TTM, tracked target message: always 15 fields, one sentence a target.
 
     time       s of UTC since 1970; nan for an empty field
     decimals   of the distances
-    reference  number of the target that own ship's drift is taken from; 0 for none
+    reference  number of the target from which own ship's drift is taken; 0 for none
 
-    Distances in NM, speed in knots, TCPA in minutes. Targets without bearing and range (up to
-    999.999 NM) cannot be told and are left out. A range that would be written as 0 is written as
-    the least that is not: 0 tells OpenCPN that the target was switched off. A name is cut to what
-    the 82 characters of a sentence leave, 20 at most. ValueError for a number, status or
-    acquisition that TTM has no code for.
+    Distances in NM, speed in knots, TCPA in minutes. Targets without bearing, or without a range up
+    to 999.999 NM, are left out. A range that would be written as 0 is written as the smallest value
+    above 0, because 0 tells OpenCPN that the target was switched off. A name is cut to the space
+    that the 82 characters of a sentence leave, at most 20. ValueError for a number, status or
+    acquisition that has no code in TTM.
     """
     _check(targets)
     clock = hours(time)
@@ -196,7 +197,7 @@ def rsd(
     markers      up to two, each the range m of a VRM and the bearing rad of an EBL
     """
 
-    def pair(range_, bearing):
+    def pair(range_: float, bearing: float) -> tuple[str, str]:
         return figure(range_ / NAUTICAL_MILE, MILES, 3), degrees(bearing)
 
     if len(markers) > 2:
@@ -250,8 +251,8 @@ def hdt(own: OwnShipData, talker: str = 'II') -> str:
     return sentence(talker, 'HDT', (degrees(own.heading), 'T'))
 
 
-def _units(targets: Targets):
-    """The columns of the targets that can be told, in NM, rad, knots and minutes."""
+def _units(targets: Targets) -> list[NDArray[Any]]:
+    """The columns of the targets that can be sent, in NM, rad, knots and minutes."""
     miles, bearing = targets.range / NAUTICAL_MILE, targets.bearing
     told = (miles >= 0) & (miles < MILES) & (np.abs(bearing) <= ANGLE)
     return [
@@ -281,7 +282,7 @@ def _named(talker: str, kind: str, fields: list[str], at: int, name: str) -> str
 
 def _check(targets: Targets) -> None:
     for name, known, allowed in (
-        ('number', NUMBERS, '1 to 99'),
+        ('number', NUMBERS, '1 to 999'),
         ('status', (LOST, ACQUIRING, TRACKING), 'L, Q, T'),
         ('acquired', (AUTOMATIC, MANUAL, REPORTED, ''), 'A, M, R'),
     ):

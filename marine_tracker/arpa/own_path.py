@@ -9,13 +9,13 @@ from ..types import Array
 from .cpa import OwnMotion
 
 MAX_SPEED = 100 * KNOT
-STRETCHES = 32  # of the path while course and speed change, and again while one still does
+STRETCHES = 32  # pieces while course and speed change, and again while one still does
 
 
 class TrialManoeuvre(NamedTuple):
-    """The manoeuvre to be tried.
+    """The trial manoeuvre.
 
-    course        rad, true, over ground, to be steered; reached by the shorter turn
+    course        rad, true, over ground; reached by the shorter turn
     speed         m/s over ground, to be reached
     delay         s from now until the manoeuvre begins
     turn_rate     rad/s; inf turns at once
@@ -30,9 +30,9 @@ class TrialManoeuvre(NamedTuple):
 
 
 class Path(NamedTuple):
-    """C paths, each as K moments with own ship at them; straight from one to the next.
+    """C paths, each as K moments with own ship's positions; straight between moments.
 
-    After the last moment a ship goes on with `velocity`.
+    After the last moment the ship continues with `velocity`.
 
     time      [C, K]     s from now, ascending, the first 0
     position  [C, K, 2]  m, east and north
@@ -45,7 +45,7 @@ class Path(NamedTuple):
 
 
 def check(trial: TrialManoeuvre) -> None:
-    """ValueError for the first value that no manoeuvre can have."""
+    """ValueError for the first value that is not possible."""
     for name, unit, low, high in (
         ('course', 'rad', -np.inf, np.inf),
         ('speed', 'm/s', 0.0, MAX_SPEED),
@@ -62,26 +62,27 @@ def check(trial: TrialManoeuvre) -> None:
 
 
 def countdown(trial: TrialManoeuvre, elapsed: float) -> TrialManoeuvre:
-    """The same trial `elapsed` s later: its delay is what is left of it, 0 once it is due."""
+    """The same trial `elapsed` s later: the remaining delay, 0 once it has begun."""
     if not elapsed >= 0:
         raise ValueError(f'elapsed is {elapsed:g} s; a countdown does not run backwards')
     return trial._replace(delay=max(trial.delay - elapsed, 0.0))
 
 
 def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
-    """Own ship's path for each of the courses [C] rad, which take the place of the trial's own.
+    """Own ship's path for each of the courses [C] rad, which replace the trial's own.
 
-    Course and speed change together, each at its constant rate, from own ship's course over ground
-    (its heading where it lies still). The position at each moment is exact; between moments the
-    path is a chord, off the arc by at most .12 % of the turning circle's radius.
+    Course and speed change together, each at its constant rate, starting from own ship's course
+    over ground (from its heading if it is at rest). The position at each moment is exact. Between
+    moments the path is a chord, which differs from the arc by at most .12 % of the turning circle's
+    radius.
     """
     check(trial)
     if not (np.isfinite(own.position).all() and np.isfinite(own.velocity).all()):
         raise ValueError(
             f'own ship is at {own.position} m with {own.velocity} m/s; a trial needs both'
         )
-    speed, course = to_range_bearing(own.velocity)
-    course = course if speed > 0 else own.heading
+    speed, made_good = to_range_bearing(own.velocity)
+    course: float | Array = made_good if speed > 0 else own.heading
     turn, gain = wrap_angle(courses - course), np.broadcast_to(trial.speed - speed, courses.shape)
     turning, gaining = np.abs(turn) / trial.turn_rate, np.abs(gain) / trial.acceleration
     first, last = np.minimum(turning, gaining), np.maximum(turning, gaining)
@@ -96,11 +97,11 @@ def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
     )
     step = np.diff(after)
 
-    def velocity_at(after_delay):
+    def velocity_at(after_delay: Array) -> Array:
         now = course + turn[:, None] * _share(after_delay, turning)
         return (speed + gain[:, None] * _share(after_delay, gaining))[..., None] * unit_vector(now)
 
-    # Gauss's two points: exact to 1e-6 of a stretch.
+    # Gauss's two points: exact to 1e-6 of a piece.
     middle, off = after[:, :-1] + step / 2, step / np.sqrt(12)
     moved = (velocity_at(middle - off) + velocity_at(middle + off)) * step[..., None] / 2
     begins = own.position + trial.delay * own.velocity
@@ -113,7 +114,7 @@ def paths(own: OwnMotion, trial: TrialManoeuvre, courses: Array) -> Path:
     )
 
 
-def _share(time, duration):
-    """The share [C, K] of a change that takes `duration` [C] which is done by the time [C, K]."""
+def _share(time: Array, duration: Array) -> Array:
+    """The share [C, K] of a change lasting `duration` [C] s that is done by the time [C, K]."""
     duration = np.broadcast_to(duration[:, None], time.shape)
     return np.divide(time, duration, out=np.ones_like(time), where=duration > 0).clip(0, 1)

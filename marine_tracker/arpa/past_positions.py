@@ -1,11 +1,12 @@
-"""Where the targets were, at equal intervals of time: their past positions, true and relative."""
+"""Past positions of the targets at equal intervals of time, true and relative."""
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array, row_of
+from ..types import Array, IntArray, row_of
+from .cpa import OwnMotion
+from .motion import Motion
 
 
 class PastPositions(NamedTuple):
@@ -21,14 +22,15 @@ class PastPositions(NamedTuple):
     interval: float
     time: Array
     own: Array
-    id: NDArray[np.int64]
+    id: IntArray
     position: Array
 
 
 def begin(count: int, interval: float) -> PastPositions:
-    """None yet. count: how many to keep; interval s between them. ValueError for less than 1, 0 s.
+    """An empty memory. count: how many to keep; interval s between them.
 
-    The standards want at least 4.
+    ValueError for less than 1, or an interval that is not above 0. The standards require at least
+    4.
     """
     if count < 1:
         raise ValueError(f'the number of past positions is {count}; it must be at least 1')
@@ -43,38 +45,42 @@ def begin(count: int, interval: float) -> PastPositions:
 
 
 def step(
-    past: PastPositions, id, first_time, position, velocity, own_position, own_velocity, now: float
+    past: PastPositions, id: IntArray, first_time: Array, moving: Motion, own: OwnMotion, now: float
 ) -> PastPositions:
-    """Follow the tracks id [N] to `now` s; the rows of the result are theirs.
+    """Follows the tracks id [N] to `now` s. The rows of the result are theirs.
 
-    first_time [N] s, of the tracks' first plots; position [N, 2] m and velocity [N, 2] m/s of the
-    tracks, own_position [2] and own_velocity [2] of own ship, all at `now`.
+    first_time  [N] s, of the tracks' first plots
+    moving      the tracks at `now`, N rows; uses position and velocity of them and of own ship
 
-    Positions at a moment that came up since the last step are those of `now` brought back along
-    the velocity, at most a scan's way. Moments that came up while nothing was heard for longer
-    than all of them span are not invented: the past begins anew. So it does when time goes back.
+    A moment since the last step gets the position at `now`, moved back along the velocity by at
+    most one scan. After a gap longer than the whole span of moments, nothing is invented: the
+    memory starts again. It also starts again if time goes back.
     """
     count, interval = len(past.time), past.interval
-    time, own = past.time, past.own
+    time, own_before = past.time, past.own
     positions = np.full((len(id), count, 2), np.nan)
     row = row_of(past.id, id)
     positions[row >= 0] = past.position[row[row >= 0]]
     latest = np.floor(now / interval) * interval
     due = round((latest - time[0]) / interval) if np.isfinite(time[0]) else 1
     if not 0 <= due <= count:
-        due, time, own = 1, np.full_like(time, np.nan), np.full_like(own, np.nan)
+        due = 1
+        time = np.full_like(time, np.nan)
+        own_before = np.full_like(own_before, np.nan)
         positions[:] = np.nan
     if due:
         moments = latest - interval * np.arange(due)
         back = moments - now
-        was = position[:, None] + back[:, None] * velocity[:, None]
+        was = moving.position[:, None] + back[:, None] * moving.velocity[:, None]
         was[moments < first_time[:, None]] = np.nan
         time = np.concatenate([moments, time])[:count]
-        own = np.concatenate([own_position + back[:, None] * own_velocity, own])[:count]
+        own_before = np.concatenate([own.position + back[:, None] * own.velocity, own_before])[
+            :count
+        ]
         positions = np.concatenate([was, positions], 1)[:, :count]
-    return PastPositions(interval, time, own, np.array(id), positions)
+    return PastPositions(interval, time, own_before, np.array(id), positions)
 
 
 def relative(past: PastPositions) -> Array:
-    """Offsets [N, K, 2] m of the tracks from where own ship was at the same moments."""
+    """Offsets [N, K, 2] m of the tracks from own ship's positions at the same moments."""
     return past.position - past.own

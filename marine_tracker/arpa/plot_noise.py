@@ -1,10 +1,11 @@
-"""How much a target's plots really scatter, whatever the radar's figures say.
+"""Measures the real scatter of each target's plots, independent of the radar's stated figures.
 
-A ship hardly accelerates from one scan to the next, so three plots in a row lie on a line but for
-their errors: their second difference tells the noise of sensor, glint and quantisation together,
-on straight courses and in turns alike. Each track compares it with what is configured, along and
-across the line of sight, and starts from the configured noise. Vectors, CPA and their deviations
-then suit a target 300 m long, a boat, and a radar better or worse than its description.
+A ship hardly accelerates from one scan to the next. So three plots in a row lie on a line except
+for their errors. Their second difference shows the noise of sensor, glint and quantisation
+together, on straight courses and in turns. Each track compares it with the configured noise, along
+and across the line of sight, starting from the configured noise. So vectors, CPA and their
+deviations are right for a target 300 m long, for a boat, and for a radar better or worse than its
+description.
 """
 
 from typing import NamedTuple
@@ -14,22 +15,21 @@ import numpy as np
 from ..geometry import unit_vector
 from ..types import Array, Plots
 
-BEGIN, MOST = 10.0, 60.0  # plots that the configured noise counts for; and that are remembered
-SHARE = 0.03  # of the configured noise that always stays
-CLIP = 3.0  # deviations as known so far: a scatter beyond counts as this, as it
-# may be a wrong plot
-FREEDOM = 0.25  # degrees of freedom a plot: differences share plots, so each tells less
-LONGEST = 3.0  # a gap longer than so many times the one before tells nothing
+BEGIN, MOST = 10.0, 60.0  # plots that the configured noise counts as; and that are remembered
+SHARE = 0.03  # share of the configured noise that always stays
+CLIP = 3.0  # deviations; a larger scatter may be a wrong plot, and counts as this
+FREEDOM = 0.25  # degrees of freedom a plot; differences share plots, so each tells less
+LONGEST = 3.0  # a gap longer than this many times the previous one is not used
 
 
 class Scatter(NamedTuple):
-    """What the plots of N tracks have shown.
+    """The scatter of the plots of N tracks.
 
     position  [N, 2, 2]  m, of the last plot and the one before; nan before there were any
     time      [N, 2]     s, of them
     ratio     [N, 2, 2]  scatter in units of the configured deviations, along and across the line
-                         of sight: the identity where plots scatter as configured
-    plots     [N]        that `ratio` rests on, the configured noise included
+                         of sight: the identity if plots scatter as configured
+    plots     [N]        that `ratio` is based on, including those for the configured noise
     """
 
     position: Array
@@ -39,7 +39,7 @@ class Scatter(NamedTuple):
 
 
 def begin(count: int) -> Scatter:
-    """Nothing seen yet."""
+    """No plots yet."""
     return Scatter(
         np.full((count, 2, 2), np.nan),
         np.full((count, 2), np.nan),
@@ -49,10 +49,12 @@ def begin(count: int) -> Scatter:
 
 
 def observe(scatter: Scatter, plots: Plots, glint_sigma: float) -> tuple[Scatter, Array, Array]:
-    """One plot a track. Also the covariances [N, 2, 2] m^2 that the plots really have, and the
-    matrices [N, 2, 2] that turn errors as they were judged before into those as judged now.
+    """Takes one plot a track.
 
-    glint_sigma  m, of the point that echoes, each axis; adds to the plots' own covariance
+    Also returns the covariances [N, 2, 2] m^2 that the plots really have, and the matrices [N, 2,
+    2] that change errors as judged before into those as judged now.
+
+    glint_sigma  m, of the echoing point, each axis; adds to the plots' own covariance
     """
     along = unit_vector(plots.bearing)
     axes = np.stack([along, np.stack([along[:, 1], -along[:, 0]], -1)], 1)  # along, across
@@ -90,7 +92,7 @@ def observe(scatter: Scatter, plots: Plots, glint_sigma: float) -> tuple[Scatter
     )
 
 
-def _root(matrix):
+def _root(matrix: Array) -> Array:
     """Lower triangular root [N, 2, 2] of positive definite matrices [N, 2, 2]."""
     root = np.zeros_like(matrix)
     root[:, 0, 0] = np.sqrt(matrix[:, 0, 0])

@@ -1,6 +1,6 @@
-"""Signal K deltas of targets: a vessel each, as Signal K servers ignore TTM and TLL.
+"""Signal K deltas of targets, one vessel each, because Signal K servers ignore TTM and TLL.
 
-A server takes one delta a datagram over UDP. Units are SI, bearings and courses true (Signal K
+A server takes one delta in each UDP datagram. Units are SI; bearings and courses are true (Signal K
 specification 1.7, "Delta format" and vessels/*/navigation).
 """
 
@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
+from ..geodesy import wrap_longitude
 from ..types import Array
 from .nmea import LOST, Targets
 
@@ -34,12 +35,12 @@ def deltas(
 
     targets              N of them
     numbers              their own numbers, not shortened to two digits
-    latitude, longitude  [N] deg; nan where not known
+    latitude, longitude  [N] deg; nan if unknown
     time                 s of UTC since 1970
-    namespace            tells this radar's targets from those of others
+    namespace            distinguishes this radar's targets from those of others
 
-    What is not known is left out; of a lost target everything that moves is null, which tells the
-    server that it is no longer known.
+    Unknown values are left out. For a lost target all values of its motion are null, which tells
+    the server that they are no longer known.
     """
     stamp = datetime.fromtimestamp(time, UTC).isoformat(timespec='milliseconds')
     stamp = stamp.replace('+00:00', 'Z')
@@ -49,7 +50,7 @@ def deltas(
         targets.status.tolist(),
         targets.name.tolist(),
         np.asarray(latitude).tolist(),
-        np.asarray(longitude).tolist(),
+        wrap_longitude(np.asarray(longitude)).tolist(),
         *(column.tolist() for column in targets[-4:]),
     ):
         speed, course, cpa, tcpa = figures
@@ -83,5 +84,5 @@ def _number(value: float) -> float | None:
 
 
 def _known(**values: float) -> dict[str, float] | None:
-    """The values, if all are known."""
+    """The values, or None if one is unknown."""
     return values if all(np.isfinite(value) for value in values.values()) else None

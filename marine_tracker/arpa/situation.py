@@ -1,30 +1,29 @@
-"""What acquisition and alarms look at: each track, how near it comes, its danger, its zones."""
+"""The input of acquisition and alarms: each track, its approach, its danger, its zones."""
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import NAUTICAL_MILE
-from ..types import Array, Tracks
+from ..types import Array, BoolArray, CodeArray, IntArray, Tracks
 from .cpa import Approach, OwnMotion
 from .zones import Zones, inside
 
 SAFE, NEARLY, DANGEROUS = range(3)
 DANGERS = ('safe', 'nearly', 'dangerous')
-WIDER = 1.1  # the limits that a danger must leave to be over, of the limits
-LIKELY, UNLIKELY = 0.5, 0.25  # probabilities of danger that raise it, and that let it end
+WIDER = 1.1  # factor of the limits that a danger must leave to end
+LIKELY, UNLIKELY = 0.5, 0.25  # probabilities of danger: raises one, lets one end
 
 
 class Limits(NamedTuple):
-    """What is dangerous, the same for every target: CPA m and TCPA s below which it is."""
+    """The limits of danger, the same for every target: CPA below m and TCPA below s."""
 
     cpa: float = 0.5 * NAUTICAL_MILE
     tcpa: float = 720.0
 
 
 class Situation(NamedTuple):
-    """The tracks of a scan at one moment, lost ones included; one row a track.
+    """The tracks of a scan at one moment, including lost ones; one row a track.
 
     id, number, status  [N]     as in the report's tracks
     reason              [N]     why a lost one was lost (lifecycle.MISSED ...)
@@ -34,14 +33,16 @@ class Situation(NamedTuple):
     probability         [N]     of danger
     nearest             [N]     m, least distance to own ship from now until the TCPA limit
     danger              [N]     SAFE, NEARLY or DANGEROUS
-    inside              [N, Z]  in which zones it lies
-    guarded, excluded   [N]     lies in a guard zone, in an exclusion zone; in both is excluded
+    inside              [N, Z]  zones in which it lies
+    guarded, excluded   [N]     in a guard zone, in an exclusion zone; if in both, it is excluded
+    harmless            [N]     as given to `look`
+    cpa_sigma, tcpa_sigma  [N]  m, s, deviations of CPA and TCPA
     """
 
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    status: NDArray[np.int8]
-    reason: NDArray[np.int8]
+    id: IntArray
+    number: IntArray
+    status: CodeArray
+    reason: CodeArray
     position: Array
     range: Array
     bearing: Array
@@ -49,26 +50,29 @@ class Situation(NamedTuple):
     tcpa: Array
     probability: Array
     nearest: Array
-    danger: NDArray[np.int8]
-    inside: NDArray[np.bool_]
-    guarded: NDArray[np.bool_]
-    excluded: NDArray[np.bool_]
+    danger: CodeArray
+    inside: BoolArray
+    guarded: BoolArray
+    excluded: BoolArray
+    harmless: BoolArray
+    cpa_sigma: Array
+    tcpa_sigma: Array
 
 
 def look(
     tracks: Tracks,
-    reason,
-    position,
+    reason: CodeArray,
+    position: Array,
     approach: Approach,
-    at_rest,
+    harmless: BoolArray,
     zones: Zones,
     own: OwnMotion,
     limits: Limits,
 ) -> Situation:
-    """The situation of the N tracks of a tracker's report, which has their `reason` [N] too.
+    """The situation of the N tracks of a tracker's report, with their `reason` [N].
 
-    position [N, 2] m and approach (N rows) are theirs, now; at_rest [N]: neither the target nor
-    own ship makes way (see `danger`).
+    position [N, 2] m and approach (N rows) are theirs, now; harmless [N]: own ship is at anchor and
+    the target does not certainly come nearer (see `danger`).
     """
     mask = inside(zones, position, own.position, own.heading)
     excluded = np.any(mask & ~zones.guard, axis=1)
@@ -84,35 +88,39 @@ def look(
         approach.tcpa,
         approach.danger_probability,
         nearest(approach, limits.tcpa),
-        danger(approach, at_rest, limits),
+        danger(approach, harmless, limits),
         mask,
         np.any(mask & zones.guard, axis=1) & ~excluded,
         excluded,
+        harmless,
+        approach.cpa_sigma,
+        approach.tcpa_sigma,
     )
 
 
 def nearest(approach: Approach, within: float) -> Array:
-    """Least distance [N] m to own ship in the next `within` s; the range where TCPA is unknown.
+    """Least distance [N] m to own ship in the next `within` s; the range if TCPA is unknown.
 
-    CPA where the TCPA comes within that time, the range now where it is past: one number in which
-    dangerous targets come first, then those that close, then those that go.
+    It is the CPA if the TCPA comes within that time, and the present range if the TCPA is past.
+    Sorting by it gives dangerous targets first, then those that approach, then those that move
+    away.
     """
     left = approach.tcpa - np.clip(approach.tcpa, 0.0, within)
     distance = np.hypot(approach.cpa, approach.relative_speed * left)
     return np.where(np.isfinite(distance), distance, approach.range)
 
 
-def danger(approach: Approach, at_rest, limits: Limits) -> NDArray[np.int8]:
-    """How dangerous [N] each target is; at_rest [N] bool.
+def danger(approach: Approach, harmless: BoolArray, limits: Limits) -> CodeArray:
+    """How dangerous [N] each target is; harmless [N] bool.
 
-    DANGEROUS: CPA < limit and 0 <= TCPA < limit, as the standards have it, or the probability of
-    that is at least LIKELY, whatever the values themselves. NEARLY, not enough to raise an alarm
-    but to keep one: the same with limits WIDER times, or a probability of at least UNLIKELY.
-    SAFE: the rest, and those at rest while own ship is at rest: they meet by noise only. A
-    target whose TCPA is unknown (nan) is judged by the probability.
+    DANGEROUS: CPA < limit and 0 <= TCPA < limit, as in the standards; or the probability of that is
+    at least LIKELY. NEARLY: the same with limits WIDER times as large, or a probability of at least
+    UNLIKELY. It does not raise an alarm, but it keeps one. SAFE: all others, and the harmless ones,
+    which only noise brings near an anchored own ship. If the TCPA is unknown (nan), only the
+    probability counts.
     """
 
-    def within(share):
+    def within(share: float) -> BoolArray:
         return (
             (approach.cpa < share * limits.cpa)
             & (approach.tcpa >= 0)
@@ -125,4 +133,4 @@ def danger(approach: Approach, at_rest, limits: Limits) -> NDArray[np.int8]:
         DANGEROUS,
         np.where(within(WIDER) | (probability >= UNLIKELY), NEARLY, SAFE),
     )
-    return np.where(at_rest, SAFE, level).astype(np.int8)
+    return np.where(harmless, SAFE, level).astype(np.int8)

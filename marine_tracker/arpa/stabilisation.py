@@ -1,10 +1,10 @@
 """What courses and speeds are measured against: the ground, the water, or nothing that is known.
 
-    ground  from own ship's positions; or from a target that the operator knows to be stationary
-    sea     from her speed through the water, by a log or set by hand, along her heading; or from a
-            current that is set by hand
-    none    her own way is not known, or not in which direction: courses and speeds are not told.
-            What is relative (range, CPA, TCPA) is still right
+ground  from own ship's positions; or from a target that the operator knows to be stationary
+sea     from her speed through the water, by a log or set by hand, along her heading; or from a
+        current that is set by hand
+none    her own way is not known, or not in which direction: courses and speeds are not told.
+        What is relative (range, CPA, TCPA) is still right
 """
 
 from typing import NamedTuple
@@ -36,6 +36,9 @@ class OwnSensors(NamedTuple):
     way: str = POSITIONS
 
 
+ALL_WELL = OwnSensors()
+
+
 class Stabilisation(NamedTuple):
     """What is in force.
 
@@ -51,7 +54,7 @@ class Stabilisation(NamedTuple):
     target: int = 0
 
 
-def through_water(p: ArpaParameters, log, heading: float) -> tuple[Array, str]:
+def through_water(p: ArpaParameters, log: tuple[float, float], heading: float) -> tuple[Array, str]:
     """Own ship's velocity [2] m/s through the water along the heading, and LOG or HAND; nan and ''
     where neither tells her speed, or the heading is nan.
 
@@ -61,7 +64,7 @@ def through_water(p: ArpaParameters, log, heading: float) -> tuple[Array, str]:
     speed = log if by == LOG else (p.water_speed_kn * KNOT, 0.0)
     if np.isnan(heading) or (by == HAND and p.water_speed_kn < 0):
         return np.full(2, np.nan), ''
-    return on_deck(*speed, heading), by
+    return on_deck(speed[0], speed[1], heading), by
 
 
 def stabilisation(

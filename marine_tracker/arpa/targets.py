@@ -1,12 +1,11 @@
-"""Targets: the tracks that were acquired, how they end, and the events that tell of it."""
+"""Targets: the tracks that were acquired, how they end, and the events about them."""
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..tracking.lifecycle import LOST, MERGED, OUT_OF_RANGE
-from ..types import Array, row_of, take
+from ..types import Array, BoolArray, CodeArray, IntArray, row_of, take
 from .situation import Situation
 
 AUTOMATIC, MANUAL = range(2)
@@ -44,9 +43,9 @@ EVENTS = (
 class Targets(NamedTuple):
     """The targets, one row each: track id, number (0 while acquiring), AUTOMATIC or MANUAL, s."""
 
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    acquired: NDArray[np.int8]
+    id: IntArray
+    number: IntArray
+    acquired: CodeArray
     since: Array
 
 
@@ -56,31 +55,33 @@ class Events(NamedTuple):
     kind      [E]     index into EVENTS
     id        [E]     of the track, 0 for none
     number    [E]     of the target, 0 for none
-    position  [E, 2]  m: of the track, of the click; nan where it is not known
+    position  [E, 2]  m: of the track, or of the click; nan if unknown
     """
 
-    kind: NDArray[np.int8]
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
+    kind: CodeArray
+    id: IntArray
+    number: IntArray
     position: Array
 
 
-def label(ids, number) -> list[str]:
-    """TT07 by its number; Q and the track's id, as Q123, for a target without one."""
+def label(ids: IntArray, number: IntArray) -> list[str]:
+    """TT07 for a target with a number; Q and the track's id, as Q123, for one without."""
     return [f'TT{n:02d}' if n else f'Q{i}' for i, n in zip(ids.tolist(), number.tolist())]
 
 
-def carry_over(targets: Targets, situation: Situation, radius: float, brief: float, now: float):
-    """The targets that go on: how [N] acquired (-1: no target), since [N] s; and the events.
+def carry_over(
+    targets: Targets, situation: Situation, radius: float, brief: float, now: float
+) -> tuple[CodeArray, Array, Events]:
+    """The targets that continue: how [N] acquired (-1: not a target), since [N] s; and the events.
 
-    radius, brief  acquisition.Settings.click_radius and .brief
+    radius, brief  acquisition.AcquisitionSettings.click_radius and .brief
     """
     row = row_of(situation.id, targets.id)
     gone, held, row = take(targets, row < 0), take(targets, row >= 0), row[row >= 0]
     how, since = np.full(len(situation.id), -1, np.int8), np.full(len(situation.id), now)
     how[row], since[row] = held.acquired, held.since
     target, over = how >= 0, situation.status == LOST
-    # The first that holds is the reason: a target lost in an exclusion zone raises no alarm.
+    # The first reason that applies is used: a target lost in an exclusion zone raises no alarm.
     ends = {
         MERGED_AWAY: over & (situation.reason == MERGED),
         UNCONFIRMED: over & (situation.number == 0),
@@ -111,8 +112,8 @@ def carry_over(targets: Targets, situation: Situation, radius: float, brief: flo
     )
 
 
-def _heirs(situation: Situation, merged, radius: float) -> list[tuple[int, int]]:
-    """Rows (merged, heir): the track that a merged target [N] lives on in is the nearest one.
+def _heirs(situation: Situation, merged: BoolArray, radius: float) -> list[tuple[int, int]]:
+    """Rows (merged, heir): the nearest track continues a merged target [N].
 
     A confirmed track is merged into confirmed ones only.
     """
@@ -127,15 +128,15 @@ def _heirs(situation: Situation, merged, radius: float) -> list[tuple[int, int]]
     return heirs
 
 
-def nearest_track(situation: Situation, position, fit, radius: float) -> int:
-    """Row of the nearest fit track within the radius of a position, -1 where there is none."""
+def nearest_track(situation: Situation, position: Array, fit: BoolArray, radius: float) -> int:
+    """Row of the nearest fit track within the radius of a position; -1 if there is none."""
     rows = fit.nonzero()[0]
     away = np.hypot(*(situation.position[rows] - position).T)
     near = (away <= radius).nonzero()[0]
     return int(rows[near[away[near].argmin()]]) if len(near) else -1
 
 
-def at_tracks(kind: int, situation: Situation, rows) -> Events:
+def at_tracks(kind: int, situation: Situation, rows: IntArray) -> Events:
     """The same event of some tracks."""
     return Events(
         np.full(len(rows), kind, np.int8),

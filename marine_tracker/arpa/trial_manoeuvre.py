@@ -1,22 +1,21 @@
-"""What would come of a manoeuvre of own ship, for every target at once.
+"""The effect of a manoeuvre of own ship on every target at once.
 
-Targets hold course and speed, own ship follows the path of own_path.py. Nothing here touches the
-tracking, which goes on with the real motion.
+Targets keep course and speed; own ship follows the path of own_path.py. Nothing here affects the
+tracking, which continues with the real motion.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import to_range_bearing, wrap_angle
-from ..types import Array, take
+from ..types import Array, BoolArray, IntArray, take
 from .cpa import HAIR, LEAST_SPEED, OwnMotion, cpa_of
 from .miss_distance import danger_probability
 from .motion import Motion
 from .own_path import Path, TrialManoeuvre, paths
 
-AT_ONCE = 100_000  # distances reckoned at a time: what a cache holds
+AT_ONCE = 100_000  # distances computed at once, to fit into a cache
 COURSES = np.radians(np.arange(360.0))
 
 
@@ -24,12 +23,12 @@ class TrialApproach(NamedTuple):
     """How N targets pass under a trial.
 
     cpa                 [N]  m
-    tcpa                [N]  s from now; negative for a target that only goes away, whose CPA is
-                             then that of the motion now; nan with next to no relative motion
+    tcpa                [N]  s from now; negative for a target that only moves away (its CPA is then
+                             that of the present motion); nan with almost no relative motion
     danger_probability  [N]  P(CPA < its limit and 0 <= TCPA < its limit)
 
-    For a target whose motion is not known: nan, nan, 0. A trial without any change gives what
-    `cpa.approach` gives.
+    For a target with unknown motion: nan, nan, 0. A trial without any change gives the same as
+    `cpa.approach`.
     """
 
     cpa: Array
@@ -51,8 +50,8 @@ class SafeCourses(NamedTuple):
     course: Array
     probability: Array
     cpa: Array
-    nearest: NDArray[np.int64]
-    safe: NDArray[np.bool_]
+    nearest: IntArray
+    safe: BoolArray
     sectors: Array
 
 
@@ -61,7 +60,7 @@ def trial_approach(
 ) -> TrialApproach:
     """CPA, TCPA and danger of the N targets under the trial; limits in m and s (inf for none).
 
-    ValueError names the trial's value, or limit, that cannot be.
+    ValueError names the value of the trial, or the limit, that is not possible.
     """
     every = _approaches(motion, own, trial, np.array([trial.course]), cpa_limit, tcpa_limit)
     return TrialApproach(*(values[0] for values in every))
@@ -75,9 +74,9 @@ def safe_courses(
     tcpa_limit: float = np.inf,
     risk: float = 0.05,
 ) -> SafeCourses:
-    """Which courses, all else as in the trial, keep the probability of danger below the risk.
+    """The courses that keep the probability of danger below the risk; all else as in the trial.
 
-    Targets of unknown motion are left out. The dangers of several targets count as independent.
+    Targets with unknown motion are left out. The dangers of several targets count as independent.
     """
     if not 0 < risk < 1:
         raise ValueError(f'risk is {risk:g}; it must be between 0 and 1')
@@ -86,7 +85,7 @@ def safe_courses(
     nearest, cpa = np.full(len(COURSES), -1), np.full(len(COURSES), np.inf)
     known = np.flatnonzero(~np.isnan(every.cpa).any(0))
     if len(known):
-        # A target that only goes away is as near as it is now, whatever its CPA was.
+        # A target that only moves away is nearest now, whatever its CPA was.
         now = np.hypot(*(motion.position - own.position).T)
         ahead = np.where(every.tcpa < 0, now, every.cpa)[:, known]
         nearest, cpa = known[ahead.argmin(1)], ahead.min(1)
@@ -132,7 +131,8 @@ def _nearest(
 ) -> TrialApproach:
     """[C, N]: the nearest point of each of C paths to each target."""
     shape = len(path.time), len(motion.position)
-    # East and north lead, [2, C, N, K]: sums of whole arrays cost a third of sums along the last.
+    # East and north first, [2, C, N, K]: sums of whole arrays cost a third of sums along the last
+    # axis.
     time = path.time[:, None]  # [C, 1, K]
     position, velocity = motion.position.T[..., None], motion.velocity.T[..., None]
     offset = (
@@ -149,14 +149,15 @@ def _nearest(
     into = np.minimum(np.maximum(into, 0), length)
     reached = offset + into * relative
     best = np.where(length > 0, _dot(reached, reached), np.inf).argmin(-1)  # [C, N]
-    c, n = np.ogrid[: shape[0], : shape[1]]
+    course, target = np.ogrid[: shape[0], : shape[1]]
 
-    def at(moment, values):
+    def at(moment: int | IntArray, values: Array) -> Array:
         """[C, N, 2] of values [2, C, N, K] at the moments [C, N]."""
-        return values[:, c, n, moment].transpose(1, 2, 0)
+        moved: Array = values[:, course, target, moment]
+        return moved.transpose(1, 2, 0)
 
     there, moving = at(best, reached), at(best, relative)
-    tcpa = path.time[c, best] + into[c, n, best]
+    tcpa = path.time[course, best] + into[course, target, best]
     # Nearest now: the target only goes away, and the past tells when it was nearer.
     gone = tcpa == 0
     moving = np.where(gone[..., None], at((length > 0).argmax(-1), relative), _abeam(moving, there))
@@ -174,47 +175,50 @@ def _nearest(
     return TrialApproach(cpa, np.where(moves, tcpa, np.nan), danger)
 
 
-def _dot(first, second):
+def _dot(first: Array, second: Array) -> Array:
     """Products [...] of vectors [2, ...]."""
-    return first[0] * second[0] + first[1] * second[1]
+    found: Array = first[0] * second[0] + first[1] * second[1]
+    return found
 
 
-def _may_meet(position, velocity, covariance, cpa_limit):
-    """Whether [C, N] a target may pass within the limit, by 6 deviations of all that may err.
+def _may_meet(position: Array, velocity: Array, covariance: Array, cpa_limit: float) -> BoolArray:
+    """Whether [C, N] a target may pass within the limit, with a margin of 6 deviations of all
+    errors.
 
     position, velocity [C, N, 2] relative to own ship, covariance [N, 4, 4]. Few courses meet few
-    targets: this spares nine tenths of the integrals of `danger_probability`.
+    targets. So this saves nine tenths of the integrals of `danger_probability`.
     """
     place, speed = (6 * np.sqrt(covariance[:, [k, k + 1], [k, k + 1]].sum(1)) for k in (0, 2))
     distance, from_own = to_range_bearing(position)
     length, course = to_range_bearing(velocity)
     off = np.abs(wrap_angle(from_own + np.pi - course))
-    return off <= (
+    found: BoolArray = off <= (
         np.arcsin(np.minimum((cpa_limit + place) / np.maximum(distance, 1e-9), 1))
         + np.arcsin(np.minimum(speed / np.maximum(length, 1e-9), 1))
         + np.where((cpa_limit + place >= distance) | (speed >= length), np.pi, 0)
     )
+    return found
 
 
-def _abeam(moving, there):
-    """Relative motion [..., 2] m/s at the nearest point [..., 2] m, turned abeam of it.
+def _abeam(moving: Array, there: Array) -> Array:
+    """Relative motion [..., 2] m/s at the nearest point [..., 2] m, turned to be abeam of it.
 
-    On a straight stretch it is so. Where the nearest point is a corner of the path, the straight
-    track that has it for its closest approach stands for the path, and for its errors.
+    On a straight piece it is abeam already. If the nearest point is a corner of the path, the
+    straight track with that closest approach replaces the path, also for its errors.
     """
     speed, distance = (np.hypot(v[..., 0], v[..., 1])[..., None] for v in (moving, there))
-    speed = np.maximum(speed, LEAST_SPEED)  # it came there, to stay
+    speed = np.maximum(speed, LEAST_SPEED)  # it came there and stays
     across = np.stack([there[..., 1], -there[..., 0]], -1) / np.maximum(distance, 1e-9)
     side = np.where((moving * across).sum(-1, keepdims=True) < 0, -1.0, 1.0)
     return np.where(distance > 1.0, side * speed * across, moving)
 
 
-def _sectors(safe) -> Array:
+def _sectors(safe: BoolArray) -> Array:
     """[S, 2] rad: first and last course of each run of safe ones around the circle."""
     if safe.all():
         return np.array([[COURSES[0], COURSES[-1]]])
     first = np.flatnonzero(safe & ~np.roll(safe, 1))
     last = np.flatnonzero(safe & ~np.roll(safe, -1))
     if len(first) and last[0] < first[0]:
-        last = np.roll(last, -1)  # the run through north
+        last = np.roll(last, -1)  # the run across north
     return np.stack([COURSES[first], COURSES[last]], -1)

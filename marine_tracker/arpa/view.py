@@ -1,18 +1,17 @@
-"""The targets of one scan as people see them: what `targets` and `markers` show."""
+"""The targets of one scan as they are shown: the content of `targets` and `markers`."""
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..estimators import ACCOUNTS, Account
+from ..estimators import Account, Estimator
 from ..extent.hull_clearance import hull_clearance
 from ..extent.hulls import Shapes
 from ..geometry import wrap_bearing
 from ..tracking import lifecycle
 from ..tracking.lifecycle import CONFIRMED
 from ..tracking.tracker import Report
-from ..types import Array, take
+from ..types import Array, BoolArray, CodeArray, IntArray, take
 from . import alarms
 from .alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
 from .arpa import Picture
@@ -22,62 +21,64 @@ from .stabilisation import NONE
 from .targets import label
 
 
-class View(NamedTuple):
-    """N targets at one moment: those with a number in its order, then those being acquired.
-
-    name        TT07; Q and the track's id where there is no number yet
-    id          [N]  of the track
-    number      [N]  0 while the target is being acquired
-    status      [N]  TENTATIVE, CONFIRMED, COASTING, or LOST in this scan
-    reason      [N]  why a lost one was lost: one of lifecycle.REASONS' numbers
-    acquired    [N]  AUTOMATIC or MANUAL
-    motion      N rows, at the end of the scan
-    approach    N rows; nan for what cannot be told: see `told`
-    bow         [N]  rad, bearing from own ship's bow; nan without a heading
-    reference   [N]  the stationary target that the ground is known by
-    stabilised  what courses and speeds are measured against: ground, sea or none
-    at_rest     [N]  neither the target nor own ship makes way
-    dangerous   [N]  a danger alarm is active
-    swap_risk   [N]  the gate overlaps that of another track
-    hits        [N]  plots in the last 10 scans
-    misses      [N]  scans since the last plot
-    age         [N]  s since the first plot
-    account     how the estimator fares with them, N rows; without words where it gives none
-    hulls       their sizes, N rows; None with extent off
-    """
-
-    name: list[str]
-    id: NDArray[np.int64]
-    number: NDArray[np.int64]
-    status: NDArray[np.int8]
-    reason: NDArray[np.int8]
-    acquired: NDArray[np.int8]
-    motion: Motion
-    approach: Approach
-    bow: Array
-    reference: NDArray[np.bool_]
-    stabilised: str
-    at_rest: NDArray[np.bool_]
-    dangerous: NDArray[np.bool_]
-    swap_risk: NDArray[np.bool_]
-    hits: NDArray[np.int64]
-    misses: NDArray[np.int64]
-    age: Array
-    account: Account
-    hulls: 'HullView | None' = None
-
-
 class HullView(NamedTuple):
-    """shapes: of N targets; clearance [N] m: how near own ship comes to their hulls."""
+    """shapes of N targets; clearance [N] m: how near own ship will come to their hulls."""
 
     shapes: Shapes
     clearance: Array
 
 
-def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None = None) -> View:
-    """The picture's targets with what the tracker's report tells of them.
+class View(NamedTuple):
+    """N targets at one moment: first those with a number, in its order, then those being acquired.
 
-    estimator: the name of the one that the tracks' state belongs to; shapes: of all the tracks.
+    name        TT07; Q and the track's id if there is no number yet
+    id          [N]  of the track
+    number      [N]  0 while the target is being acquired
+    status      [N]  TENTATIVE, CONFIRMED, COASTING, or LOST in this scan
+    reason      [N]  why a lost one was lost: index into lifecycle.REASONS
+    acquired    [N]  AUTOMATIC or MANUAL
+    motion      N rows, at the end of the scan
+    approach    N rows; nan for what cannot be told, see `told`
+    bow         [N]  rad, bearing relative to own ship's bow; nan without a heading
+    reference   [N]  the stationary target that tells the motion of the ground
+    stabilised  the reference of courses and speeds: ground, sea or none
+    harmless    [N]  own ship is at anchor and the target does not certainly come nearer
+    dangerous   [N]  a danger alarm is active
+    swap_risk   [N]  the gate overlaps that of another track
+    hits        [N]  plots in the last 10 scans
+    misses      [N]  scans since the last plot
+    age         [N]  s since the first plot
+    account     state of the estimator for them, N rows; without words if it gives none
+    hulls       their sizes, N rows; None with extent none
+    """
+
+    name: list[str]
+    id: IntArray
+    number: IntArray
+    status: CodeArray
+    reason: CodeArray
+    acquired: CodeArray
+    motion: Motion
+    approach: Approach
+    bow: Array
+    reference: BoolArray
+    stabilised: str
+    harmless: BoolArray
+    dangerous: BoolArray
+    swap_risk: BoolArray
+    hits: IntArray
+    misses: IntArray
+    age: Array
+    account: Account
+    hulls: HullView | None = None
+
+
+def view(
+    picture: Picture, report: Report, estimator: Estimator, shapes: Shapes | None = None
+) -> View:
+    """The picture's targets with the data of the tracker's report.
+
+    estimator: the one to which the tracks' state belongs; shapes: of all the tracks.
     """
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
@@ -96,20 +97,20 @@ def view(picture: Picture, report: Report, estimator: str, shapes: Shapes | None
         wrap_bearing(picture.approach.bearing - picture.own.heading),
         (tracks.number > 0) & (tracks.number == picture.stabilised.target),
         picture.stabilised.reference,
-        picture.at_rest,
+        picture.harmless,
         np.isin(targets.id, alerts.id[active]),
         picture.overlap < 1,
         lifecycle.hits(tracks.history, lifecycle.TEN),
         lifecycle.misses_in_a_row(tracks.history),
         picture.time - tracks.first_time,
-        ACCOUNTS[estimator](tracks.state) if estimator in ACCOUNTS else no_account(len(tracks.id)),
+        estimator.account(tracks.state) if estimator.account else no_account(len(tracks.id)),
         None if shapes is None else _hulls(picture, take(shapes, picture.row)),
     )
 
 
 def told(picture: Picture) -> Approach:
-    """The approach, nan where it cannot be known: courses and speeds without a stabilisation; and
-    without a heading all that counts from north. Range, CPA, TCPA and bow crossing stay."""
+    """The approach, with nan for what cannot be known: courses and speeds without stabilisation,
+    and without a heading all that counts from north. Range, CPA, TCPA and bow crossing remain."""
     fields: list[str] = []
     if picture.stabilised.reference == NONE:
         fields += ['course', 'speed']
@@ -132,25 +133,25 @@ def _hulls(picture: Picture, shapes: Shapes) -> HullView:
 
 
 class Standing(NamedTuple):
-    """The account of the confirmed tracks in sum.
+    """Summary of the accounts of the confirmed tracks.
 
-    states     how many are in each state of the estimator; empty where it has none
-    fallen     how many have fallen back
-    reason     why most of them have; '' where none has
+    states     number of tracks in each state of the estimator; empty if it has none
+    fallen     number of tracks that have fallen back
+    reason     why most of them have; '' if none has
     fallen_at  [N]  which of all tracks have
     """
 
     states: dict[str, int]
     fallen: int
     reason: str
-    fallen_at: NDArray[np.bool_]
+    fallen_at: BoolArray
 
 
-def standing(report: Report, estimator: str) -> Standing:
-    """How the estimator fares with the confirmed tracks of a report."""
-    if estimator not in ACCOUNTS:
+def standing(report: Report, estimator: Estimator) -> Standing:
+    """The state of the estimator for the confirmed tracks of a report."""
+    if estimator.account is None:
         return Standing({}, 0, '', np.zeros(len(report.tracks.id), bool))
-    account = ACCOUNTS[estimator](report.tracks.state)
+    account = estimator.account(report.tracks.state)
     confirmed = report.tracks.status == CONFIRMED
     states = np.bincount(account.state[confirmed], minlength=len(account.states))
     fallen = np.bincount(account.reason[confirmed], minlength=len(account.reasons))[1:]
@@ -163,6 +164,6 @@ def standing(report: Report, estimator: str) -> Standing:
 
 
 def no_account(count: int) -> Account:
-    """That of an estimator that never falls back, of `count` tracks."""
+    """The account of an estimator that never falls back, for `count` tracks."""
     none, unknown = np.zeros(count, np.int8), np.full(count, np.nan)
     return Account(('',), none, unknown, unknown, unknown, ('',), none)

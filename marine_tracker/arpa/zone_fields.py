@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from ..files import shown
 from ..geometry import NAUTICAL_MILE
 from ..types import Array
 
 KEYS = ('name', 'kind', 'range_nm', 'range_m', 'bearing_deg', 'corners_nm', 'corners_m', 'fixed_to')
 UNITS = {'nm': NAUTICAL_MILE, 'm': 1.0}
+LONGEST_NAME = 80  # characters
 MAX_CORNERS = 1000
 FARTHEST = 200 * NAUTICAL_MILE  # m, limit of ranges and corners
 
@@ -28,6 +30,11 @@ def name_of(item: Any, index: int, taken: list[str]) -> str:
     if not isinstance(name, str) or not name.strip():
         raise ValueError(f'zone {index + 1} has no name')
     name = name.strip()
+    if len(name) > LONGEST_NAME:
+        raise ValueError(
+            f'zone {index + 1} has a name of {len(name)} characters; it must have at most '
+            f'{LONGEST_NAME}, for alarms repeat it'
+        )
     if name in taken:
         raise ValueError(f'two zones have the name {name}')
     for key in item:
@@ -38,17 +45,20 @@ def name_of(item: Any, index: int, taken: list[str]) -> str:
     return name
 
 
-def choice_of(name: str, item: dict, key: str, choices: tuple[str, ...], default: str = '') -> str:
+def choice_of(
+    name: str, item: dict[str, Any], key: str, choices: tuple[str, ...], default: str = ''
+) -> str:
     """One of the stated words."""
     value = item.get(key, default)
     if value not in choices:
         raise ValueError(
             f'zone {name}: {key} is {shown(value)}; it must be one of {", ".join(choices)}'
         )
-    return value
+    found: str = value
+    return found
 
 
-def outline_of(name: str, item: dict) -> str:
+def outline_of(name: str, item: dict[str, Any]) -> str:
     """The key that holds the outline."""
     given = [key for key in item if key.startswith(('range', 'corners'))]
     if len(given) != 1:
@@ -62,7 +72,7 @@ def outline_of(name: str, item: dict) -> str:
     return given[0]
 
 
-def sector_of(name: str, item: dict, key: str):
+def sector_of(name: str, item: dict[str, Any], key: str) -> tuple[float, float, float, float]:
     """near, far m; start, width rad."""
     unit = UNITS[key.removeprefix('range_')]
     near, far = unit * two_numbers(name, key, item[key], 0.0, FARTHEST / unit)
@@ -82,7 +92,7 @@ def sector_of(name: str, item: dict, key: str):
     return near, far, math.radians(start), math.radians(width)
 
 
-def corners_of(name: str, item: dict, key: str) -> Array:
+def corners_of(name: str, item: dict[str, Any], key: str) -> Array:
     """The polygon's corners [V, 2] m."""
     values = item[key]
     if not isinstance(values, list) or not 3 <= len(values) <= MAX_CORNERS:
@@ -125,7 +135,7 @@ def _crosses_itself(corners: Array) -> bool:
     if not side.any(1).all():
         return True
 
-    def beside(point):
+    def beside(point: Array) -> Array:
         """Sign [V, V]: on which side of side i point j lies."""
         to = point[None] - start[:, None]
         return np.sign(side[:, None, 0] * to[..., 1] - side[:, None, 1] * to[..., 0])
@@ -134,9 +144,3 @@ def _crosses_itself(corners: Array) -> bool:
     parts = begin * end < 0
     (x, y), (next_x, next_y) = corners.T, np.roll(corners, -1, 0).T
     return bool((parts & parts.T).any()) or not x @ next_y - y @ next_x
-
-
-def shown(value: Any) -> str:
-    """The value as an error tells it, not too long."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + '...'

@@ -9,7 +9,7 @@ from .zones import Zones
 ARC_STEP = np.radians(5)
 
 
-def outlines(zones: Zones, guard: bool, own_position, heading: float) -> Array:
+def outlines(zones: Zones, guard: bool, own_position: Array, heading: float) -> Array:
     """Segments [S, 2, 2] m, east and north, of all guard zones, or of all exclusion zones.
 
     own_position [2] m; heading rad, true. With a heading of nan those that turn with own ship

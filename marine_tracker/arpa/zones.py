@@ -14,14 +14,14 @@ ground, [east, north] in the frame `map`.
 """
 
 import hashlib
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-import yaml
-from numpy.typing import NDArray
 
+from .. import yaml_file
+from ..files import shown
 from ..geometry import to_range_bearing, unit_vector, wrap_bearing
-from ..types import Array
+from ..types import Array, BoolArray, IntArray
 from . import zone_fields
 
 MAX_ZONES = 100
@@ -37,7 +37,7 @@ class Sectors(NamedTuple):
     width      [S]  rad, clockwise from there; inf for a full ring
     """
 
-    zone: NDArray[np.int64]
+    zone: IntArray
     near: Array
     far: Array
     start: Array
@@ -70,8 +70,8 @@ class Zones(NamedTuple):
     """
 
     name: tuple[str, ...]
-    guard: NDArray[np.bool_]
-    key: NDArray[np.int64]
+    guard: BoolArray
+    key: IntArray
     sectors: Sectors
     polygons: tuple[Polygon, ...]
 
@@ -81,15 +81,10 @@ def parse(text: str) -> Zones:
 
     ValueError names the zone, the key, the value and what it may be.
     """
-    try:
-        # Every scalar stays text: bearings are written 045, which YAML takes for octal.
-        items = yaml.load(text, Loader=yaml.BaseLoader)
-    except yaml.YAMLError as error:
-        raise ValueError(f'zones are not YAML: {error}') from error
-    items = items or []
+    items = yaml_file.parse(text, 'parameter zones', as_text=True) or []
     if not isinstance(items, list):
         raise ValueError(
-            f'zones are {zone_fields.shown(items)}; they must be a list of '
+            f'zones are {shown(items)}; they must be a list of '
             'mappings, each with name, kind and range_nm or corners_m'
         )
     if len(items) > MAX_ZONES:
@@ -103,7 +98,7 @@ def parse(text: str) -> Zones:
         guard[index] = zone_fields.choice_of(name, item, 'kind', ('guard', 'exclusion')) == 'guard'
         outline = zone_fields.outline_of(name, item)
         if outline.startswith('range'):
-            shape = zone_fields.sector_of(name, item, outline)
+            shape: tuple[Any, ...] = zone_fields.sector_of(name, item, outline)
             sectors.append((index, *shape))
         else:
             ground = (
@@ -124,7 +119,7 @@ def parse(text: str) -> Zones:
     )
 
 
-def inside(zones: Zones, position, own_position, heading: float) -> NDArray[np.bool_]:
+def inside(zones: Zones, position: Array, own_position: Array, heading: float) -> BoolArray:
     """Mask [N, Z]: which positions [N, 2] m lie in which zones.
 
     own_position [2] m; heading rad, true. With a heading of nan nothing lies in a zone that
@@ -157,7 +152,7 @@ def _polygon(zone: int, ground: bool, corners: Array) -> Polygon:
     )
 
 
-def _within(polygon: Polygon, position) -> NDArray[np.bool_]:
+def _within(polygon: Polygon, position: Array) -> BoolArray:
     """Mask [N] of the positions [N, 2] inside the polygon.
 
     Even-odd rule: a ray towards +x meets an odd number of sides. A corner counts with the side
@@ -174,6 +169,6 @@ def _within(polygon: Polygon, position) -> NDArray[np.bool_]:
     return mask
 
 
-def _key(*what) -> int:
+def _key(*what: Any) -> int:
     """56 bits of a hash."""
     return int.from_bytes(hashlib.blake2b(repr(what).encode(), digest_size=7).digest(), 'big')

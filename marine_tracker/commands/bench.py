@@ -1,27 +1,27 @@
-"""Measure what a scan costs, beside `cs_kalman` and beside Stone Soup on the same plots.
+"""Measures the cost of a scan, compared with `cs_kalman` and with Stone Soup on the same plots.
 
-Whole steps of this tracker, from extrapolation to the initiation of new tracks, against Stone
-Soup's association and update alone (EKF, DetectionKDTreeGNN2D with five neighbours, its tracks
-given). CPU time, one process, the same run: the ratio holds on any machine, the times do not.
-Stone Soup is measured where it is installed (extra `bench`). The estimator's own part of the step
-is told too; `--estimator all` measures every one there is.
+This tracker does whole steps, from extrapolation to the initiation of new tracks. Stone Soup does
+association and update only (EKF, DetectionKDTreeGNN2D with five neighbours, its tracks given). CPU
+time, one process, the same run: the ratio holds on any machine, the times do not. Stone Soup is
+measured if it is installed (extra `bench`). The estimator's own part of the step is shown too.
+`--estimator all` measures every estimator.
 """
 
 from ..estimators import ESTIMATORS
 from ..evaluation import benchmark, report
 from ..processes import keep_freed_memory
 
-HELP = 'measure the cost of a scan, beside Stone Soup'
+HELP = 'measure the cost of a scan, compared with Stone Soup'
 PLAIN, ALL = 'cs_kalman', 'all'
-# Ratios to reach with cs_kalman, by number of targets.
+# Required ratios with cs_kalman, by number of targets.
 DEMANDED = {200: 300.0, 1000: 400.0}
-MOST_TARGETS = 1000  # with which the two limits below hold
+MOST_TARGETS = 1000  # the two limits below hold up to this number
 MOST_ESTIMATOR_MS = 40.0  # for extrapolation and update by any estimator
-MOST_RATIO = 10.0  # of a scan's cost to that with cs_kalman
+MOST_RATIO = 10.0  # ratio of a scan's cost to that with cs_kalman
 
 
 def add_arguments(parser) -> None:
-    """The command line of `bench`."""
+    """Adds the command line of `bench`."""
     parser.add_argument(
         '--tracks',
         type=int,
@@ -47,7 +47,7 @@ def add_arguments(parser) -> None:
 
 
 def run(args) -> int:
-    """Print the table; 1 where a ratio misses what is demanded."""
+    """Prints the table. Returns 1 if a ratio misses its limit."""
     for name, least in (('tracks', 1), ('clutter', 0), ('scans', 1)):
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
@@ -91,7 +91,7 @@ def run(args) -> int:
 
 
 def _figures(name: str, results: dict[str, benchmark.Result], targets: int):
-    """Of this tracker with one estimator."""
+    """Figures of this tracker with one estimator."""
     result, plain = results[name], results[PLAIN]
     bound = targets == MOST_TARGETS
     figures = [

@@ -1,19 +1,16 @@
-"""Simulator (or recorded radar) and tracker as two processes over ROS 2, and a table of targets.
+"""Runs simulator (or recorded radar) and tracker over ROS 2, as two processes, and shows a table.
 
-Ends with Ctrl-C, after --duration, or when the recording or scenario has ended."""
+Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
+"""
 
 import contextlib
-import json
 import os
 import signal
-import subprocess
 import sys
-import tempfile
 import threading
 import time
-from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from typing import Any
 
 from ..estimators import ESTIMATORS
 from ..parameters import (
@@ -23,7 +20,8 @@ from ..parameters import (
     TrackerParameters,
     from_mapping,
 )
-from ..processes import end_with_parent
+from ..processes import closing, end_in_time
+from .node_processes import Child, children_of
 
 HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
 
@@ -43,21 +41,12 @@ SIZES = (('length m', 'length_m'), ('heading', 'heading_deg'))  # with extents, 
 TO_THE_LEFT = ('name', 'status', 'estimator')
 STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
 DANGEROUS = 'bold red'
-MOST_ALARMS = 8  # that are listed below the table on a terminal
-PLAIN_EVERY_S = 2.0  # between two tables where there is no terminal
-STOP_S = 5.0  # for a process to end by itself after SIGINT, then after SIGTERM
-
-
-class Child(NamedTuple):
-    """A node as a process; what it says goes into `log`."""
-
-    name: str
-    process: subprocess.Popen
-    log: IO[bytes]
+MOST_ALARMS = 8  # listed below the table on a terminal; others are only counted
+PLAIN_EVERY_S = 2.0  # s between two tables if there is no terminal
 
 
 def add_arguments(parser) -> None:
-    """Options of the command."""
+    """Adds the options of the command."""
     source = parser.add_mutually_exclusive_group()
     source.add_argument(
         '--scenario',
@@ -75,7 +64,10 @@ def add_arguments(parser) -> None:
     )
     parser.add_argument('--estimator', choices=sorted(ESTIMATORS), help='filter of the tracker')
     parser.add_argument(
-        '--extent', choices=EXTENTS, help='whether the tracker takes cells that touch as one target'
+        '--extent',
+        choices=(*EXTENTS, 'off'),
+        metavar='{' + ','.join(EXTENTS) + '}',
+        help='how the tracker joins cells that touch into one target',
     )
     parser.add_argument('--seed', type=int, default=1, help='seed of the simulator (default: 1)')
     parser.add_argument('--duration', type=float, metavar='S', help='end after so many seconds')
@@ -85,10 +77,15 @@ def add_arguments(parser) -> None:
 
 
 def run(args) -> int:
-    """0 after a stop that was asked for, 1 when a process died or ROS is missing."""
+    """Returns 0 after a requested stop, 1 if a process died or ROS is missing."""
     stop = threading.Event()
+
+    def on_signal(*_):
+        closing()
+        stop.set()
+
     before = {
-        number: signal.signal(number, lambda *_: stop.set())
+        number: signal.signal(number, on_signal)
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
     }
     try:
@@ -110,23 +107,24 @@ def _demo(args, stop: threading.Event) -> int:
             file=sys.stderr,
         )
         return 1
+    end_in_time()
     with contextlib.ExitStack() as context:
         number = args.domain
         if number is None:
             number = context.enter_context(domain.free_domain())
         domain.set_local(os.environ, number)
-        children = [
-            context.enter_context(_child('tracker', tracker_parameters)),
-            context.enter_context(_child(source, source_parameters)),
-        ]
+        last = context.enter_context(contextlib.ExitStack())
+        children = context.enter_context(
+            children_of({'tracker': tracker_parameters, source: source_parameters})
+        )
         listener = TargetsListener()
-        context.callback(listener.close)
+        last.callback(listener.close)  # after the children have ended: it may hang
         title = Path(args.recording).name if args.recording else args.scenario
         return _watch(listener, children, stop, title, args.duration, number)
 
 
 def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
-    """The source node's name and parameters, and the tracker's. ValueError when one is wrong."""
+    """The source node's name and parameters, and the tracker's. ValueError if one is wrong."""
     source: str
     if args.recording:
         from ..recording import csv_folder
@@ -158,38 +156,8 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
     return source, given, for_tracker
 
 
-@contextlib.contextmanager
-def _child(name: str, parameters: dict[str, Any]) -> Iterator[Child]:
-    """A node of this package as a process; ended with the context, come what may."""
-    arguments = [sys.executable, '-P', '-m', 'marine_tracker.nodes.run', name, '--ros-args']
-    for key, value in parameters.items():
-        arguments += ['-p', f'{key}:={json.dumps(value)}']
-    package_home = os.fspath(Path(__file__).resolve().parents[2])
-    search = os.pathsep.join(filter(None, [package_home, os.environ.get('PYTHONPATH')]))
-    with tempfile.TemporaryFile() as log:
-        # A session of its own: Ctrl-C reaches this command alone, which then ends its children.
-        process = subprocess.Popen(
-            arguments,
-            stdin=subprocess.DEVNULL,
-            stdout=log,
-            stderr=log,
-            start_new_session=True,
-            env={**os.environ, 'PYTHONPATH': search},
-            preexec_fn=end_with_parent,
-        )
-        try:
-            yield Child(name, process, log)
-        finally:
-            for ask in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
-                if process.poll() is not None:
-                    break
-                process.send_signal(ask)
-                with contextlib.suppress(subprocess.TimeoutExpired):
-                    process.wait(STOP_S)
-
-
 def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:
-    """Show the targets until it is over; the exit code."""
+    """Shows the targets until the end. Returns the exit code."""
     began, ended = time.monotonic(), None
     with _display() as show:
         while not stop.is_set() and ended is None:
@@ -208,7 +176,7 @@ def _watch(listener, children, stop, title: str, duration: float | None, domain:
 
 
 def _drain(listener, show, title: str) -> None:
-    """Take in what is still on its way after the source has ended."""
+    """Takes in what is still on its way after the source has ended."""
     until = time.monotonic() + 0.5
     while time.monotonic() < until:
         listener.spin(0.1)
@@ -249,7 +217,7 @@ def _display():
 
 
 def _plain():
-    """Shows a picture as lines, once a scan and not more often than people can read."""
+    """Shows a picture as lines: once a scan, and not faster than people can read."""
     last = {'scans': 0, 'at': -PLAIN_EVERY_S}
 
     def show(picture, title):
@@ -263,7 +231,7 @@ def _plain():
             '  '.join(f'{head:>10}' for head, _ in columns),
         ]
         lines += [
-            '  '.join([*(f'{target[key]:>10}' for _, key in columns), target['danger']])
+            '  '.join([*(f'{target.get(key, ""):>10}' for _, key in columns), target['danger']])
             for target in picture.targets
         ]
         print('\n'.join([*lines, *picture.alarms]), flush=True)
@@ -272,7 +240,7 @@ def _plain():
 
 
 def _columns(picture):
-    """Heads and keys of what is told of these targets."""
+    """Heads and keys of the columns for these targets."""
     told = picture.targets and SIZES[0][1] in picture.targets[0]
     return (*COLUMNS[:-1], *SIZES, COLUMNS[-1]) if told else COLUMNS
 
@@ -294,7 +262,7 @@ def _rich_table(picture, title: str, height: int):
         ]
     )
     table = Table(
-        title=f'{title}   {_clock(picture)}',
+        title=Text(f'{title}   {_clock(picture)}', 'table.title'),
         title_justify='left',
         caption=caption,
         caption_justify='left',
@@ -309,7 +277,7 @@ def _rich_table(picture, title: str, height: int):
             min_width=8 if key == 'status' else None,
         )  # TRACKING in full
     room = max(height - 8 - len(below) - len(picture.warnings), 1)
-    # Where not all find room, the dangerous ones do.
+    # If there is not enough room for all, the dangerous ones are shown.
     shown = (
         picture.targets
         if len(picture.targets) <= room
@@ -317,7 +285,7 @@ def _rich_table(picture, title: str, height: int):
     )
     for target in shown:
         table.add_row(
-            *(target[key] for _, key in columns),
+            *(Text(target.get(key, '')) for _, key in columns),
             style=DANGEROUS if target['danger'] else STYLES.get(target['status']),
         )
     if len(picture.targets) > room:

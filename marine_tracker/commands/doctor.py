@@ -1,8 +1,8 @@
-"""Say what is installed, what is missing, and what to do about it.
+"""Reports what is installed, what is missing, and what to do about it.
 
-Where ROS is there, also listen for a few seconds whether plots, own ship and a tracker are on the
-graph; where a tracker runs, the plots of each radar that it listens to. The exit code is 0 when the
-core (replay, score, bench, scenario) works, 1 when something that it requires is missing.
+If ROS is there, it also listens for a few seconds: are plots, own ship and a tracker on the graph?
+If a tracker runs, are there plots of each radar that it uses? The exit code is 0 if the core
+(replay, score, bench, scenario) works, and 1 if something that the core requires is missing.
 """
 
 import importlib
@@ -16,23 +16,26 @@ from importlib.util import find_spec
 from typing import NamedTuple
 
 from .. import config
+from ..files import write_text
 
-HELP = 'say what is installed, what is missing and what to do'
+HELP = 'report what is installed, what is missing and what to do'
 
 PYTHON = (3, 11)
-START_S = 20.0  # for a middleware to start and stop, on a slow machine
+START_S = 20.0  # for a middleware to start and stop on a slow machine
 # Names to import, and the packages they come in.
 REQUIRED = {
     'numpy': 'numpy',
     'scipy': 'scipy',
     'pywt': 'PyWavelets',
-    'yaml': 'PyYAML',
+    'ruamel.yaml': 'ruamel.yaml',
     'rich': 'rich',
     'pynmea2': 'pynmea2',
+    'pyproj': 'pyproj',
 }
 OPTIONAL = {
     'matplotlib': ('matplotlib', 'to draw plots'),
     'stonesoup': ('stonesoup', 'bench compares with it'),
+    'distributed': ('distributed', 'to run experiments on a cluster'),
 }
 SHIPPED = ('tracker.yaml', 'scenarios', 'fastdds_local.xml')
 PROFILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
@@ -51,7 +54,7 @@ INSTALL_ROS = (
     "in the source folder: pip install '.[ros]'; or where ROS 2 is installed: source "
     '/opt/ros/jazzy/setup.bash (only demo and the nodes need it)'
 )
-# Who to start where nobody publishes a topic, by the end of its name; plots may be on any other.
+# What to start if nobody publishes a topic, by the end of its name. Plots may be on any other name.
 PLOTS = 'plots', 'start radar_simulator, recording_player or a radar driver'
 STARTERS = {
     'own_ship/odometry': (
@@ -66,9 +69,9 @@ STARTERS = {
 class Check(NamedTuple):
     """One line of the report.
 
-    name      what was looked at            found     what is there
-    ok        whether it is as it should    required  whether the core needs it
-    advice    what to do; '' where nothing
+    name      what was checked              found     what is there
+    ok        whether that is right         required  whether the core needs it
+    advice    what to do; '' if nothing
     """
 
     name: str
@@ -79,13 +82,13 @@ class Check(NamedTuple):
 
 
 def add_arguments(parser) -> None:
-    """The command line of `doctor`."""
+    """Adds the command line of `doctor`."""
     parser.add_argument(
         '--listen',
         type=float,
         default=3.0,
         metavar='S',
-        help='how long to listen on the ROS graph, s; 0 for not (default: 3)',
+        help='how long to listen on the ROS graph, s; 0: do not listen (default: 3)',
     )
     parser.add_argument('--namespace', default='/', help='of the radar to look for (default: /)')
     parser.add_argument(
@@ -94,7 +97,7 @@ def add_arguments(parser) -> None:
 
 
 def run(args) -> int:
-    """Print the checks; 0 when all that is required is there, else 1."""
+    """Prints the checks. Returns 0 if all required things are there, else 1."""
     if not 0 <= args.listen <= 60:
         raise ValueError(f'--listen is {args.listen:g} s; it must be between 0 and 60')
     checks = []
@@ -107,20 +110,19 @@ def run(args) -> int:
         if args.json == '-':
             print(text, end='')
         else:
-            with open(args.json, 'w') as file:
-                file.write(text)
+            write_text(args.json, text)
     return 1 if any(check.required and not check.ok for check in checks) else 0
 
 
 def line(check: Check) -> str:
-    """A check as people read it."""
+    """A check as a line of text."""
     mark = 'ok  ' if check.ok else 'MISS' if check.required else 'note'
     advice = f'\n{"":7}-> {check.advice}' if check.advice else ''
     return f'{mark}   {check.name}: {check.found}{advice}'
 
 
 def examine(listen: float, namespace: str = '/') -> Iterator[Check]:
-    """All checks; those of the graph only where rclpy is there and `listen` s is above 0."""
+    """All checks. Those of the graph only if rclpy is there and `listen` s is above 0."""
     yield _python()
     for module, package in REQUIRED.items():
         yield _module(module, package, f'pip install {package}', required=True)
@@ -128,7 +130,7 @@ def examine(listen: float, namespace: str = '/') -> Iterator[Check]:
         yield _module(module, package, f'pip install {package} ({use})', required=False)
     yield _configuration()
     yield from _environment()
-    here = find_spec('rclpy') is not None  # not imported: a broken one may end the process
+    here = find_spec('rclpy') is not None  # not imported: a broken rclpy may end the process
     yield Check(
         'rclpy',
         here,
@@ -160,19 +162,19 @@ def _python() -> Check:
 
 
 def _module(module: str, package: str, advice: str, *, required: bool) -> Check:
-    if find_spec(module) is None:
-        return Check(package, False, 'not installed', advice, required)
     try:
         importlib.import_module(module)
-    except Exception as error:  # a broken installation raises whatever it likes
-        return Check(package, False, f'cannot be imported: {_words(error)}', advice, required)
+    except Exception as error:  # a broken installation may raise anything
+        absent = isinstance(error, ModuleNotFoundError) and module.startswith(str(error.name))
+        found = 'not installed' if absent else f'cannot be imported: {_words(error)}'
+        return Check(package, False, found, advice, required)
     return Check(package, True, _version(package), '', required)
 
 
 def _version(package: str) -> str:
     try:
         return metadata.version(package)
-    except metadata.PackageNotFoundError:  # not put there by pip
+    except metadata.PackageNotFoundError:  # not installed by pip
         return 'installed'
 
 
@@ -238,7 +240,9 @@ def _graph(listen: float, namespace: str) -> Iterator[Check]:
             'ROS middleware',
             False,
             f'does not start: {why}',
-            f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
+            'set ROS_LOG_DIR to a folder that can be written'
+            if 'logging' in why
+            else f"pip install 'ros-jazzy-rclpy[fastrtps]'; check RMW_IMPLEMENTATION "
             f'({os.environ.get("RMW_IMPLEMENTATION") or "not set"}) and ROS_DOMAIN_ID',
         )
         return

@@ -1,19 +1,18 @@
-"""Measure tracker and ARPA under the IMO's test conditions, as a type approval would.
+"""Measures tracker and ARPA under the IMO's test conditions, as a type approval does.
 
-Simulated plots with the sensor errors of resolution A.823(19) go through the whole service as it
-is shipped. The parts:
+Simulated plots with the sensor errors of resolution A.823(19) go through the whole service with
+default settings. The parts:
 
   accuracy    the four scenarios of A.823 after 1 and 3 minutes, limits of A.823 and MSC.192(79)
   manoeuvres  accuracy after own ship's turns, and how long targets' turns stay wrong
   encounters  Imazu's 22 encounters: acquired, warned of, measured (1 run for each 100)
-  loss        targets in 5 of 10 scans are kept, vanished ones called lost
+  loss        targets seen in 5 of 10 scans are kept; targets that vanish are called lost
 
-Errors are those of 95 runs in a hundred; beside them stands a straight line fitted to the same
-plots, and a limit that not even the line meets is told but not demanded. A thousand runs of all
-parts keep two processors busy for some twenty minutes, longer with more estimators.
+An error figure is the one that 95 of 100 runs do not exceed. The report compares it with a straight
+line fitted to the same plots. A limit that the line does not meet is shown, but not required. A
+thousand runs of all parts take about twenty minutes on two processors, longer with more estimators.
 """
 
-import os
 import sys
 
 import numpy as np
@@ -23,15 +22,16 @@ from ..conformance.accuracy import A823, MINUTES, Outcome, a823_trial
 from ..estimators import ESTIMATORS
 from ..evaluation import report
 from ..parameters import TrackerParameters
+from . import worker_options
 from .progress_bar import progress_bar
 
-HELP = 'measure it under the test conditions of the IMO'
+HELP = 'measure the accuracy under the test conditions of the IMO'
 PARTS = ('accuracy', 'manoeuvres', 'encounters', 'loss')
 ALL = ('gwnn', 'cs_kalman', 'imm')
 
 
 def add_arguments(parser) -> None:
-    """The command line of `imo`."""
+    """Adds the command line of `imo`."""
     parser.add_argument(
         '--runs', type=int, default=1000, metavar='N', help='Monte Carlo runs (default 1000)'
     )
@@ -43,7 +43,10 @@ def add_arguments(parser) -> None:
         '(default %(default)s)',
     )
     parser.add_argument(
-        '--part', choices=PARTS, action='append', help='do this part only; may be given again'
+        '--part',
+        choices=PARTS,
+        action='append',
+        help='run only this part; may be given more than once',
     )
     parser.add_argument(
         '--html',
@@ -51,24 +54,19 @@ def add_arguments(parser) -> None:
         help='also write the report as a page with pictures (needs matplotlib)',
     )
     parser.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
-    parser.add_argument(
-        '--processes',
-        type=int,
-        default=os.cpu_count() or 1,
-        metavar='N',
-        help='processes at once; they change nothing but the time (default %(default)s)',
-    )
+    worker_options.add_arguments(parser)
     report.add_arguments(parser)
 
 
 def run(args) -> int:
-    """Print the figures; 1 where one misses its limit."""
-    for name, least in (('runs', 1), ('seed', 0), ('processes', 1)):
+    """Prints the figures. Returns 1 if one misses its limit."""
+    for name, least in (('runs', 1), ('seed', 0)):
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
     estimators = ALL if args.estimator == 'all' else (args.estimator,)
     parts = [part for part in PARTS if part in (args.part or PARTS)]
-    results = measure(estimators, parts, args.runs, args.seed, args.processes)
+    with worker_options.workers(args) as workers:
+        results = measure(estimators, parts, args.runs, args.seed, workers)
     title = f'IMO test conditions, {", ".join(estimators)}: {args.runs} runs, seed {args.seed}'
     if args.html:
         written = page.write(args.html, results, title, args.seed)
@@ -81,8 +79,8 @@ def run(args) -> int:
     )
 
 
-def measure(estimators, parts, runs, seed, processes) -> figures.Results:
-    """The parts that were asked for."""
+def measure(estimators, parts, runs, seed, workers) -> figures.Results:
+    """Runs the requested parts."""
     found = figures.Results(estimators, {}, {})
     if 'accuracy' in parts:
         keys = [(minutes, number) for minutes in MINUTES for number in A823[minutes]]
@@ -93,18 +91,16 @@ def measure(estimators, parts, runs, seed, processes) -> figures.Results:
                 runs,
                 seed,
                 progress,
-                processes,
+                workers,
             )
         found = found._replace(steady=dict(zip(keys, outcomes)))
     if 'manoeuvres' in parts:
         numbers = list(A823[3])
         trials = [trial for number in numbers for trial in manoeuvres.own_turns(number)]
         with progress_bar('own ship turns') as progress:
-            outcomes = accuracy.run(
-                trials, estimators, -(-runs // 4), seed + 1, progress, processes
-            )
+            outcomes = accuracy.run(trials, estimators, -(-runs // 4), seed + 1, progress, workers)
         with progress_bar('targets turn') as progress:
-            turns = manoeuvres.target_turns(estimators, runs, seed, progress, processes)
+            turns = manoeuvres.target_turns(estimators, runs, seed, progress, workers)
         found = found._replace(
             turns=turns,
             own_turns={
@@ -115,9 +111,9 @@ def measure(estimators, parts, runs, seed, processes) -> figures.Results:
     if 'encounters' in parts:
         with progress_bar('encounters') as progress:
             found = found._replace(
-                encounters=encounters.run(estimators, -(-runs // 100), seed, progress, processes)
+                encounters=encounters.run(estimators, -(-runs // 100), seed, progress, workers)
             )
     if 'loss' in parts:
         with progress_bar('loss') as progress:
-            found = found._replace(kept=loss.run(estimators, runs, seed, progress, processes))
+            found = found._replace(kept=loss.run(estimators, runs, seed, progress, workers))
     return found

@@ -7,8 +7,10 @@ from contextlib import contextmanager
 
 @contextmanager
 def progress_bar(text: str) -> Iterator[Callable[..., None]]:
-    """Shows, while the context lasts, what is told to it: parts done, of how many, and, where
-    that has changed, what is being done."""
+    """Shows progress while the context lasts.
+
+    The function takes the parts done, the number of parts and, when it changes, what is being done.
+    """
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 

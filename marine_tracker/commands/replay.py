@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from ..estimators import WANT_DOPPLER
 from ..evaluation.replay import fuse, write_tracks
+from ..files import written
 from ..processes import keep_freed_memory
 from ..service import Service
 from ..types import Scan
@@ -42,15 +43,17 @@ def run(args) -> int:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
     keep_freed_memory()
     source = fuse(args.source, args.seed)
+    for remark in source.remarks:
+        print(remark, file=sys.stderr)
     parameters = tracker_options.parameters(args, source.tracker_parameters)
     scans = _with_progress(source.scans, source.total)
     with contextlib.ExitStack() as stack:
         file = sys.stdout
         if args.out != '-':
-            file = stack.enter_context(open(args.out, 'w', newline=''))
+            file = stack.enter_context(written(args.out, newline=''))
         alarm_file = None
         if args.alarms:
-            alarm_file = stack.enter_context(open(args.alarms, 'w', newline=''))
+            alarm_file = stack.enter_context(written(args.alarms, newline=''))
         summary = write_tracks(Service(parameters), scans, file, alarm_file)
     print(
         f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '

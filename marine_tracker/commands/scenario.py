@@ -11,7 +11,6 @@ import numpy as np
 from ..geometry import KNOT, NAUTICAL_MILE, to_range_bearing
 from ..recording import csv_folder
 from ..simulation import radar, scenario
-from ..types import take
 
 HELP = 'list, check, show or write scenarios'
 
@@ -40,6 +39,12 @@ def run(args) -> int:
     return args.action(args)
 
 
+def _tell(loaded):
+    for remark in loaded.fleet.remarks:
+        print(remark, file=sys.stderr)
+    return loaded
+
+
 def _list(args):
     rows = []
     for name in scenario.shipped():
@@ -65,12 +70,13 @@ def _check(args):
             print(error, file=sys.stderr)
             wrong = 1
         else:
+            _tell(loaded)
             print(f'{file}: ok, {len(loaded.fleet.names)} targets, {loaded.scans} scans')
     return wrong
 
 
 def _show(args):
-    loaded = scenario.load(args.scenario)
+    loaded = _tell(scenario.load(args.scenario))
     print(loaded.name + (f': {loaded.description}' if loaded.description else ''))
     for line in _conditions(loaded):
         print(f'  {line}')
@@ -89,7 +95,7 @@ def _show(args):
 
 
 def _write(args):
-    loaded = scenario.load(args.scenario)
+    loaded = _tell(scenario.load(args.scenario))
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
     csv_folder.write(
@@ -108,8 +114,9 @@ def _notes(loaded):
     sigma = np.radians(loaded.tracker_parameters()['bearing_sigma_deg']) * loaded.radar.max_range
     near = float(round(max(50.0, 2 * sigma)))
     notes: dict[str, Any] = {'seen_within_m': near, 'cutoff_m': 2 * near, 'uncooperative': False}
-    if loaded.fleet.origin is not None:
-        notes['origin'] = list(loaded.fleet.origin)
+    origin = loaded.fleet.origin
+    if origin is not None:
+        notes['origin'] = [origin.latitude, origin.longitude]
     return notes
 
 
@@ -158,7 +165,7 @@ def _target_rows(loaded):
         distance, bearing = to_range_bearing(truth.position - own.position)
         for row in np.flatnonzero(np.isnan(first[target])):
             first[target[row]] = time
-            velocity = take(truth, row).velocity
+            velocity = truth.velocity[row]
             rows[target[row]] = (
                 f'{truth.target[row]}',
                 loaded.fleet.names[target[row]],

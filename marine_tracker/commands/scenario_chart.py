@@ -1,16 +1,19 @@
-"""A chart of a scenario: where every ship goes, in the frame of own ship's start."""
+"""A chart of a scenario: the paths of all ships, in the frame of own ship's start."""
+
+from pathlib import Path
 
 import numpy as np
 
+from ..files import written
 from ..geometry import NAUTICAL_MILE
 
 STEPS = 241
 
 
 def draw(loaded, file):
-    """Draw the ways of own ship and targets into an image file, as far as the radar reaches.
+    """Draws the paths of own ship and targets into an image file, out to the radar's range.
 
-    A dot marks each start; the circles are the radar's range at the start and at the end.
+    A dot marks each start. The circles are the radar's range at the start and at the end.
 
     Raises ValueError without matplotlib (extra `plot`).
     """
@@ -67,4 +70,8 @@ def draw(loaded, file):
         ylim=(low[1] - 1.03 * reach, high[1] + 1.03 * reach),
     )
     axes.grid(color='0.92')
-    figure.savefig(file, dpi=110)
+    kind = Path(file).suffix.removeprefix('.').lower() or 'png'
+    if kind not in figure.canvas.get_supported_filetypes():
+        raise ValueError(f'--plot is {file}; its name must end in that of an image, like .png')
+    with written(file, 'wb') as image:
+        figure.savefig(image, format=kind, dpi=110)

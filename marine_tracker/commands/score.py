@@ -10,11 +10,12 @@ longitude of the frame's zero ("origin": [55.0, 7.0]), as that of a scenario wit
 `scenario write` has made.
 """
 
+import sys
 from pathlib import Path
 
-from ..evaluation import ais_score, metrics, report
-from ..recording import csv_folder, track_file
-from ..simulation import ais
+from ..evaluation import ais_score, metrics, report, screened
+from ..recording import track_file
+from ..simulation import ais_file
 
 HELP = 'tell how good a track file is on a recording'
 
@@ -46,7 +47,9 @@ def add_arguments(parser) -> None:
         '--ais',
         metavar='FILE',
         type=Path,
-        help='score against the AIS reports in this CSV file: columns ' + ', '.join(ais.COLUMNS),
+        help='score against the AIS reports in this CSV file: columns '
+        + ', '.join(ais_file.COLUMNS)
+        + ', or as others publish them (simulation/ais_file.py)',
     )
     parser.add_argument(
         '--ais-start-s',
@@ -88,7 +91,9 @@ def add_arguments(parser) -> None:
 
 def run(args) -> int:
     """Print the figures; always 0, for nothing is demanded."""
-    recording = csv_folder.read(args.folder)
+    recording, remarks = screened.read(args.folder)
+    for remark in remarks:
+        print(remark, file=sys.stderr)
     if args.ais is not None:
         return _against_ais(args, recording)
     if len(args.tracks) > 1:

@@ -1,13 +1,12 @@
-"""The options by which a command's user sets the tracker's parameters."""
+"""The options of a command that set the tracker's parameters."""
 
-import yaml
-
+from .. import yaml_file
 from ..estimators import ESTIMATORS
-from ..parameters import TrackerParameters, from_mapping, read_yaml_mapping
+from ..parameters import TrackerParameters, from_mapping
 
 
 def add_arguments(parser) -> None:
-    """--estimator, --parameters and --set."""
+    """Adds --estimator, --parameters and --set."""
     parser.add_argument(
         '--estimator', choices=sorted(ESTIMATORS), help='filter to use (default: the shipped one)'
     )
@@ -21,31 +20,31 @@ def add_arguments(parser) -> None:
         metavar='NAME=VALUE',
         action='append',
         default=[],
-        help='one tracker parameter; may be given again',
+        help='one tracker parameter; may be given more than once',
     )
 
 
 def parameters(args, from_source: dict) -> TrackerParameters:
-    """Shipped defaults, overruled by the source's, then --parameters, then --set, --estimator."""
+    """The parameters: defaults, then the source's, then --parameters, then --set, --estimator.
+
+    Later ones replace earlier ones.
+    """
     values = dict(from_source)
     if args.parameters:
         values.update(_read(args.parameters))
     for text in args.set:
         name, equals, value = text.partition('=')
         if not equals:
-            raise ValueError(f'--set {text}: it must be NAME=VALUE')
-        try:
-            values[name.strip()] = yaml.safe_load(value)
-        except yaml.YAMLError:
-            raise ValueError(f'--set {text}: its value is not YAML') from None
+            raise ValueError(f'--set {text[:60]}: it must be NAME=VALUE')
+        values[name.strip()] = yaml_file.parse(value, f'--set {name.strip()}')
     if args.estimator:
         values['estimator'] = args.estimator
     return from_mapping(TrackerParameters, values)
 
 
 def _read(path) -> dict:
-    """A flat mapping, or what `ros__parameters` holds for the tracker in a node's YAML."""
-    values = read_yaml_mapping(path)
+    """A flat mapping, or the `ros__parameters` of the tracker in a node's YAML."""
+    values = yaml_file.read_mapping(path)
     of_nodes = {
         name: node['ros__parameters']
         for name, node in values.items()

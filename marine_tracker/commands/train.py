@@ -1,9 +1,10 @@
-"""Train the weights of an estimator anew."""
+"""Trains the weights of an estimator again."""
 
 import json
 from pathlib import Path
 
 from ..evaluation import report
+from ..files import write_text
 from ..networks import gwnn_weights, rough_weights, wavelet_network
 from ..parameters import VESSEL_CLASSES
 from ..processes import keep_freed_memory
@@ -11,33 +12,33 @@ from ..simulation import scenario
 from ..training import custom_traffic, gwnn_fusion, gwnn_samples, gwnn_training, rough_training
 from .progress_bar import progress_bar
 
-HELP = 'train the weights of an estimator anew'
+HELP = 'train the weights of an estimator again'
 GWNN = """Train the network of `gwnn`.
 
-The training draws its own tracks, and takes some minutes of one processor. It may be stopped at
-any time: the same command goes on from the checkpoint beside the file (FILE.part). Use the result
-with the tracker's parameters `gwnn_weights` and, where it is not `ship`, `vessel_class`. A .json
-file beside it tells how it came about.
+The training simulates its own tracks and takes some minutes of one processor. It may be stopped at
+any time: the same command continues from the checkpoint beside the file (FILE.part). To use the
+result, set the tracker's parameters `gwnn_weights` and, if it is not `ship`, `vessel_class`. A
+.json file beside the weights describes how they were made.
 
-With --scenario the radar is the scenario's, and the tracks of its targets are learned besides;
-with --kinds the vessels move as a file of your own says (its form stands in
-marine_tracker/evaluation/own_waters.py).
+With --scenario the radar is the scenario's, and the tracks of its targets are added. With --kinds
+the vessels move as a file of your own says; marine_tracker/training/custom_traffic.py describes
+its form.
 """
 ROUGH = """Train the network of `cs_rough_nn`, or that of `cs_bp_nn`.
 
-It learns what share of the other filter's process noise the estimating one is to have, from a grid
-of samples: no tracks are drawn, some seconds suffice. The shipped weights are those of seed 1. A
-.json file beside the weights tells how they came about.
+It learns the process noise of the filter that gives the estimate, as a share of the other filter's
+noise. It learns from a grid of samples: no tracks are simulated, and it takes some seconds. The
+shipped weights are those of seed 1. A .json file beside the weights describes how they were made.
 """
 STAGES = {
     'tracks': 'making tracks',
-    'fusion': 'training to weigh the filters',
-    'spread': 'training to know the error',
+    'fusion': 'training to weight the filters',
+    'spread': 'training to estimate the error',
 }
 
 
 def add_arguments(parser) -> None:
-    """The command line of `train`."""
+    """Adds the command line of `train`."""
     names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
     _add_gwnn(names.add_parser('gwnn', help='the wavelet network of `gwnn`', description=GWNN))
     _add_rough(
@@ -67,18 +68,18 @@ def _add_gwnn(sub) -> None:
         '--vessel-class',
         choices=VESSEL_CLASSES,
         default='ship',
-        help='whose filters are weighed, and whose motion (default %(default)s)',
+        help='class of the filters and of the motion (default %(default)s)',
     )
     sub.add_argument(
         '--kinds',
         metavar='FILE',
         type=Path,
-        help='how the vessels move, instead of as the class does',
+        help='file that says how the vessels move, instead of the class',
     )
     sub.add_argument(
         '--scenario',
         metavar='NAME|FILE',
-        help='whose radar it is for, and whose targets to learn besides',
+        help='scenario that gives the radar, and additional targets',
     )
     sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
     sub.add_argument(
@@ -89,7 +90,7 @@ def _add_gwnn(sub) -> None:
         type=int,
         default=gwnn_training.CHUNKS * gwnn_samples.CHUNK,
         metavar='N',
-        help='tracks to learn from, rounded up to full lots of '
+        help='number of tracks, rounded up to full chunks of '
         f'{gwnn_samples.CHUNK} (default %(default)s)',
     )
     sub.add_argument(
@@ -110,14 +111,14 @@ def _add_gwnn(sub) -> None:
 
 
 def run(args) -> int:
-    """Write the weights and print how good they are."""
+    """Writes the weights and prints how good they are."""
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
     return args.train(args)
 
 
 def _out(name: str) -> Path:
-    """The file for the weights; the description goes beside it."""
+    """The file for the weights. The description is written beside it."""
     out = Path(name)
     if not out.parent.is_dir():
         raise ValueError(f'--out is {out}; there is no folder {out.parent}')
@@ -127,7 +128,7 @@ def _out(name: str) -> Path:
 
 
 def _describe(out: Path, manifest) -> None:
-    out.with_suffix('.json').write_text(json.dumps(manifest, indent=1) + '\n')
+    write_text(out.with_suffix('.json'), json.dumps(manifest, indent=1) + '\n')
 
 
 def _train_rough(args) -> int:

@@ -1,21 +1,21 @@
-"""Search the best settings of a filter, and say what they gain over the shipped ones.
+"""Searches for the best settings of a filter and shows the gain over the shipped ones.
 
-The search draws the tracks that the weights of `gwnn` are trained on, with a seed apart, and
-minimises the position error one scan ahead; the figures are also given on fresh tracks that the
-search did not see. Some minutes of one processor.
+The search simulates tracks as in the training of `gwnn`, with a different seed. It minimises the
+position error one scan ahead. The figures are also given for new tracks that the search did not
+see. It takes some minutes of one processor.
 """
 
 from ..estimators.gwnn import bank
 from ..evaluation import report
 from ..parameters import VESSEL_CLASSES
 from ..processes import keep_freed_memory
-from ..training import filter_tuning
+from ..training import filter_families, filter_tuning
 from ..training.tuned import TUNED
 from .progress_bar import progress_bar
 
-HELP = 'search the best settings of a filter'
+HELP = 'search for the best settings of a filter'
 TRACKS = 280
-FRESH = 10  # times the tracks of the search
+FRESH = 10  # times the number of tracks in the search
 # What is tuned, and with how many evaluations by default.
 FILTERS = {
     'imm': ('the four-mode IMM that `gwnn` is compared with', 600),
@@ -23,11 +23,11 @@ FILTERS = {
     'cv': ('one straight mode', 50),
     'cs': ('CS-Kalman', 150),
 }
-CLEAR = 0.995  # ratio of errors that settings better than the shipped ones have
+CLEAR = 0.995  # ratio of errors; below it settings are clearly better than the shipped ones
 
 
 def add_arguments(parser) -> None:
-    """The command line of `tune`."""
+    """Adds the command line of `tune`."""
     names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
     for name, (what, evaluations) in FILTERS.items():
         sub = names.add_parser(name, help=what, description=__doc__)
@@ -41,35 +41,35 @@ def _add_arguments(sub, targets, evaluations):
         dest='target',
         choices=list(targets),
         default='training',
-        help='what it is to be best at: every kind of motion and '
+        help='what to optimise: every kind of motion and '
         'phase alike, or manoeuvres only (default %(default)s)',
     )
     sub.add_argument(
         '--vessel-class',
         choices=VESSEL_CLASSES,
         default='ship',
-        help='whose motion (default %(default)s)',
+        help='class of the motion (default %(default)s)',
     )
     sub.add_argument(
         '--evaluations',
         type=int,
         default=evaluations,
         metavar='N',
-        help='settings to try (default %(default)s)',
+        help='number of settings to try (default %(default)s)',
     )
     sub.add_argument(
         '--tracks',
         type=int,
         default=TRACKS,
         metavar='N',
-        help='tracks to try each on (default %(default)s); '
-        f'{FRESH} times as many fresh ones are judged on',
+        help='number of tracks for each (default %(default)s); '
+        f'{FRESH} times as many new ones for the final check',
     )
     sub.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
     report.add_arguments(sub)
 
 
-def _shipped(name: str, vessel_class: str) -> dict[str, filter_tuning.Settings]:
+def _shipped(name: str, vessel_class: str) -> dict[str, filter_families.Settings]:
     """The settings that the comparison uses, by what they are tuned for."""
     if name == 'imm':
         return dict(bank.STRONGEST[vessel_class])
@@ -77,7 +77,7 @@ def _shipped(name: str, vessel_class: str) -> dict[str, filter_tuning.Settings]:
 
 
 def run(args) -> int:
-    """Print the settings found and how they and the shipped ones do."""
+    """Prints the settings found, with the results of them and of the shipped ones."""
     for name, least in (('evaluations', 1), ('tracks', filter_tuning.LEAST_TRACKS), ('seed', 0)):
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
@@ -95,13 +95,13 @@ def run(args) -> int:
             args.seed,
             show,
             args.vessel_class,
-            filter_tuning.FAMILIES[args.filter],
+            filter_families.FAMILIES[args.filter],
         )
     fresh = filter_tuning.fresh(FRESH * args.tracks, args.seed, args.vessel_class)
     verdict = filter_tuning.judge(
         found.settings, shipped, rival, args.target, seen, fresh, args.seed
     )
-    settings = filter_tuning.as_text(found.settings)
+    settings = filter_families.as_text(found.settings)
     better = verdict.ratio.high < 1 and verdict.ratio.value < CLEAR
     claim = report.Claim(
         rival,

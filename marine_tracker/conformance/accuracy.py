@@ -1,16 +1,15 @@
-"""How exact course, speed and CPA are under the IMO's test conditions, against their limits.
+"""Accuracy of course, speed and CPA under the IMO's test conditions, compared with their limits.
 
-The four scenarios and the sensor errors of resolution A.823(19), appendices 2 and 3; limits of
-A.823 and of MSC.192(79). Errors are those of 95 runs in a hundred. The radar's plots go through the
-whole service (service.py), and beside it a straight line is fitted to them, which knows
-that the target keeps its course: no tracker can do much better.
+The four scenarios and the sensor errors are those of resolution A.823(19), appendices 2 and 3. The
+limits are those of A.823 and of MSC.192(79). An error figure is the one that 95 of 100 runs do not
+exceed. The radar's plots go through the whole service (service.py). Also, a straight line is fitted
+to the same plots. The fit knows that the target keeps its course, so no tracker can do much better.
 
-Relative figures come from the radar; true course and speed are the relative ones and own ship's,
-by a gyro and a log that err as the standard has it. Own ship's place is reckoned from the same
-gyro and log, so tracks drift with it, and their motion relative to own ship does not err.
+Relative figures come from the radar. True course and speed are the relative ones plus own ship's,
+from a gyro and a log with the errors of the standard. Own ship's position is dead-reckoned from the
+same gyro and log. Tracks drift with it, so their motion relative to own ship has no error from it.
 """
 
-import os
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -32,7 +31,7 @@ ANGLES = np.array([True, False, False, False, True, False])
 MINUTES = (1, 3)
 NONE = np.nan  # no limit
 
-# Of A.823 by minutes of steady tracking and scenario, and of MSC.192 for any target.
+# A823: limits of A.823 by minutes of steady tracking and scenario. MSC192: limits for any target.
 A823: dict[int, dict[int, tuple[float, ...]]] = {
     1: {
         1: (11, 2.8, 1.6, NONE, NONE, NONE),
@@ -48,13 +47,13 @@ A823: dict[int, dict[int, tuple[float, ...]]] = {
     },
 }
 MSC192 = {1: (11, 1.5, 1.0, NONE, NONE, NONE), 3: (3, 0.8, 0.3, 0.5, 5, 0.5)}
-MSC192_SHARE = {1: 0.10, 3: 0.01}  # of the speed, where that is more than the limit in knots
+MSC192_SHARE = {1: 0.10, 3: 0.01}  # of the speed; used where that is more than the limit in knots
 
 CHUNK = 10  # runs a job
 
 
 class Outcome(NamedTuple):
-    """R runs of one scenario, each followed by W: the straight-line fit, then each estimator.
+    """R runs of one scenario with W methods: the straight-line fit, then each estimator.
 
     truth   [6]        of FIGURES, in rad, m/s, m, s
     found   [R, W, 6]  likewise; nan without a track
@@ -72,19 +71,19 @@ class Outcome(NamedTuple):
 
     @property
     def in_95(self) -> Array:
-        """[W, 6]: 95 % of the errors are not larger."""
+        """[W, 6]: the value that 95 % of the errors do not exceed."""
         return np.quantile(self.errors, 0.95, axis=0, method='inverted_cdf')
 
 
 def a823_limits(number: int, minutes: int) -> Array:
-    """[6] in UNITS, nan where there is none."""
+    """[6] in UNITS, nan where A.823 has no limit."""
     return np.array(A823[minutes][number])
 
 
 def msc192_limits(truth, minutes: int) -> Array:
-    """[6] in UNITS for the true figures [6], nan where there is none.
+    """[6] in UNITS for the true figures [6], nan where there is no limit.
 
-    Those of speeds are a share of the speed where that is more.
+    Limits of speeds are a share of the speed if that is more.
     """
     limits = np.array(MSC192[minutes], dtype=float)
     speeds = [1, 5]
@@ -93,7 +92,9 @@ def msc192_limits(truth, minutes: int) -> Array:
 
 
 def figures_of(position, velocity, true_velocity) -> Array:
-    """FIGURES [..., 6] of relative position [..., 2] m, relative and true velocity [..., 2] m/s."""
+    """FIGURES [..., 6] from relative position [..., 2] m and relative and true velocity [..., 2]
+    m/s.
+    """
     return np.stack(
         [
             np.arctan2(velocity[..., 0], velocity[..., 1]),
@@ -107,7 +108,7 @@ def figures_of(position, velocity, true_velocity) -> Array:
 
 
 def told(output: Output, place) -> Array:
-    """FIGURES [6] of the target that is shown nearest to `place` [2] m from own ship, or nan."""
+    """FIGURES [6] of the shown target nearest to `place` [2] m from own ship, or nan."""
     approach, place_of = output.picture.approach, shown(output)
     if np.isnan(place_of).all():
         return np.full(6, np.nan)
@@ -128,9 +129,10 @@ def told(output: Output, place) -> Array:
 
 
 class AccuracyTrial(NamedTuple):
-    """What is to be run: a scenario's mapping, and when its target is judged.
+    """One trial: a scenario's mapping, and when its target is judged.
 
-    moment  s, the end of a revolution        steady_since  s, own ship's course is held from here
+    moment        s, the end of a revolution
+    steady_since  s, own ship's course is steady from here on
     """
 
     values: dict[str, Any]
@@ -158,7 +160,7 @@ def judged(trial: AccuracyTrial) -> Array:
 
 
 def follow(trial: AccuracyTrial, estimators: Sequence[str], seeds: Sequence[int]) -> Array:
-    """FIGURES [R, W, 6] that the fit and the service with each estimator find in R runs."""
+    """FIGURES [R, W, 6] of the fit, and of the service with each estimator, in R runs."""
     loaded = scenario.build(trial.values, 'trial')
     services = [service_for(loaded.tracker_parameters(), estimator=name) for name in estimators]
     truth = loaded.truth_at(trial.moment)
@@ -196,16 +198,16 @@ def run(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> list[Outcome]:
-    """Each trial `runs` times; what comes out depends on seed and runs alone."""
+    """Runs each trial `runs` times. The result depends on seed and runs only."""
     work, whose = [], []
     for number, trial in enumerate(trials):
         seeds = np.random.SeedSequence([seed, number]).generate_state(runs, np.uint64).tolist()
         for first in range(0, runs, CHUNK):
             work.append(parallel.Job(follow, (trial, estimators, seeds[first : first + CHUNK])))
             whose.append(number)
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     return [
         Outcome(
             judged(trial),

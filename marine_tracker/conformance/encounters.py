@@ -1,11 +1,10 @@
-"""Imazu's 22 encounters through the whole service: acquired, warned of, and measured in time.
+"""Imazu's 22 encounters through the whole service: is each target acquired and warned of in time?
 
-Every target is on collision course, so the truth is CPA 0 and TCPA the time left. Judged are the
-CPA and TCPA shown three minutes after a target was acquired, and when its danger alarm was raised:
-by then more than six minutes must be left.
+Every target is on a collision course: the true CPA is 0, and the true TCPA is the time left. Two
+things are judged: the CPA and TCPA shown three minutes after a target was acquired, and the time of
+its danger alarm. At the alarm more than six minutes must be left.
 """
 
-import os
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -27,11 +26,11 @@ WARNED_BEFORE = 360.0  # s of TCPA
 
 
 class Encounter(NamedTuple):
-    """What T targets came to in R runs with E estimators.
+    """Results for T targets in R runs with E estimators.
 
     acquired  [E, R, T]  s, when it became a target; infinite for never
-    warned    [E, R, T]  s of true TCPA left when its alarm was raised; -inf for never in time
-    cpa       [E, R, T]  NM, error 3 minutes after; infinite where it was no target then
+    warned    [E, R, T]  s of true TCPA left when its alarm was raised; -inf if never or too late
+    cpa       [E, R, T]  NM, error after 3 minutes; infinite if it was not a target then
     tcpa      [E, R, T]  min, likewise
     """
 
@@ -47,16 +46,16 @@ def run(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> list[Encounter]:
-    """Every encounter `runs` times."""
+    """Runs every encounter `runs` times."""
     numbers = range(1, len(IMAZU) + 1)
     work = [
         parallel.Job(follow, (number, estimators, int(of_run)))
         for number in numbers
         for of_run in np.random.SeedSequence([seed, 2, number]).generate_state(runs)
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     return [
         Encounter(number, *np.stack(found[first : first + runs], 2))
         for number, first in zip(numbers, range(0, len(found), runs))

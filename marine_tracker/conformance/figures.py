@@ -1,4 +1,4 @@
-"""What the runs of imo_conformance and its companions come to: figures with their limits."""
+"""Turns the results of all conformance runs into figures with their limits."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,16 +11,16 @@ from .encounters import Encounter
 from .loss import Kept
 from .manoeuvres import MET_AGAIN, RIGHT, Turn
 
-HALVES = 12  # of A.823's 3-minute limits that are to be met twice over
-RATIO = 1.25  # to the straight-line fit, at most
+HALVES = 12  # number of A.823's 3-minute limits that must be met at half their value
+RATIO = 1.25  # largest ratio to the straight-line fit
 RIGHT_WITHIN = 60.0  # s after a target's turn
-CPA_ERROR, TCPA_ERROR = 0.15, 0.3  # NM, min: Imazu's encounters
-WARNED = 6.0  # min of TCPA
-KEPT, ENDED = 99.0, 10  # %, scans
+CPA_ERROR, TCPA_ERROR = 0.15, 0.3  # NM, min: limits for Imazu's encounters
+WARNED = 6.0  # min of TCPA, limit
+KEPT, ENDED = 99.0, 10  # %, scans: limits for target loss
 
 
 class Results(NamedTuple):
-    """What was run with E estimators, everything by its kind; empty for what was not.
+    """The results of all runs with E estimators, by kind; empty for what was not run.
 
     steady     by minutes of steady tracking and scenario
     own_turns  by scenario, both sides together
@@ -35,7 +35,7 @@ class Results(NamedTuple):
 
 
 class Line(NamedTuple):
-    """One figure of one scenario: 95 % of the errors, beside the fit and the limits (nan: none)."""
+    """One figure of one scenario: 95 % of the errors; the fit; the limits (nan: none)."""
 
     minutes: int
     scenario: int
@@ -48,12 +48,12 @@ class Line(NamedTuple):
 
     @property
     def ratio(self) -> float:
-        """To the fit."""
+        """Ratio to the fit."""
         return self.value / self.fit
 
 
 def lines(outcomes: dict[tuple[int, int], Outcome], column: int) -> list[Line]:
-    """Those of one estimator (column 1 on) that a standard limits, in order."""
+    """Lines of one estimator (column 1 and up) for figures that a standard limits, in order."""
     found = []
     for (minutes, number), outcome in outcomes.items():
         a823, msc192 = a823_limits(number, minutes), msc192_limits(outcome.truth, minutes)
@@ -67,7 +67,7 @@ def lines(outcomes: dict[tuple[int, int], Outcome], column: int) -> list[Line]:
 
 
 def figures(results: Results) -> list[Figure]:
-    """All figures; a limit that the straight-line fit itself misses is told, not demanded."""
+    """All figures. A limit that the straight-line fit itself misses is shown, but not required."""
     found = []
     for e, name in enumerate(results.estimators):
         told = lines(results.steady, e + 1)
@@ -130,7 +130,7 @@ def _beside(line, standard, limit):
 
 
 def _limited(title, line, limit, against):
-    """Demanded only where the fit can meet it."""
+    """A figure whose limit is required only if the fit can meet it."""
     if np.isnan(limit):
         return Figure(title, line.value, line.unit, None, None, against)
     if line.fit > limit:

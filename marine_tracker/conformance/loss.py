@@ -1,10 +1,9 @@
-"""A target that shows in five of ten scans is kept; one that shows no more is soon called lost.
+"""Target loss: a target seen in five of ten scans is kept; one that disappears is soon called lost.
 
-Each of ten scans, again and again, has five plots of the target, which ones is drawn anew; so it
-may be missing ten times in a row. After ten minutes it vanishes.
+In every ten scans the target has five plots. Which scans these are is drawn again each time, so it
+can be missing for ten scans in a row. After ten minutes it disappears.
 """
 
-import os
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -19,14 +18,14 @@ from ..tracking.lifecycle import LOST
 from ..types import Array, take
 from . import ring_of_ships
 
-BEGIN, MINUTES, AFTER = 10, 10, 14  # scans seen at first; minutes of gaps; scans unseen
+BEGIN, MINUTES, AFTER = 10, 10, 14  # scans seen; minutes of gaps; scans unseen
 SHOWN, OF = 5, 10
 
 
 class Kept(NamedTuple):
     """R targets: kept [E, R] for ten minutes, and the scan [E, R] without a plot that ended it.
 
-    ended is infinite where the target was not called lost, nan where it had not been kept
+    ended is infinite if the target was never called lost, nan if it was not kept for ten minutes
     """
 
     kept: Array
@@ -38,20 +37,20 @@ def run(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> Kept:
-    """At least `runs` targets."""
+    """Runs at least `runs` targets."""
     scenes = -(-runs // ring_of_ships.SHIPS)
     work = [
         parallel.Job(_follow, (estimators, int(of_scene)))
         for of_scene in np.random.SeedSequence([seed, 3]).generate_state(scenes)
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     return Kept(*(np.concatenate(column, axis=1) for column in zip(*found)))
 
 
 def pattern(scans: int, count: int, rng: np.random.Generator):
-    """[scans, count] whether each target shows: SHOWN times in every OF scans."""
+    """[scans, count] whether each target has a plot: SHOWN times in every OF scans."""
     blocks = -(-scans // OF)
     shows = np.tile(np.arange(OF) < SHOWN, (blocks, count, 1))
     return rng.permuted(shows, axis=2).transpose(0, 2, 1).reshape(-1, count)[:scans]
@@ -83,7 +82,8 @@ def _follow(estimators, seed):
     ended = np.full((len(services), ships), np.inf)
     for k, (scan, truth) in enumerate(radar.simulate(loaded, seed)):
         last[shows[k]] = k
-        # Ships lie 15 degrees apart and plots err by half a degree: the nearest is whose it is.
+        # Ships lie 15 degrees apart and plots have errors of half a degree: the nearest ship owns
+        # the plot.
         apart = np.abs(scan.plots.bearing[:, None] - np.arctan2(*truth.position.T)) % (2 * np.pi)
         whose = np.minimum(apart, 2 * np.pi - apart).argmin(1)
         scan = scan._replace(plots=take(scan.plots, shows[k, whose]))
@@ -103,7 +103,7 @@ def _follow(estimators, seed):
 
 
 def _numbers(output, truth, loaded):
-    """[SHIPS] number of each ship's target, 0 for none."""
+    """[SHIPS] number of each ship's target, 0 if it has none."""
     row, found = ring_of_ships.owners(
         output, truth.position - loaded.own_ship_at(truth.time).position
     )

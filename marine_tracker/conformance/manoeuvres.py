@@ -1,11 +1,10 @@
-"""What turns of own ship or of a target do to course, speed and CPA, under the IMO's errors.
+"""How turns of own ship or of a target affect course, speed and CPA, under the IMO's errors.
 
-Own ship turns by 45 degrees to either side in one minute, in the four scenarios of A.823: the
-3-minute limits are to hold again a third of a minute later. Targets turn at three rates: how long
-does their course stay wrong after the turn?
+Own ship turns by 45 degrees to either side in one minute, in the four scenarios of A.823. A third
+of a minute later the 3-minute limits must be met again. Targets turn at three rates, to measure how
+long their course stays wrong after the turn.
 """
 
-import os
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -35,7 +34,7 @@ def own_turns(number: int, after: float = MET_AGAIN) -> list[AccuracyTrial]:
 
 
 class Turn(NamedTuple):
-    """Errors of the course shown of R ships that turn, deg, infinite without a track.
+    """Errors of the shown course of R ships that turn, deg; infinite without a track.
 
     after   [K]        s since the end of the turn
     errors  [E, R, K]  of each estimator
@@ -48,12 +47,12 @@ class Turn(NamedTuple):
 
     @property
     def in_95(self) -> Array:
-        """[E, K]: 95 % of the errors are not larger."""
+        """[E, K]: the value that 95 % of the errors do not exceed."""
         return np.quantile(self.errors, 0.95, axis=1, method='inverted_cdf')
 
     @property
     def right_again(self) -> Array:
-        """[E] s after the turn's end from which on in_95 stays below RIGHT; infinite if never."""
+        """[E] s from the turn's end until in_95 stays below RIGHT; infinite if never."""
         wrong = (self.in_95 >= RIGHT) & (self.after > 0)
         last = np.where(wrong, np.arange(len(self.after)), -1).max(1)
         first = np.flatnonzero(self.after > 0)[0]
@@ -71,16 +70,16 @@ def target_turns(
     runs: int,
     seed: int,
     progress: Progress = silent,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> list[Turn]:
-    """At least `runs` ships for each of TURNS."""
+    """Runs at least `runs` ships for each of TURNS."""
     scenes = -(-runs // ring_of_ships.SHIPS)
     work = [
         parallel.Job(_turn, (rate, angle, estimators, int(number)))
         for kind, (rate, angle) in enumerate(TURNS)
         for number in np.random.SeedSequence([seed, 1, kind]).generate_state(scenes)
     ]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     turns = []
     for kind, (rate, angle) in enumerate(TURNS):
         parts = found[kind * scenes : (kind + 1) * scenes]

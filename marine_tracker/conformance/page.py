@@ -1,4 +1,4 @@
-"""The IMO report as a page of HTML with its pictures beside it."""
+"""Writes the IMO report as an HTML page with its pictures."""
 
 from collections.abc import Sequence
 from html import escape
@@ -8,6 +8,7 @@ import numpy as np
 
 from ..evaluation.report import Figure, number
 from ..evaluation.result import draw
+from ..files import write_text
 from .figures import Results, figures, lines
 from .pictures import pictures
 
@@ -16,14 +17,14 @@ table { border-collapse: collapse; margin: 1em 0 } img { max-width: 100% }
 td, th { padding: .15em .7em; border-bottom: 1px solid #ddd; text-align: left }
 td.n { text-align: right } .met { color: #23662a } .missed { color: #b00020; font-weight: bold }
 .past { color: #777 }"""
-ABOUT = """Errors of 95 runs in a hundred, with all sensor errors of resolution A.823(19),
-appendix 3, through the whole service. The fit is a straight line through the same plots: it knows
-that the target keeps its course. A limit that the fit itself misses is shown in grey and not
-demanded."""
+ABOUT = """Errors that 95 of 100 runs do not exceed, with all sensor errors of resolution
+A.823(19), appendix 3, through the whole service. The fit is a straight line through the same plots:
+it knows that the target keeps its course. A limit that the fit itself misses is shown in grey and
+is not required."""
 
 
 def write(folder, results: Results, title: str, seed: int) -> Path:
-    """Write index.html and pictures into the folder, which is made; the page's path."""
+    """Writes index.html and pictures into the folder, which is created; returns the page's path."""
     drawn = draw(folder, pictures(results, seed))
     parts = [
         f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>',
@@ -36,7 +37,7 @@ def write(folder, results: Results, title: str, seed: int) -> Path:
     parts += ['<h2>All else</h2>', _table(rest)]
     parts += [f'<p><img src="{file.name}" alt="{file.stem}"></p>' for file in drawn]
     page = Path(folder) / 'index.html'
-    page.write_text('\n'.join(parts) + '\n')
+    write_text(page, '\n'.join(parts) + '\n')
     return page
 
 

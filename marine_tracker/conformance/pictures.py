@@ -17,7 +17,7 @@ A823_COLOUR, MSC192_COLOUR, FIT_COLOUR = '#b00020', '#e08a00', '0.35'
 
 
 def pictures(results: Results, seed: int) -> list[Picture]:
-    """Those of what was run."""
+    """Pictures of everything that was run."""
     found = [
         Picture(
             f'errors_{minutes}_min_{number}',
@@ -38,7 +38,7 @@ def pictures(results: Results, seed: int) -> list[Picture]:
 
 
 def _errors(canvas, results, key):
-    """How many runs err by no more than so much, figure by figure."""
+    """For each figure, the share of runs whose error is at most a given value."""
     minutes, number = key
     outcome = results.steady[key]
     canvas.suptitle(
@@ -71,7 +71,7 @@ def _errors(canvas, results, key):
 
 
 def _tracks(canvas, estimator, seed):
-    """One run of each scenario, relative to own ship: plots, and where the target is said to go."""
+    """One run of each scenario, relative to own ship: plots, and the shown motion of the target."""
     canvas.suptitle(f'One run of each scenario, 3 min, relative to own ship ({estimator})')
     for number, axes in enumerate(canvas.subplots(2, 2).flat, 1):
         trial = a823_trial(number, 180.0)

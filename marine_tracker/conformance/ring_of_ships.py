@@ -1,7 +1,7 @@
-"""Many ships at once that are alike and keep clear of each other, for statistics of single ships.
+"""Many equal ships at once, far from each other, for statistics of single ships.
 
-They lie on a circle about own ship, who lies still, and each goes at right angles to the line of
-sight, clockwise; so they stay on a circle.
+They lie on a circle around own ship, which is at rest. Each moves at right angles to the line of
+sight, clockwise, so they stay on a circle.
 """
 
 from typing import Any, NamedTuple
@@ -15,11 +15,11 @@ from ..types import Array
 
 SHIPS = 24
 DISTANCE, SPEED = 5000.0, 8.0  # m, m/s
-REACH = 500.0  # m: a track farther from a ship is not hers
+REACH = 500.0  # m; a track farther from a ship is not on it
 
 
 def ring(duration: float, radar: dict[str, Any], legs: list[dict[str, Any]]) -> dict[str, Any]:
-    """The scenario's mapping; all ships run the legs."""
+    """The scenario's mapping. All ships run the same legs."""
     return {
         'duration_s': duration,
         'radar': radar,
@@ -36,15 +36,16 @@ def ring(duration: float, radar: dict[str, Any], legs: list[dict[str, Any]]) -> 
 
 
 class Owners(NamedTuple):
-    """row [S] of the target that is each ship's, and whether there is one [S]."""
+    """row [S] of each ship's target, and whether it has one [S]."""
 
     row: NDArray[np.int64]
     found: NDArray[np.bool_]
 
 
 def owners(output: Output, place: Array) -> Owners:
-    """Which targets of the picture are those of ships at `place` [S, 2] m from own ship: the
-    nearest ones."""
+    """The targets of the picture that belong to ships at `place` [S, 2] m from own ship: the
+    nearest.
+    """
     where = shown(output)
     if not len(where):
         return Owners(np.zeros(len(place), np.int64), np.zeros(len(place), bool))
@@ -56,7 +57,7 @@ def owners(output: Output, place: Array) -> Owners:
 
 
 def shown(output: Output) -> Array:
-    """[T, 2] m from own ship of the picture's targets; nan for those just lost."""
+    """[T, 2] m from own ship of the picture's targets; nan for targets that were just lost."""
     picture = output.picture
     lost = output.report.tracks.status[picture.row] == LOST
     return np.where(lost[:, None], np.nan, picture.motion.position - picture.own.position)

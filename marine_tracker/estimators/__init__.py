@@ -1,13 +1,6 @@
-"""Estimators by name. An entry makes the estimator from the tracker's parameters.
-
-An estimator that can fall back on another also has an entry in ACCOUNTS: from its state, how it
-fares with each track.
-"""
+"""Estimators by name. An entry makes the estimator from the tracker's parameters."""
 
 from collections.abc import Callable
-from typing import Any
-
-import numpy as np
 
 from ..parameters import TrackerParameters
 from . import alpha_beta, cs_kalman, cs_rough_nn, imm, wavelet_cs
@@ -46,15 +39,7 @@ ESTIMATORS: dict[str, Callable[[TrackerParameters], Estimator]] = {
 }
 
 
-def _gwnn_account(state: gwnn.GwnnState) -> Account:
-    status, *judged, reason = gwnn.account(state)
-    rho, j, j_fallback = (np.where(status == gwnn.WARMUP, np.nan, one) for one in judged)
-    return Account(gwnn.STATUS, status, rho, j, j_fallback, gwnn.REASONS, reason)
-
-
 # Estimators that are of little use where plots tell no radial speed: users are warned.
 WANT_DOPPLER = ('alpha_beta',)
 
-ACCOUNTS: dict[str, Callable[[Any], Account]] = {'gwnn': _gwnn_account}
-
-__all__ = ['ACCOUNTS', 'ESTIMATORS', 'WANT_DOPPLER', 'Account', 'Estimator', 'Velocity']
+__all__ = ['ESTIMATORS', 'WANT_DOPPLER', 'Account', 'Estimator', 'Velocity']

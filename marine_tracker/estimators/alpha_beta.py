@@ -1,24 +1,24 @@
 """Adaptive alpha-beta filter in polar coordinates, with Doppler (paper 002; HF surface-wave radar).
 
-A plot gives range R, bearing theta and, where the radar measures it, the radial speed v; T is the
-time since the track's last plot. Between plots the radial speed and the bearing rate omega stay
-the same, then each value moves by a share of what the plot differs (eq 2 and 3):
+A plot has range R, bearing theta and, if the radar measures it, the radial speed v. T is the time
+since the track's last plot. Between plots the radial speed and the bearing rate omega are constant.
+Then each value moves by a share of its difference to the plot (eq 2 and 3):
 
     R = R_p + alpha_r (R_m - R_p)                   v = v_p + beta_v (v_m - v_p)
     theta = theta_p + alpha_a (theta_m - theta_p)   omega = omega_p + beta_w (theta_m - theta_p) / T
 
 The modes differ in the shares (alpha_beta_gains.py). All start from two plots, which give the first
-rates. Without Doppler v_m - v_p is (R_m - R_p) / T, of deviation sqrt 2 sigma_r / T: noisy, and no
-longer apart from range, so the filter loses what it is good for.
+rates. Without Doppler v_m - v_p is (R_m - R_p) / T, with deviation sqrt 2 sigma_r / T. That is
+noisy and no longer independent of the range, so the filter loses its advantage.
 
-The state lies on the ground, position and velocity, and each plot is taken in the polar coordinates
-of the antenna at its own time: so own ship may move. Radial speeds are over ground.
+The state is position and velocity on the ground. Each plot is taken in the polar coordinates of the
+antenna at the plot's time, so own ship may move. Radial speeds are over ground.
 
 Departures: `hf_soft` keeps the ground velocity between plots, not radial speed and bearing rate. At
-110 km both are the same for several plots; of a target that crosses at 1 NM the radial speed
-changes by noise's size from plot to plot. And nothing moves across faster than max_speed: two
-plots at long range would say so. Where plots of several radars follow one another within a
-revolution, their share of the rates falls with the square of the step, as what they tell does.
+110 km both are the same for several plots. But for a target that crosses at 1 NM, the radial speed
+changes from plot to plot by as much as its noise. The speed across is limited to max_speed, because
+two plots at long range would give more. If plots of several radars follow each other within a
+revolution, their share of the rates falls with the square of the step, as their information does.
 """
 
 from typing import NamedTuple
@@ -27,17 +27,17 @@ import numpy as np
 
 from ..gaussian.linear import sandwich
 from ..geometry import to_range_bearing, wrap_angle
-from ..types import Array, Extrapolation, Plots, put, take
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, put, take
 from .alpha_beta_gains import GAINS, WINDOW, Misfit
-from .contract import Estimator, first_velocity
+from .contract import Estimator, Velocity, first_velocity
 from .polar_motion import NEAREST, axes, to_ground, to_polar
 
-# White acceleration, m^2/s^3 each axis. The estimate does not depend on it, only its covariance.
+# White acceleration, m^2/s^3 each axis. It affects only the covariance, not the estimate.
 NOISE = {'ship': 0.01, 'small_craft': 0.5}
-SHORTEST = 0.5  # s; plots nearer in time say little about rates
-VAGUE = 100.0  # times the track's deviation: a plot that much worse says nothing
-HARMLESS = 0.125  # of the radial speed's deviation: a shift that does not matter
-UNKNOWN = 1e12  # m^2/s^2, variance of a radial speed that the radar does not tell
+SHORTEST = 0.5  # s; plots closer in time say little about rates
+VAGUE = 100.0  # times the track's deviation; a plot with a larger one is ignored
+HARMLESS = 0.125  # of the radial speed's deviation; a shift below this does not matter
+UNKNOWN = 1e12  # m^2/s^2, variance of an unknown radial speed
 RATES_LAST = np.array([0, 2, 1, 3])  # from polar order to values before rates, and back
 
 
@@ -48,9 +48,9 @@ class AlphaBetaState(NamedTuple):
     mean        [N, 4]     east, north m, and their rates m/s
     covariance  [N, 4, 4]  of it
     origin      [N, 2]     m, the antenna when the last plot was taken
-    since       [N]        s, when the last plot was taken that told something
+    since       [N]        s, time of the last plot that had information
     plots       [N]        number of such plots so far
-    misfit      [N, 2]     m^2, rad^2: mean squared differences in range and bearing, lately
+    misfit      [N, 2]     m^2, rad^2: mean squared differences in range and bearing, recently
     """
 
     time: Array
@@ -69,13 +69,13 @@ def alpha_beta(
 
     max_speed    m/s, of the targets
     speed_sigma  m/s, deviation of a measured radial speed
-    noise        m^2/s^3, white acceleration that the covariance allows for
-    period       s; of plots nearer in time, as those of several radars are, each counts for the
-                 rates by what it tells of them: with the square of its step
+    noise        m^2/s^3, white acceleration for the covariance
+    period       s; plots closer in time, as those of several radars, count for the rates with the
+                 square of their step
     """
     gains, straight, shortest = GAINS[mode], mode == 'hf_soft', max(period, SHORTEST)
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> AlphaBetaState:
         count = len(plots.time)
         known = np.full(count, 1.0 if velocity is None else 2.0)
         velocity = first_velocity(velocity, count, max_speed)
@@ -100,20 +100,20 @@ def alpha_beta(
             2 * np.stack([range_sigma, bearing_sigma], -1) ** 2,
         )
 
-    def extrapolate(state, time):
+    def extrapolate(state: AlphaBetaState, time: Array) -> Extrapolation:
         mean, covariance = _predict(state, time, noise, straight)
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: AlphaBetaState, plots: Plots, rows: IntArray) -> AlphaBetaState:
         before = take(state, rows)
         mean, covariance = _predict(before, plots.time, noise, straight)
         polar, by_mean = to_polar(mean, plots.origin)
         spread = sandwich(by_mean, covariance)
         told, m = _misfit(plots, polar, before, speed_sigma)
 
-        # Two plots make the first rates; from the third on the mode decides.
+        # Two plots give the first rates. From the third plot on the mode decides.
         alpha_r, beta_v, alpha_a, beta_w = (np.where(m.plots == 2, 1.0, gain) for gain in gains(m))
-        # A rate from plots that hardly differ in time would be noise without bound.
+        # Plots with almost the same time would give a rate with unlimited noise.
         step = plots.time - before.since
         a_second = np.maximum(step, 0.0) / np.maximum(step, shortest) ** 2
         after = polar + np.stack(
@@ -156,12 +156,15 @@ def alpha_beta(
     return Estimator(init, extrapolate, update)
 
 
-def _predict(state, time, noise: float, straight: bool):
+def _predict(
+    state: AlphaBetaState, time: Array, noise: float, straight: bool
+) -> tuple[Array, Array]:
     """mean [N, 4] and covariance [N, 4, 4] on the ground at the times [N].
 
     The paper's targets keep radial speed and bearing rate. With `straight` they keep the ground
-    velocity, where the bearing rate is known well enough: a straight course turns its square into
-    radial acceleration, and the square of its noise would spoil a radial speed known by Doppler.
+    velocity if the bearing rate is known well enough. On a straight course the square of the
+    bearing rate gives radial acceleration, so its noise would spoil a radial speed known by
+    Doppler.
     """
     step = time - state.time
     polar, by_mean = to_polar(state.mean, state.origin)
@@ -178,7 +181,7 @@ def _predict(state, time, noise: float, straight: bool):
     return mean + np.clip(2 - harm, 0.0, 1.0)[:, None] * (ahead - mean), covariance
 
 
-def _moved(mean, covariance, step, noise):
+def _moved(mean: Array, covariance: Array, step: Array, noise: Array) -> tuple[Array, Array]:
     """Two values, then their rates [K, 4], and the covariance after the steps [K] s.
 
     noise  [K, 2]  density of white noise in the rates
@@ -195,7 +198,7 @@ def _moved(mean, covariance, step, noise):
     return out, spread
 
 
-def _measured(plots: Plots):
+def _measured(plots: Plots) -> tuple[Array, Array, Array, Array]:
     """Range m and bearing rad of the plots [K], and the standard deviations of both."""
     distance, bearing = to_range_bearing(plots.position - plots.origin)
     range_sigma, across_sigma = (
@@ -204,16 +207,18 @@ def _measured(plots: Plots):
     return distance, bearing, range_sigma, across_sigma / np.maximum(distance, NEAREST)
 
 
-def _doppler(plots: Plots):
-    """Which plots [K] tell a radial speed, and the radial speeds m/s, 0 where none is told."""
+def _doppler(plots: Plots) -> tuple[BoolArray, Array]:
+    """Which plots [K] have a radial speed, and the radial speeds m/s, 0 where there is none."""
     if plots.radial_speed is None:
         return np.zeros(len(plots.time), bool), np.zeros(len(plots.time))
     told = np.isfinite(plots.radial_speed)
     return told, np.where(told, plots.radial_speed, 0.0)
 
 
-def _misfit(plots: Plots, polar, before: AlphaBetaState, speed_sigma: float):
-    """Which plots tell a radial speed, and the Misfit of all to what was expected, polar [K, 4]."""
+def _misfit(
+    plots: Plots, polar: Array, before: AlphaBetaState, speed_sigma: float
+) -> tuple[BoolArray, Misfit]:
+    """Which plots have a radial speed, and the Misfit of all to the expectation, polar [K, 4]."""
     distance, bearing, range_sigma, bearing_sigma = _measured(plots)
     told, speed = _doppler(plots)
     off_range = distance - polar[:, 0]
@@ -221,7 +226,7 @@ def _misfit(plots: Plots, polar, before: AlphaBetaState, speed_sigma: float):
     count = before.plots + 1
     square = np.stack([off_range, off_bearing], -1) ** 2
     mean_square = before.misfit + (square - before.misfit) / np.minimum(count, WINDOW)[:, None]
-    # Without Doppler both are T times a speed: only their ratio counts, from which T cancels.
+    # Without Doppler both are T times a speed. Only their ratio counts, and T cancels in it.
     return told, Misfit(
         off_range,
         np.where(told, speed - polar[:, 1], off_range),
@@ -234,12 +239,14 @@ def _misfit(plots: Plots, polar, before: AlphaBetaState, speed_sigma: float):
     )
 
 
-def _spread_after(spread, m: Misfit, speed_variance, off_speed, shift):
-    """Covariance [K, 4, 4] in polar order after the shifts [K, 4], which are not those of Kalman.
+def _spread_after(
+    spread: Array, m: Misfit, speed_variance: Array, off_speed: Array, shift: Array
+) -> Array:
+    """Covariance [K, 4, 4] in polar order after the shifts [K, 4], which are not Kalman's.
 
-    Before the plot the error has covariance P. Given the plot's difference d its mean is -K d and
-    its covariance P - K S K' (Kalman); the filter adds its own shift g. So its mean square is
-    P - K S K' + (g - K d)(g - K d)', whatever led to the shift.
+    Before the plot the error has covariance P. Given the plot's difference d, its mean is -K d and
+    its covariance is P - K S K' (Kalman). The filter adds its own shift g. So its mean square is P
+    - K S K' + (g - K d)(g - K d)', for any shift.
     """
     noise = np.zeros((len(shift), 3, 3))
     noise[:, 0, 0], noise[:, 1, 1] = m.range_sigma**2, speed_variance
@@ -249,4 +256,5 @@ def _spread_after(spread, m: Misfit, speed_variance, off_speed, shift):
     gain = np.matmul(np.linalg.inv(cross[:, :, :3] + noise), cross)  # K'
     apart = shift - np.matmul(off[:, None], gain)[:, 0]
     out = spread - np.matmul(gain.swapaxes(1, 2), cross) + apart[:, :, None] * apart[:, None, :]
-    return 0.5 * (out + out.swapaxes(1, 2))
+    found: Array = 0.5 * (out + out.swapaxes(1, 2))
+    return found

@@ -1,4 +1,4 @@
-"""How much of a plot's difference the alpha-beta filter takes over: the four modes (paper 002)."""
+"""How much of a plot's difference the alpha-beta filter takes over: four modes (paper 002)."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -8,12 +8,12 @@ import numpy as np
 from ..types import Array
 
 WINDOW = 10  # plots over which method1 judges its prediction error
-SOFT_SPEED, SOFT_BEARING = 4.0, 6.0  # sigma at which hf_soft goes half the way
+SOFT_SPEED, SOFT_BEARING = 4.0, 6.0  # sigma at which hf_soft moves half the way
 GATE_BEARING = 6.0  # c_a: the association gate of the bearing, sigma
 
 
 class Misfit(NamedTuple):
-    """How K plots differ from what was expected, and what differences their noise makes.
+    """Differences of K plots to the expectation, and the deviations of such differences by noise.
 
     range, speed, bearing              [K]  m, m/s, rad
     range_sigma, speed_sigma, bearing_sigma  [K]  likewise
@@ -31,25 +31,25 @@ class Misfit(NamedTuple):
     mean_square: Array
 
 
-def rate_gain(position_gain):
-    """beta of alpha by Benedict and Bordner's relation: alpha^2 / (2 - alpha)."""
+def rate_gain(position_gain: Array) -> Array:
+    """beta from alpha by Benedict and Bordner's relation: alpha^2 / (2 - alpha)."""
     return position_gain**2 / (2 - position_gain)
 
 
-def position_gain(rate_gain):
-    """alpha of beta by the same relation, solved for it."""
+def position_gain(rate_gain: Array) -> Array:
+    """alpha from beta by the same relation, solved for alpha."""
     return 0.5 * (np.sqrt(rate_gain**2 + 8 * rate_gain) - rate_gain)
 
 
-def _hf(m: Misfit):
-    """Paper 002, eq 4 to 6: the speed's share first, for it is measured best."""
+def _hf(m: Misfit) -> tuple[Array, Array, Array, Array]:
+    """Paper 002, eq 4 to 6: the speed's share first, because it is measured best."""
     beta_v = -np.expm1(-np.abs(m.speed) / m.speed_sigma)
     alpha_a = -np.expm1(-np.abs(m.bearing) / (GATE_BEARING * m.bearing_sigma))
     return position_gain(beta_v), beta_v, alpha_a, rate_gain(alpha_a)
 
 
-def _hf_soft(m: Misfit):
-    """The same with r / (1 + r) over wider scales: what noise alone does counts for less."""
+def _hf_soft(m: Misfit) -> tuple[Array, Array, Array, Array]:
+    """The same with r / (1 + r) over wider scales, so noise alone has less effect."""
     beta_v, alpha_a = (
         ratio / (1 + ratio)
         for ratio in (
@@ -60,8 +60,8 @@ def _hf_soft(m: Misfit):
     return position_gain(beta_v), beta_v, alpha_a, rate_gain(alpha_a)
 
 
-def _method1(m: Misfit):
-    """Paper 002's first rival: prediction variance over itself and the plot's."""
+def _method1(m: Misfit) -> tuple[Array, Array, Array, Array]:
+    """Paper 002's first rival: the prediction variance divided by the sum of it and the plot's."""
     alpha_r, alpha_a = (
         square / (square + sigma**2)
         for square, sigma in zip(m.mean_square.T, (m.range_sigma, m.bearing_sigma), strict=True)
@@ -69,8 +69,8 @@ def _method1(m: Misfit):
     return alpha_r, rate_gain(alpha_r), alpha_a, rate_gain(alpha_a)
 
 
-def _method2(m: Misfit):
-    """Paper 002's second rival: a straight line through all k plots, whatever they say."""
+def _method2(m: Misfit) -> tuple[Array, Array, Array, Array]:
+    """Paper 002's second rival: a straight line through all k plots, without adaptation."""
     k = m.plots
     alpha, beta = 2 * (2 * k - 1) / (k * (k + 1)), 6 / (k * (k + 1))
     return alpha, beta, alpha, beta

@@ -13,11 +13,10 @@ from math import factorial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..gaussian.linear import kalman_update, sandwich
-from ..types import Array, Extrapolation, put, take
-from .contract import Estimator, first_velocity
+from ..types import Array, Extrapolation, IntArray, Plots, put, take
+from .contract import Estimator, Velocity, first_velocity
 
 RAYLEIGH = (4 - np.pi) / np.pi  # variance of the Rayleigh density over its squared mean
 # Without a floor the process noise vanishes when the estimate sits at a_max, and the filter
@@ -55,7 +54,7 @@ class CsState(NamedTuple):
     covariance: Array
 
 
-def _series_coefficients():
+def _series_coefficients() -> Array:
     """Coefficients [terms, 9] of phi_0..2 / T^d and q11, q12, q13, q22, q23, q33 / T^n in y."""
     table = np.zeros((SERIES_TERMS, 9))
     for j in range(SERIES_TERMS):
@@ -74,7 +73,7 @@ def _series_coefficients():
 _SERIES = _series_coefficients()
 
 
-def model(frequency: float, step):
+def model(frequency: float, step: Array) -> tuple[Array, Array]:
     """phi [3, N] and q [6, N] (q11, q12, q13, q22, q23, q33) for the time steps [N] s.
 
     Either sign of step for phi; q is that of |step|. Relative error below 1e-12.
@@ -95,7 +94,7 @@ def model(frequency: float, step):
     return out[:3], out[3:]
 
 
-def _powers(y):
+def _powers(y: Array) -> Array:
     """y^0 ... y^(SERIES_TERMS - 1), [SERIES_TERMS, N], each doubling in one product."""
     powers = np.empty((SERIES_TERMS, len(y)))
     powers[0] = 1.0
@@ -108,7 +107,7 @@ def _powers(y):
     return powers
 
 
-def _closed_form(alpha, step):
+def _closed_form(alpha: float, step: Array) -> tuple[Array, Array]:
     y = alpha * step
     e = np.exp(-y)
     phi = np.stack([e, (1 - e) / alpha, (y - 1 + e) / alpha**2])
@@ -128,15 +127,15 @@ def _closed_form(alpha, step):
     return phi, q
 
 
-def acceleration_variance(acceleration, max_acceleration: float):
+def acceleration_variance(acceleration: float | Array, max_acceleration: float) -> Array:
     """sigma_a^2 [...] of the modified Rayleigh density about the estimate [...], with the floor."""
     room = max_acceleration - np.minimum(np.abs(acceleration), max_acceleration)
     return RAYLEIGH * np.maximum(room * room, VARIANCE_FLOOR * max_acceleration**2)
 
 
-def _per_axis(block):
+def _per_axis(rows: list[list[int]]) -> IntArray:
     """The layout of a state's matrix from that of one axis."""
-    block = np.asarray(block)
+    block = np.array(rows)
     zero = np.zeros_like(block)
     return np.block([[block, zero], [zero, block]])
 
@@ -150,13 +149,13 @@ class _Layout(NamedTuple):
     noise       [n, n]  rows of its noise table: 0, q11, q12, q13, q22, q23, q33 of east, of north
     """
 
-    transition: NDArray[np.int64]
-    drive: NDArray[np.int64]
-    axis: NDArray[np.int64]
-    noise: NDArray[np.int64]
+    transition: IntArray
+    drive: IntArray
+    axis: IntArray
+    noise: IntArray
 
 
-def _layout(rows):
+def _layout(rows: IntArray) -> _Layout:
     noise = _per_axis([[1, 2, 3], [2, 4, 5], [3, 5, 6]])
     noise[3:, 3:] += 6
     return _Layout(
@@ -170,7 +169,9 @@ def _layout(rows):
 WHOLE, SHOWN = _layout(np.arange(6)), _layout(POSITION_VELOCITY)
 
 
-def predict(mean, covariance, step, manoeuvre: Manoeuvre, wanted: _Layout = WHOLE):
+def predict(
+    mean: Array, covariance: Array, step: Array, manoeuvre: Manoeuvre, wanted: _Layout = WHOLE
+) -> tuple[Array, Array]:
     """States [N, 6] and covariances [N, 6, 6] moved by the steps [N] s.
 
     wanted: WHOLE, or SHOWN for position and velocity only (then [N, 4] and [N, 4, 4]).
@@ -183,7 +184,9 @@ def predict(mean, covariance, step, manoeuvre: Manoeuvre, wanted: _Layout = WHOL
     return ahead, moved
 
 
-def move(mean, covariance, step, phi, limit: float, wanted: _Layout = WHOLE):
+def move(
+    mean: Array, covariance: Array, step: Array, phi: Array, limit: float, wanted: _Layout = WHOLE
+) -> tuple[Array, Array]:
     """As `predict`, without process noise: for the phi [3, N] of `model`; limit m/s^2 of abar."""
     abar = np.minimum(np.maximum(mean.take((2, 5), 1), -limit), limit)
     table = np.empty((9, len(step)))
@@ -196,14 +199,14 @@ def move(mean, covariance, step, phi, limit: float, wanted: _Layout = WHOLE):
     return np.matmul(transition, mean[..., None])[..., 0] + drive, sandwich(transition, covariance)
 
 
-def process_noise(q, density, wanted: _Layout = WHOLE):
+def process_noise(q: Array, density: Array, wanted: _Layout = WHOLE) -> Array:
     """Covariance [N, n, n] of w for the q [6, N] of `model`; density [N, 2] = 2 alpha sigma_a^2."""
     table = np.zeros((13, len(density)))
     table[1:7], table[7:] = q * density[:, 0], q * density[:, 1]
     return table.T.take(wanted.noise, 1)
 
 
-def predict_mean(mean, step, manoeuvre: Manoeuvre):
+def predict_mean(mean: Array, step: Array, manoeuvre: Manoeuvre) -> Array:
     """States [N, 6] moved by the steps [N] s, as `predict` does, without covariances."""
     (phi0, phi1, phi2), _ = model(manoeuvre.frequency, step)
     limit = manoeuvre.max_acceleration
@@ -224,7 +227,7 @@ def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
     max_speed, m/s, of the targets sets the velocity variance before the second plot.
     """
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> CsState:
         count = len(plots.time)
         velocity = first_velocity(velocity, count, max_speed)
         mean = np.zeros((count, 6))
@@ -237,13 +240,13 @@ def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         )
         return CsState(plots.time.copy(), mean, covariance)
 
-    def extrapolate(state, time):
+    def extrapolate(state: CsState, time: Array) -> Extrapolation:
         mean, covariance = predict(
             state.mean, state.covariance, time - state.time, manoeuvre, SHOWN
         )
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: CsState, plots: Plots, rows: IntArray) -> CsState:
         before = take(state, rows)
         mean, covariance = predict(
             before.mean, before.covariance, plots.time - before.time, manoeuvre

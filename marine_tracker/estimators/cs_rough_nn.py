@@ -1,16 +1,15 @@
 """Two filters on the "current" statistical model in parallel, joined by a network (paper 001).
 
-F1 is ready for any manoeuvre: its variance sigma_a1^2 = (4 - pi) / pi a_max^2 is constant. F2,
-which gives the estimate, has sigma_a2^2 = O sigma_a1^2 on each axis; O in (0, 1] is what a network
-makes of how far the two predictions are apart (`rough_features`). While the target keeps its course
-they agree, O is small and F2 is calm; in a manoeuvre F1 goes ahead and O lets F2 follow.
+F1 expects any manoeuvre: its variance sigma_a1^2 = (4 - pi) / pi a_max^2 is constant. F2 gives the
+estimate. It has sigma_a2^2 = O sigma_a1^2 on each axis. A network computes O in (0, 1] from the
+differences of the two predictions (`rough_features`). While the target keeps its course they agree,
+O is small and F2 is calm. In a manoeuvre F1 moves ahead, and O lets F2 follow.
 
-Axes are taken one by one, as in the paper: the variance of the model is one of an axis, and a
-manoeuvre along one of them should not make the other one noisy.
+Axes are treated separately, as in the paper. The variance of the model belongs to one axis, and a
+manoeuvre along one axis should not make the other one noisy.
 
-The network sees the predictions for the time of the plot, with what O was at the plot before and
-the plot noise met so far; so O is known before the plot comes, and the gate sees what the update
-uses.
+The inputs of the network are the predictions for the time of the plot, O at the previous plot, and
+the plot noise so far. So O is known before the plot comes, and gate and update use the same O.
 """
 
 from functools import cache
@@ -21,8 +20,8 @@ import numpy as np
 from ..gaussian.linear import kalman_update
 from ..networks import rough_weights
 from ..networks.rough_network import forward
-from ..types import Array, Extrapolation, append, put, take
-from .contract import Estimator
+from ..types import Array, Extrapolation, IntArray, Plots, append, put, take
+from .contract import Estimator, Velocity
 from .cs_kalman import (
     POSITION,
     POSITION_VELOCITY,
@@ -37,17 +36,17 @@ from .cs_kalman import (
 from .rough_features import inputs, quiet_variance
 
 LEAST_SHARE = 0.01
-QUIET_SHARE = 0.02  # what the networks are taught for a target that keeps its course
-SHORTEST = 1e-3  # s; at step 0 the share is of no consequence
+QUIET_SHARE = 0.02  # target value of the training for a target that keeps its course
+SHORTEST = 1e-3  # s; at step 0 the share has no effect
 DIAGONAL = np.arange(6)
 
 
 class ParallelState(NamedTuple):
     """One row a track.
 
-    wide, narrow  CsState of F1 and F2, both of the last plot's time
+    wide, narrow  CsState of F1 and F2, both at the last plot's time
     share         [N, 2]  O of the axes, east and north
-    noise         [N, 2]  m^2, plot variance of the axes: log-mean of the plots, each as it counted
+    noise         [N, 2]  m^2, plot variance of the axes: weighted log-mean over the plots
     """
 
     wide: CsState
@@ -69,7 +68,7 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
     variance = RAYLEIGH * limit**2
     neurons = weights.network.inner.shape[1]
 
-    def share_of(apart, wide, narrow, noise, step):
+    def share_of(apart: Array, wide: Array, narrow: Array, noise: Array, step: Array) -> Array:
         """O [N, 2] of d, p1, p2 [N, 2, 3], plot variances [N, 2] and steps [N]."""
         total = wide + narrow
         total[..., 0] += 2 * noise
@@ -81,9 +80,10 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
         )
         seen = inputs(np.abs(apart) * unit, (np.sqrt(wide) + np.sqrt(narrow)) * unit, neurons)
         share = forward(weights.network, seen.reshape(-1, *seen.shape[2:])).reshape(-1, 2)
-        return np.minimum(np.maximum(share, LEAST_SHARE), 1.0)
+        found: Array = np.minimum(np.maximum(share, LEAST_SHARE), 1.0)
+        return found
 
-    def predict(state, time):
+    def predict(state: ParallelState, time: Array) -> tuple[Array, Array, Array]:
         """Means [2 N, 6] and covariances [2 N, 6, 6] of F1, then of F2; O [N, 2] of F2's."""
         step = time - state.narrow.time
         count = len(step)
@@ -101,7 +101,7 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
         covariance[count:] += process_noise(q, density * share)
         return mean, covariance, share
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> ParallelState:
         first = single.init(plots, velocity)
         return ParallelState(
             first,
@@ -110,14 +110,14 @@ def parallel(manoeuvre: Manoeuvre, max_speed: float, weights: rough_weights.Weig
             np.diagonal(plots.covariance, axis1=1, axis2=2).copy(),
         )
 
-    def extrapolate(state, time):
+    def extrapolate(state: ParallelState, time: Array) -> Extrapolation:
         mean, covariance, _ = predict(state, time)
         count = len(time)
         mean = mean[count:].take(POSITION_VELOCITY, 1)
         covariance = covariance[count:].take(POSITION_VELOCITY, 1).take(POSITION_VELOCITY, 2)
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: ParallelState, plots: Plots, rows: IntArray) -> ParallelState:
         before = take(state, rows)
         mean, covariance, share = predict(before, plots.time)
         count = len(plots.time)

@@ -1,8 +1,8 @@
 """Interacting multiple models: two constant-velocity and two coordinated-turn Kalman filters.
 
-Blom and Bar-Shalom, IEEE T-AC 33(8), 1988. The state of every mode is [position, velocity], so
-the modes mix without padding. Mode changes happen in time, not per plot: the transition matrix
-over a step is that of the continuous-time chain, the identity at step 0.
+Blom and Bar-Shalom, IEEE T-AC 33(8), 1988. The state of every mode is [position, velocity], so the
+modes mix without padding. Modes change with time, not with plots: the transition matrix over a step
+is that of a continuous-time chain, and the identity at step 0.
 """
 
 from typing import NamedTuple
@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..gaussian import linear_modes
-from ..types import Array, Extrapolation, put, take
-from .contract import Estimator, first_velocity
+from ..types import Array, Extrapolation, IntArray, Plots, put, take
+from .contract import Estimator, Velocity, first_velocity
 
 
 class Modes(NamedTuple):
@@ -55,7 +55,9 @@ PRESETS = {
 
 
 def bank_of(modes: Modes) -> linear_modes.Bank:
-    """The modes as one chain; a mode left is left for each other mode alike."""
+    """The modes as one chain. A mode that is left is followed by each other mode with equal
+    probability.
+    """
     chain = linear_modes.Chain(
         slice(0, len(modes.noise)), linear_modes.transition_power(modes.stay, modes.period)
     )
@@ -70,7 +72,7 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
     bank = bank_of(modes)
     start = linear_modes.stationary(bank.chains[0])
 
-    def predict(state, time):
+    def predict(state: ImmState, time: Array) -> tuple[Array, Array]:
         """Columns [14, J, N] of the modes and their weights [J, N] at the times [N] s."""
         step = time - state.time
         columns, weight = linear_modes.mix(
@@ -78,7 +80,7 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
         )
         return linear_modes.move(bank, columns, step), weight.T
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> ImmState:
         count, j = len(plots.time), len(start)
         velocity = first_velocity(velocity, count, max_speed)
         mean = np.empty((count, j, 4))
@@ -88,11 +90,11 @@ def imm(modes: Modes, max_speed: float) -> Estimator:
         covariance[..., 2:, 2:] = velocity.covariance[:, None]
         return ImmState(plots.time.copy(), np.tile(start, (count, 1)), mean, covariance)
 
-    def extrapolate(state, time):
+    def extrapolate(state: ImmState, time: Array) -> Extrapolation:
         mean, covariance = linear_modes.unpack(linear_modes.combine(*predict(state, time)).T)
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: ImmState, plots: Plots, rows: IntArray) -> ImmState:
         columns, weight = predict(take(state, rows), plots.time)
         columns, score = linear_modes.correct(
             columns, plots.position.T, linear_modes.packed_noise(plots.covariance)

@@ -1,16 +1,18 @@
-"""Motion as a radar at rest sees it, range, radial speed, bearing and its rate, and on the ground.
+"""Motion as seen by a radar at rest (range, radial speed, bearing, bearing rate), and on the
+ground.
 
-A velocity (e, n) is v along the line of sight and R omega to its right; bearings grow clockwise.
+A velocity (e, n) is v along the line of sight and R omega to its right. Bearings grow clockwise.
 """
 
 import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector
+from ..types import Array
 
-NEAREST = 1.0  # m; bearings from nearer than this mean nothing
+NEAREST = 1.0  # m; a bearing has no meaning closer than this
 
 
-def to_polar(mean, origin):
+def to_polar(mean: Array, origin: Array) -> tuple[Array, Array]:
     """[K, 4] range m, radial speed m/s, bearing rad, bearing rate rad/s as seen from the origins.
 
     mean [K, 4] on the ground, origin [K, 2] at rest. Also the derivatives [K, 4, 4] by mean.
@@ -30,7 +32,7 @@ def to_polar(mean, origin):
     return np.stack([distance, speed, bearing, rate], -1), by_mean
 
 
-def to_ground(polar, origin):
+def to_ground(polar: Array, origin: Array) -> tuple[Array, Array]:
     """The inverse of `to_polar`: mean [K, 4], and its derivatives [K, 4, 4] by polar."""
     distance, speed, bearing, rate = polar.T
     along, across = axes(bearing)
@@ -44,7 +46,7 @@ def to_ground(polar, origin):
     return mean, by_polar
 
 
-def axes(bearing):
+def axes(bearing: Array) -> tuple[Array, Array]:
     """Unit vectors [K, 2] along the lines of sight, and to their right."""
     along = unit_vector(bearing)
     return along, np.stack([along[:, 1], -along[:, 0]], -1)

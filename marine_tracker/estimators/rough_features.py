@@ -1,35 +1,36 @@
-"""What the networks of `cs_rough_nn` and `cs_bp_nn` see: how far two filters are apart.
+"""The inputs of the networks of `cs_rough_nn` and `cs_bp_nn`: differences between two filters.
 
-Paper 001, section 4. With d the difference of two predictions (position, velocity, acceleration
-of one axis), p1 and p2 their variances, and s their sum (of the position: of the innovation
-variances),
+Paper 001, section 4. d is the difference of two predictions (position, velocity, acceleration of
+one axis), p1 and p2 are their variances, and s is their sum (for the position: of the innovation
+variances):
 
     u = d^2 / s                                          the plain network's input,
-    e = lambda (sqrt p1 + sqrt p2)                       what noise may have done to d,
+    e = lambda (sqrt p1 + sqrt p2)                       possible part of noise in d,
     max(0, |d| - e)^2 / s,  (|d| + e)^2 / s              the rough one's lower and upper input.
 
-Of a target that does not manoeuvre u is a chi-square variable times its mean c, which depends on
-gamma = sigma_a1 T^2 / sigma_plot and alpha T alone, and little on those. Inputs are scaled such
-that u of c times the median of chi-square is 0, and c times KAPPA 95 % quantiles is 1: then the
-networks know nothing of the plots' accuracy, nor of the period of the scans.
+If the target does not manoeuvre, u is a chi-square variable times its mean c. c depends only, and
+little, on gamma = sigma_a1 T^2 / sigma_plot and alpha T. Inputs are scaled so that c times the
+median of chi-square becomes 0, and c times KAPPA 95 % quantiles becomes 1. So the networks do not
+depend on the accuracy of the plots, nor on the period of the scans.
 """
 
 import numpy as np
 from scipy.stats import chi2
 
 from ..networks.rough_weights import Quiet
+from ..types import Array, IntArray
 
 LAMBDA = 0.3
 KAPPA = 3.0
 LOW = float(chi2.ppf(0.5, 1))
 HIGH = KAPPA * float(chi2.ppf(0.95, 1))
-MOST = HIGH**0.5  # of |d|: harder than hard was not trained
+MOST = HIGH**0.5  # of |d|; harder manoeuvres were not in the training
 
 
-def inputs(apart, deviation, neurons: int):
+def inputs(apart: Array, deviation: Array | None, neurons: int) -> Array:
     """Inputs [..., K] for |d| / sqrt(c s) and (sqrt p1 + sqrt p2) / sqrt(c s), both [...]."""
     apart = np.minimum(apart, MOST)
-    if neurons == 1:
+    if deviation is None or neurons == 1:
         bounds = apart[..., None]
     else:
         e = LAMBDA * deviation
@@ -37,8 +38,8 @@ def inputs(apart, deviation, neurons: int):
     return (bounds * bounds - LOW) / (HIGH - LOW)
 
 
-def quiet_variance(quiet: Quiet, gamma, y):
-    """c [..., 3] for gamma and alpha T [...]; beyond the table's edges that of the edge."""
+def quiet_variance(quiet: Quiet, gamma: Array, y: Array) -> Array:
+    """c [..., 3] for gamma and alpha T [...]. Outside the table the value at its edge is used."""
     i, across = _place(np.log(gamma), quiet.log_gamma)
     j, along = _place(np.log(y), quiet.log_y)
     table = quiet.variance
@@ -47,9 +48,9 @@ def quiet_variance(quiet: Quiet, gamma, y):
     return near * (1 - across) + far * across
 
 
-def _place(value, grid):
+def _place(value: Array, grid: Array) -> tuple[IntArray, Array]:
     """Index of the grid's interval and how far along it, [...] and [..., 1]."""
-    # A value that is not a number has a place too: its row is lost anyway.
+    # nan also gets a place. Its row is lost anyway.
     place = np.nan_to_num(np.interp(value, grid, np.arange(len(grid))))
     index = np.minimum(place.astype(int), len(grid) - 2)
     return index, (place - index)[..., None]

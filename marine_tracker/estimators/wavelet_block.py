@@ -1,13 +1,13 @@
 """Blocks of four states, corrected in the wavelet domain: late but smooth (paper 003).
 
-A block is X = [x(4m+1) .. x(4m+4)], predicted at once from the last state of the block before.
-The orthonormal rows of a periodised wavelet transform take states and plots to other resolutions:
-with rows H, X_H = H X and z_H = H z, and a Kalman filter there gives the correction H' K nu. What
-rows are left out, the details, keep what was predicted. All rows together are the Kalman filter
-itself with its smoother inside the block; the coarsest row alone moves the block as a whole.
+A block is X = [x(4m+1) .. x(4m+4)], predicted at once from the last state of the block before. The
+orthonormal rows of a periodised wavelet transform take states and plots to other resolutions: with
+rows H, X_H = H X and z_H = H z. A Kalman filter there gives the correction H' K nu. The rows that
+are left out, the details, keep their prediction. With all rows, this equals the Kalman filter with
+its smoother inside the block. With the coarsest row only, the block moves as a whole.
 
-Departures: the paper's diag(F^4) for the prediction of a block forgets that its states are
-correlated; its eq 14 drops the predicted details and so the target's motion within the block; the
+Departures: the paper's diag(F^4) for the prediction of a block ignores that its states are
+correlated. Its eq 14 drops the predicted details, and so the target's motion within the block. The
 covariance is Joseph's form, because H' K is not the gain of least variance.
 """
 
@@ -36,9 +36,9 @@ class Block(NamedTuple):
 def analysis(wavelet: str, depth: int, size: int = SIZE) -> Array:
     """The orthonormal transform [size, size] of a block as rows: low-pass, then details.
 
-    The first size / 2^depth rows are the low-pass at that depth, then follow the details from
-    coarse to fine (paper 003, eq 4 and 5). ValueError for a size that cannot be halved so often,
-    and for a wavelet that is not orthogonal.
+    The first size / 2^depth rows are the low-pass at that depth. The details follow from coarse to
+    fine (paper 003, eq 4 and 5). ValueError for a size that cannot be halved that often, and for a
+    wavelet that is not orthogonal.
     """
     if size % 2**depth:
         raise ValueError(f'a block of {size} cannot be halved {depth} times')
@@ -59,7 +59,7 @@ def coarse(wavelet: str, depth: int) -> Array:
     return analysis(wavelet, depth)[: SIZE >> depth]
 
 
-def transition(frequency: float, step) -> Array:
+def transition(frequency: float, step: Array) -> Array:
     """F [B, 6, 6] of the "current" statistical model over the steps [B] s."""
     phi, _ = cs_kalman.model(frequency, step)
     out = np.zeros((len(step), 6, 6))
@@ -70,12 +70,12 @@ def transition(frequency: float, step) -> Array:
     return out
 
 
-def predict(mean, covariance, steps, manoeuvre: Manoeuvre) -> Block:
+def predict(mean: Array, covariance: Array, steps: Array, manoeuvre: Manoeuvre) -> Block:
     """The block of n states ahead of the states [B, 6], [B, 6, 6].
 
-    steps [B, n] s, from each state to the next. Mean acceleration and its variance are those of
-    the start: an acceleration that is not corrected stays its own mean. The covariance is
-    G P G' + sum N_i Q N_i', here state by state: cov(x_j, x_i) = F_j cov(x_j-1, x_i), i < j.
+    steps [B, n] s, from each state to the next. Mean acceleration and its variance are those of the
+    start, because an acceleration that is not corrected is its own mean. The covariance is G P G' +
+    sum N_i Q N_i', here state by state: cov(x_j, x_i) = F_j cov(x_j-1, x_i), i < j.
     """
     count, size = steps.shape
     means = np.empty((count, size, 6))
@@ -90,19 +90,27 @@ def predict(mean, covariance, steps, manoeuvre: Manoeuvre) -> Block:
     return Block(means, parts.swapaxes(2, 3).reshape(count, 6 * size, 6 * size))
 
 
-def correct(block: Block, position, noise, rows, details=None, threshold: float = 0.0) -> Block:
+def correct(
+    block: Block,
+    position: Array,
+    noise: Array,
+    rows: Array,
+    details: Array | None = None,
+    threshold: float = 0.0,
+) -> Block:
     """The block after its plots [B, n, 2] m of covariance [B, n, 2, 2] m^2.
 
     rows     [r, n]  of the transform: the resolutions that are corrected
-    details  [d, n]  further rows, whose innovations are first shrunk by `threshold` deviations
-                     (soft): noise stays out, the beginning of a manoeuvre comes through. The
-                     covariance is that without them.
+    details  [d, n]  further rows; their innovations are first reduced by `threshold` deviations
+                     (soft), so noise is removed but the start of a manoeuvre is kept. The
+                     covariance
+                     ignores them.
     """
     count, size = position.shape[:2]
-    spread = np.zeros((count, size, 2, size, 2))
+    blocks = np.zeros((count, size, 2, size, 2))
     for j in range(size):
-        spread[:, j, :, j] = noise[:, j]
-    spread = spread.reshape(count, 2 * size, 2 * size)
+        blocks[:, j, :, j] = noise[:, j]
+    spread = blocks.reshape(count, 2 * size, 2 * size)
     innovation = position - block.mean[..., POSITION]
     mean = block.mean.reshape(count, -1)
     gain, shift, _ = _gain(block.covariance, innovation, spread, rows)
@@ -123,13 +131,15 @@ def correct(block: Block, position, noise, rows, details=None, threshold: float 
 _OBSERVE = np.eye(6)[list(POSITION)]
 
 
-def _gain(covariance, innovation, spread, rows):
+def _gain(
+    covariance: Array, innovation: Array, spread: Array, rows: Array
+) -> tuple[Array, Array, Array]:
     """H' K [B, 6n, 2r], innovations [B, 2r] at the rows' resolution, and their deviations."""
     states, plots = np.kron(rows, np.eye(6)), np.kron(rows, np.eye(2))
     observe = np.kron(np.eye(len(rows)), _OBSERVE)
     own = states @ covariance @ states.T  # P_i = H P H'
     expected = observe @ own @ observe.T + plots @ spread @ plots.T  # S = C P_i C' + R_i
-    gain = np.linalg.solve(expected, observe @ own).swapaxes(1, 2)  # K
+    gain: Array = np.linalg.solve(expected, observe @ own).swapaxes(1, 2)  # K
     return (
         states.T @ gain,
         innovation.reshape(len(innovation), -1) @ plots.T,
@@ -145,24 +155,24 @@ class Smoothed(NamedTuple):
 
 
 def smooth(
-    mean,
-    covariance,
-    time,
-    position,
-    noise,
+    mean: Array,
+    covariance: Array,
+    time: Array,
+    position: Array,
+    noise: Array,
     manoeuvre: Manoeuvre,
     wavelet: str = 'haar',
     depth: int = COARSEST,
     threshold: float | None = None,
 ) -> Smoothed:
-    """A history of plots smoothed block by block.
+    """Smooths a history of plots block by block.
 
-    mean [B, 6], covariance [B, 6, 6]  what is known at time[:, 0]
+    mean [B, 6], covariance [B, 6, 6]  the state at time[:, 0]
     time [B, K+1] s; position [B, K, 2] m, noise [B, K, 2, 2] m^2: the K plots after it
     depth      of the low-pass rows that are corrected; 0 corrects all: a Kalman filter with its
                smoother inside each block
     threshold  deviations above which details count too; None for never
-    ValueError where K is not a multiple of SIZE.
+    ValueError if K is not a multiple of SIZE.
     """
     count = position.shape[1]
     if count % SIZE:

@@ -1,19 +1,19 @@
 """Wavelet multiresolution CS-Kalman without latency (paper 003, `wavelet_block` made causal).
 
-Four chains of blocks are interleaved, so that with every plot one chain's block of four plots
-ends: its last state is the estimate now. A chain is corrected at the coarsest resolution only, by
-the mean of its four innovations, and keeps the predicted details. So the noise of single plots
-moves it little, whatever acceleration the model allows for.
+Four chains of blocks are interleaved, so with every plot the block of one chain ends. Its last
+state is the present estimate. A chain is corrected at the coarsest resolution only, by the mean of
+its four innovations; the details keep their prediction. So the noise of single plots has little
+effect, whatever acceleration the model allows.
 
-The coarsest row of every periodised orthonormal wavelet is the mean of the block, so the choice of
-the wavelet falls away. Plots of unequal accuracy count in the mean by their accuracy.
+The coarsest row of every periodised orthonormal wavelet is the mean of the block, so the wavelet
+makes no difference. Plots of different accuracy are weighted by it in the mean.
 
-The gain: taken literally, eq 13 to 15 leave the variance of the details in P, where it grows until
-the gain has nearly one shape for every a_max and plot noise, [1, .56 / tau, .16 / tau^2] for a
-block of tau seconds (the last less by alpha tau). That is what makes the filter insensitive to
-a_max; but P tells ten times the error at sea, and after the first plots of a track it is not even a
-covariance. Here the position is corrected by the Kalman gain of the block's mean, velocity and
-acceleration in that limiting shape, and the covariance is that of the error (Joseph's form).
+The gain: taken literally, eq 13 to 15 leave the variance of the details in P. It grows there until
+the gain has nearly one shape for every a_max and plot noise: [1, .56 / tau, .16 / tau^2] for a
+block of tau seconds (the last is reduced by alpha tau). This makes the filter insensitive to a_max.
+But P is then ten times the error at sea, and after a track's first plots it is not even a
+covariance. So here the position is corrected by the Kalman gain of the block's mean, velocity and
+acceleration by that limiting shape, and the covariance is that of the error (Joseph's form).
 """
 
 from typing import NamedTuple
@@ -21,27 +21,27 @@ from typing import NamedTuple
 import numpy as np
 
 from ..gaussian.linear import invert_2x2, kalman_update, sandwich, squared_distance
-from ..types import Array, Extrapolation, put, take
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, put, take
 from . import cs_kalman
-from .contract import Estimator
+from .contract import Estimator, Velocity
 from .cs_kalman import POSITION, SHOWN, CsState, Manoeuvre, acceleration_variance
 from .wavelet_block import SIZE
 
-# The first block of each chain is all resolutions, a plain Kalman filter: the velocity of a new
-# track is in the details.
+# The first block of each chain uses all resolutions, a plain Kalman filter, because the velocity of
+# a new track is in the details.
 WARM_UP = 2 * SIZE - 1
-# A plot this many times vaguer than the track moves it by nothing; it must not push another plot
+# A plot this many times less accurate than the track has no effect. It must not push another plot
 # out of the block either.
 FAINT = 1e6
 # Limits of the paper's gains: of velocity times tau, and of acceleration times tau^2, which falls
 # with alpha tau.
 VELOCITY_GAIN, ACCELERATION_GAIN, FALL = 0.5593, 0.1559, 0.83
-# Squared distance of an innovation that says that the limit cannot follow, which it is slow to do
-# where plots are missed: one in ten is larger where all is well.
+# Squared distance of an innovation at which the limiting gain is too slow to follow, as it is when
+# plots are missed. One in ten is larger in normal operation.
 SURPRISE = 4.6
 
-# The acceleration allowed for says how uncertain a track is more than where it is: agile craft
-# are followed no better with more (six recordings), and their gates grow.
+# The allowed acceleration affects the stated uncertainty of a track more than its position. Agile
+# craft are not followed better with more (six recordings), and their gates grow.
 MANOEUVRE = cs_kalman.PRESETS['ship']
 
 
@@ -53,7 +53,7 @@ class WaveletState(NamedTuple):
     covariance  [N, 4, 6, 6]
     position    [N, 3, 2]     m, of the last three plots
     noise       [N, 3, 2, 2]  m^2, likewise
-    plots       [N]           how many so far
+    plots       [N]           number of plots so far
     """
 
     time: Array
@@ -64,8 +64,8 @@ class WaveletState(NamedTuple):
     plots: Array
 
 
-def begin(time, mean, covariance) -> WaveletState:
-    """New rows of which the states [N, 6], [N, 6, 6] at the times [N] are known, and no plots."""
+def begin(time: Array, mean: Array, covariance: Array) -> WaveletState:
+    """New rows from known states [N, 6], [N, 6, 6] at the times [N], without plots."""
     rows = len(time)
     return WaveletState(
         np.repeat(time[:, None], SIZE, 1),
@@ -89,17 +89,17 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
     """
     plain = cs_kalman.cs_kalman(manoeuvre, max_speed)
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> WaveletState:
         return begin(*plain.init(plots, velocity))._replace(plots=np.ones(len(plots.time)))
 
-    def extrapolate(state, time):
+    def extrapolate(state: WaveletState, time: Array) -> Extrapolation:
         last = newest(state)
         mean, covariance = cs_kalman.predict(
             last.mean, last.covariance, time - last.time, manoeuvre, SHOWN
         )
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: WaveletState, plots: Plots, rows: IntArray) -> WaveletState:
         before = take(state, rows)
         mean, covariance = np.empty((len(rows), 6)), np.empty((len(rows), 6, 6))
         told = np.empty(len(rows), bool)
@@ -123,21 +123,24 @@ def wavelet_cs(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
     return Estimator(init, extrapolate, update)
 
 
-def _push(ring, new):
+def _push(ring: Array, new: Array) -> Array:
     """The oldest of each row of ring [N, m, ...] dropped, new [N, ...] added."""
     return np.concatenate([ring[:, 1:], new[:, None]], 1)
 
 
-def _tells(covariance, noise):
-    """Whether plots of covariance noise [N, 2, 2] tell tracks [N, 6, 6] anything.
+def _tells(covariance: Array, noise: Array) -> BoolArray:
+    """Whether plots with covariance noise [N, 2, 2] give tracks [N, 6, 6] any information.
 
-    A plot that is no number does: it harms its own track, as in every estimator.
+    A plot that is not a number counts as yes: it harms its own track, as in every estimator.
     """
     own = covariance[:, 0, 0] + covariance[:, 3, 3]
-    return ~(np.trace(noise, axis1=1, axis2=2) > FAINT * own)
+    found: BoolArray = ~(np.trace(noise, axis1=1, axis2=2) > FAINT * own)
+    return found
 
 
-def _plot(state, plots, manoeuvre):
+def _plot(
+    state: WaveletState, plots: Plots, manoeuvre: Manoeuvre
+) -> tuple[Array, Array, BoolArray]:
     """All resolutions: the Kalman update of the chain that ended last."""
     last = newest(state)
     mean, covariance = cs_kalman.predict(
@@ -150,7 +153,9 @@ def _plot(state, plots, manoeuvre):
     return mean, covariance, told
 
 
-def _block(state, plots, manoeuvre):
+def _block(
+    state: WaveletState, plots: Plots, manoeuvre: Manoeuvre
+) -> tuple[Array, Array, BoolArray]:
     """The coarsest resolution: the oldest chain, corrected by the mean of four innovations."""
     rows = len(plots.time)
     places = np.concatenate([state.position, plots.position[:, None]], 1)
@@ -175,14 +180,16 @@ def _block(state, plots, manoeuvre):
     return mean, 0.5 * (covariance + covariance.swapaxes(1, 2)), told
 
 
-def _predict(state, time, weight, manoeuvre):
+def _predict(
+    state: WaveletState, time: Array, weight: Array, manoeuvre: Manoeuvre
+) -> tuple[Array, Array, Array]:
     """The oldest chain moved through the block that ends at the times [N] s.
 
-    weight [N, 4] of the states in their mean m. Returns the last state x [N, 6], the positions
-    [N, 4, 2] expected of all four and the covariance [N, axis, axis, 6, 6] of [x, m].
+    weight [N, 4] of the states in their mean m. Returns the last state x [N, 6], the expected
+    positions [N, 4, 2] of all four states, and the covariance [N, axis, axis, 6, 6] of [x, m].
 
-    [x, m] of one axis is moved from plot to plot by [[F, 0], [w F, 1]]. Both axes share that and
-    the noise in units of their sigma_a^2: small matrices do.
+    [x, m] of one axis is moved from plot to plot by [[F, 0], [w F, 1]]. Both axes share this matrix
+    and the noise in units of their sigma_a^2, so small matrices are enough.
     """
     rows = len(time)
     limit = manoeuvre.max_acceleration
@@ -214,7 +221,7 @@ def _predict(state, time, weight, manoeuvre):
     return x.reshape(rows, 6), expected, both
 
 
-def _shape(frequency, tau, own, behind):
+def _shape(frequency: float, tau: Array, own: Array, behind: BoolArray) -> Array:
     """Gains [N, 3] of position, velocity and acceleration over that of the position.
 
     The paper's limit for blocks of tau [N] s, but never more than the Kalman filter's, and the
@@ -235,7 +242,7 @@ def _shape(frequency, tau, own, behind):
     return np.where(limited[:, None], np.minimum(limit, kalman), kalman)
 
 
-def _steps(frequency, steps):
+def _steps(frequency: float, steps: Array) -> tuple[Array, Array, Array]:
     """F [N, n, 3, 3], q [N, n, 3, 3] and U [N, n, 3] of one axis over the steps [N, n] s."""
     step = steps.ravel()
     (phi0, phi1, phi2), q = cs_kalman.model(frequency, step)

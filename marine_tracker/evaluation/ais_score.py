@@ -1,17 +1,17 @@
-"""How good tracks are by the AIS reports of the ships in view, as paper 002 judges them.
+"""Scores tracks by the AIS reports of the ships in view, as paper 002 does.
 
 The rules
-- Registration in time: each vessel's reports, irregular and now and then late, become one smooth
-  way (simulation/ais.py), which is asked for its place at the time of each track's row; where
-  reports are farther apart than `max_gap` the vessel is not known and not scored.
-- Registration in space: places on Earth become local ones about the recording's origin, and tracks
+- Registration in time. Each vessel's AIS reports come at irregular times, sometimes late. They are
+  turned into one smooth path (simulation/ais.py). The path gives the vessel's position at the time
+  of each track row. In a gap longer than `max_gap` the vessel is unknown and is not scored.
+- Registration in space. Positions on Earth become local ones about the recording's origin. Tracks
   and vessels are both seen from own ship, over ground: range, bearing, radial speed.
 - Only confirmed and coasting rows count. In each scan vessels and tracks are paired within the
-  cutoff, a vessel keeping the track it had.
-- A vessel is in view while its range lies within that of the recording's plots. What passes by
-  AIS only, unseen by the radar, counts as not held: the radar's failing and the tracker's alike.
-- A vessel in view for `LEAST_SCANS` is lost where it has no track in the last `LOST_SCANS` of them;
-  over several track files, runs, the lost are a share of all vessels and runs.
+  cutoff. A vessel keeps the track it had.
+- A vessel is in view while its range lies within the ranges of the recording's plots. If the radar
+  does not see it, it counts as not held. The figure does not separate radar from tracker.
+- A vessel in view for `LEAST_SCANS` is lost if it has no track in the last `LOST_SCANS` of them.
+  With several track files (runs), the lost are a share of all vessels and runs.
 """
 
 from collections.abc import Sequence
@@ -21,10 +21,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geodesy import LocalFrame
 from ..geometry import own_ship_at, to_range_bearing, unit_vector, wrap_angle
 from ..recording.csv_folder import Recording
 from ..recording.track_file import TrackRows
-from ..simulation import ais, motion
+from ..simulation import ais, ais_file, motion
 from ..types import Array
 from .gospa import assign_sticky
 from .metrics import CUTOFF, Live, chosen, live_rows
@@ -32,7 +33,7 @@ from .recorded_truth import by_scan
 
 MAX_GAP = 120.0  # s
 LEAST_SCANS, LOST_SCANS = 16, 8
-CLASSES = (1, 10, 20, 50)  # scans: each class of track lengths begins at one
+CLASSES = (1, 10, 20, 50)  # scans; each class of track lengths begins at one of these
 
 _ERRORS = {
     'radial_speed': ('mps', 'm/s', 'radial speed'),
@@ -45,6 +46,7 @@ _CLASS_NAMES = [
 FIGURES = {
     'runs': ('', 'track files'),
     'vessels': ('', f'vessels in view for {LEAST_SCANS} scans or more'),
+    'rows_left_out': ('', 'rows of the AIS file that could not be used'),
     'held': ('', 'part of their scans in view with a track, all vessels'),
     'lost_percent': ('%', f'vessels and runs without track in the last {LOST_SCANS} scans in view'),
     **{
@@ -63,10 +65,11 @@ FIGURES = {
 
 
 class _Fleet(NamedTuple):
-    """names of V vessels, and their ways."""
+    """names of V vessels, their ways, and how many rows of the file could not be used."""
 
     names: list[str]
     paths: motion.Paths
+    skipped: int
 
     def at(self, time: Array):
         """Place [R, V, 2] m, velocity m/s, and existence [R, V], each row at its own time [R]."""
@@ -85,7 +88,7 @@ class _Run(NamedTuple):
     """One track file against AIS.
 
     live   R rows of live tracks
-    pairs  [P, 2]  rows of them, and the vessels they are on
+    pairs  [P, 2]  rows of them, and the vessels they are paired with
     held   [K, V]  whether each vessel has a track in each scan
     """
 
@@ -103,15 +106,15 @@ def score(
     cutoff: float | None = None,
     max_gap: float = MAX_GAP,
 ) -> dict[str, float | int | None]:
-    """The figures of FIGURES, None where there was nothing to take one from.
+    """The figures of FIGURES; None where there was no data for one.
 
     runs    track files of the same scans
     origin  latitude and longitude in degrees of the recording's [0, 0]; default the notes' origin
     start   s, the AIS file's time at the recording's time 0; default the notes' ais_start_s, else 0
-    cutoff  m, a track farther from a vessel is not on it; default the notes' cutoff_m, else 100
-    max_gap s, between reports farther apart a vessel is not known
-    ValueError for what is no finite number, for a recording that does not tell where it is, and for
-    an AIS file that is wrong or has no vessel at that time.
+    cutoff  m; a track farther from a vessel is not on it; default the notes' cutoff_m, else 100
+    max_gap s; between reports farther apart the vessel is unknown
+    ValueError for a value that is not a finite number, for a recording without a position on Earth,
+    and for an AIS file that is wrong or has no vessel at that time.
     """
     cutoff = chosen(recording, 'cutoff_m', cutoff, CUTOFF, above=0.0)
     start = chosen(recording, 'ais_start_s', start, 0.0)
@@ -131,6 +134,7 @@ def score(
         'runs': len(runs),
         'vessels': int(long.sum()),
         'held': _mean(np.concatenate(of_long)),
+        'rows_left_out': fleet.skipped,
         'lost_percent': _mean(100.0 * np.array(lost)),
         **_errors(recording, done, fleet),
         **_lengths(done),
@@ -138,7 +142,7 @@ def score(
     return {name: figures[name] for name in FIGURES}
 
 
-def _origin(recording: Recording, given: Sequence[float] | None) -> tuple[float, float]:
+def _origin(recording: Recording, given: Sequence[float] | None) -> LocalFrame:
     origin = recording.notes.get('origin') if given is None else given
     if origin is None:
         raise ValueError(
@@ -150,19 +154,22 @@ def _origin(recording: Recording, given: Sequence[float] | None) -> tuple[float,
         and len(origin) == 2
         and all(
             type(degrees) in (int, float) and abs(degrees) <= most
-            for degrees, most in zip(origin, (85, 180))
+            for degrees, most in zip(origin, (90, 180))
         )
     ):
-        raise ValueError(f'origin is {origin}; it must be latitude and longitude in degrees')
-    return float(origin[0]), float(origin[1])
+        raise ValueError(
+            f'origin is {origin}; it must be latitude and longitude in degrees, '
+            'from -90 to 90 and from -180 to 180'
+        )
+    return LocalFrame(float(origin[0]), float(origin[1]))
 
 
-def _fleet(recording, file, origin, start, max_gap) -> _Fleet:
+def _fleet(recording, file, frame, start, max_gap) -> _Fleet:
     end = float(recording.scans[-1].end)
-    vessels = ais.read(file, start, end, max_gap)
-    return _Fleet(
-        list(vessels), motion.table([ais.way(reports, origin) for reports in vessels.values()], end)
-    )
+    traffic = ais_file.read(file, start, end, max_gap)
+    vessels = traffic.vessels
+    ways = [ais.way(reports, frame) for reports in vessels.values()]
+    return _Fleet(list(vessels), motion.table(ways, end), sum(traffic.skipped.values()))
 
 
 def _in_view(recording: Recording, fleet: _Fleet) -> NDArray[np.bool_]:
@@ -197,7 +204,9 @@ def _pair(recording: Recording, live: Live, fleet: _Fleet, in_view, cutoff: floa
 
 
 def _errors(recording: Recording, done: list[_Run], fleet: _Fleet) -> dict:
-    """Of all pairs of all runs: track less AIS, seen from own ship at rest at that moment."""
+    """Of all pairs of all runs: track minus AIS, both seen from own ship as if at rest at that
+    moment.
+    """
     parts = []
     for run in done:
         row, vessel = run.pairs.T
@@ -231,7 +240,7 @@ def _errors(recording: Recording, done: list[_Run], fleet: _Fleet) -> dict:
         figures[f'{name}_error_mean_{suffix}'] = float(off.mean()) if some else None
         figures[f'{name}_error_sd_{suffix}'] = float(off.std()) if some else None
         figures[f'{name}_error_max_{suffix}'] = float(np.abs(off).max()) if some else None
-    # The time by which places along the ways fit best, in least squares.
+    # The time shift for which the positions along the paths fit best, by least squares.
     moved = errors[:, 4].sum()
     figures['ahead_s'] = float(errors[:, 3].sum() / moved) if moved > 0 else None
     return figures
@@ -244,7 +253,7 @@ def _seen(offset, velocity):
 
 
 def _lengths(done: list[_Run]) -> dict:
-    """Numbers of tracks a run, by length; their mean length, and how rough they are."""
+    """Number of tracks a run, by length; their mean length and roughness."""
     scans, seconds, strange, bends = [], [], 0, []
     for run in done:
         live = run.live

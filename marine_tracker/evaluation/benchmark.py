@@ -1,4 +1,4 @@
-"""What a scan costs, for this tracker and for Stone Soup on the same plots in the same run."""
+"""CPU cost of a scan, for this tracker and for Stone Soup, on the same plots in the same run."""
 
 import time
 from collections.abc import Iterator, Sequence
@@ -20,9 +20,9 @@ BEARING_SIGMA = float(np.radians(0.5))
 DETECTION = 0.9
 NEAREST, FARTHEST = 0.25 * NAUTICAL_MILE, 24 * NAUTICAL_MILE
 STONE_SOUP = 'Stone Soup'
-WARM_UP = 12  # scans in which the tracker finds the targets by itself
-TURN_CPU = 0.1  # s, this tracker's least share of a turn
-KEPT_WITHIN = 4.0  # of the plot noise at that range, plus 50 m
+WARM_UP = 12  # scans in which the tracker finds the targets
+TURN_CPU = 0.1  # s, least CPU time of one turn of this tracker
+KEPT_WITHIN = 4.0  # plot deviations at that range, plus 50 m
 
 
 class Traffic(NamedTuple):
@@ -34,8 +34,9 @@ class Traffic(NamedTuple):
 
 
 class BenchmarkResult(NamedTuple):
-    """One turn: CPU time of a scan, s, the estimator's part of it (nan where it is not known),
-    and the tracks' positions [., 2] m after each scan."""
+    """One turn: CPU time of a scan, s; the estimator's part of it (nan if unknown); the tracks'
+    positions [., 2] m after each scan.
+    """
 
     cpu_s: float
     estimator_s: float
@@ -43,8 +44,9 @@ class BenchmarkResult(NamedTuple):
 
 
 class Result(NamedTuple):
-    """cpu_s: mean CPU time of a scan; estimator_s: of that, extrapolation and update; kept: share
-    of targets with a track; rmse of those, m."""
+    """cpu_s: mean CPU time of a scan; estimator_s: the part for extrapolation and update; kept:
+    share of targets with a track; rmse of the kept ones, m.
+    """
 
     cpu_s: float
     estimator_s: float
@@ -53,9 +55,9 @@ class Result(NamedTuple):
 
 
 def traffic(targets: int, clutter: int, scans: int, seed: int) -> Traffic:
-    """Ships of up to 30 kn spread over 24 NM, one in ten turning; own ship at rest.
+    """Ships of up to 30 kn spread over 24 NM; one in ten turns; own ship is at rest.
 
-    Every plot of a scan carries one time, as both trackers then extrapolate every track once.
+    All plots of a scan have the same time, because then both trackers extrapolate every track once.
     """
     rng = np.random.default_rng(seed)
     distance = np.sqrt(rng.uniform(NEAREST**2, FARTHEST**2, targets))
@@ -91,13 +93,13 @@ def traffic(targets: int, clutter: int, scans: int, seed: int) -> Traffic:
 
 
 class Clock:
-    """CPU time spent, s, in extrapolation and update."""
+    """Measures CPU time, s, spent in extrapolation and update."""
 
     def __init__(self):
         self.spent = 0.0
 
     def time(self, estimator: Estimator) -> Estimator:
-        """The same estimator, by the clock."""
+        """The same estimator, with its time measured."""
 
         def timed(function):
             def run(*arguments):
@@ -112,9 +114,9 @@ class Clock:
 
 
 def run_tracker(scene: Traffic, estimator: str) -> Iterator[BenchmarkResult]:
-    """This tracker: whole steps, from extrapolation to the initiation of new tracks.
+    """Runs this tracker: whole steps, from extrapolation to the initiation of new tracks.
 
-    Each turn takes the timed scans once more, from the same memory.
+    Each turn repeats the timed scans from the same memory.
     """
     targets = scene.position.shape[1]
     parameters = TrackerParameters(
@@ -149,12 +151,12 @@ def run_tracker(scene: Traffic, estimator: str) -> Iterator[BenchmarkResult]:
 
 
 def run_stone_soup(scene: Traffic) -> Iterator[BenchmarkResult]:
-    """Stone Soup's EKF and DetectionKDTreeGNN2D with five neighbours, its fastest set-up.
+    """Runs Stone Soup's EKF and DetectionKDTreeGNN2D with five neighbours, its fastest setup.
 
     Each turn takes one timed scan.
 
-    Its tracks are given to it (truth with noise) and it neither initiates nor deletes, so its
-    figure is the lower bound of what a whole step would cost it.
+    It is given its tracks (truth with noise) and neither initiates nor deletes any. So its figure
+    is a lower bound of the cost of a whole step.
     """
     import datetime
 
@@ -247,15 +249,15 @@ def benchmark(
     seed: int,
     alone: bool = False,
 ) -> dict[str, Result]:
-    """This tracker with each of the estimators, and Stone Soup, on one scene, by name.
+    """Runs this tracker with each of the estimators, and Stone Soup, on one scene; results by name.
 
-    They take turns, scan by scan of Stone Soup, so that what else the machine does meets all
-    alike. Stone Soup is left out where it is not installed, or `alone`.
+    They take turns, one scan of Stone Soup at a time, so other load on the machine affects all
+    alike. Stone Soup is left out if it is not installed, or with `alone`.
     """
     scene = traffic(targets, clutter, WARM_UP + timed_scans, seed)
     ours = {name: run_tracker(scene, name) for name in estimators}
     for turns in ours.values():
-        next(turns)  # the first pass faults its memory in
+        next(turns)  # the first pass loads its memory pages
     theirs = None
     if not alone and find_spec('stonesoup'):
         theirs = run_stone_soup(scene)

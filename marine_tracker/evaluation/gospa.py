@@ -1,4 +1,4 @@
-"""Pairs of targets and tracks, and what GOSPA with p = 2, alpha = 2 makes of them.
+"""Pairs of targets and tracks, and GOSPA with p = 2, alpha = 2.
 
 Rahmathullah, Garcia-Fernandez, Svensson, "Generalized optimal sub-pattern assignment metric",
 FUSION 2017.
@@ -14,16 +14,19 @@ from ..types import Array
 
 
 def assign(distance: Array, cutoff: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Rows and columns of the pairs of least squared distance [A, B], all nearer than cutoff."""
+    """Rows and columns of the pairs with the least sum of squared distances [A, B], all below
+    cutoff.
+    """
     row, column = linear_sum_assignment(np.minimum(distance, cutoff) ** 2)
     near = distance[row, column] < cutoff
     return row[near], column[near]
 
 
 def gospa_parts(distance: Array, cutoff: float) -> tuple[float, float, float]:
-    """Squared GOSPA by localisation, missed and false, m^2, of targets by tracks [A, B], m.
+    """Squared GOSPA split into localisation, missed and false, m^2, from distances [A, B] m.
 
-    Each target without a track, and each track without a target, costs cutoff^2 / 2.
+    A are targets, B are tracks. Each target without a track, and each track without a target, costs
+    cutoff^2 / 2.
     """
     row, column = assign(distance, cutoff)
     targets, tracks = distance.shape
@@ -38,9 +41,10 @@ def gospa_parts(distance: Array, cutoff: float) -> tuple[float, float, float]:
 def assign_sticky(
     distance: Array, cutoff: float, last: Sequence[Sequence[int]]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pairs where each row keeps the column it had while within the cutoff, then the best rest.
+    """Pairs where each row first keeps its last column if within the cutoff; then the best pairs of
+    the rest.
 
-    last  for each row the column that it had, in a list; an empty list for none
+    last  for each row its last column, in a list; an empty list for none
     """
     kept = np.array(
         [

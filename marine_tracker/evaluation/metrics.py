@@ -1,19 +1,20 @@
-"""How good tracks are on a recording whose truth is known.
+"""Scores tracks on a recording whose truth is known.
 
 The rules
-- Only confirmed and coasting rows count. A row belongs to its scan (where the file does not tell,
-  to the scan nearest in time); of several rows of a track in one scan the last one counts.
+- Only confirmed and coasting rows count. A row belongs to its scan. If the file does not name the
+  scan, it belongs to the scan nearest in time. If a track has several rows in one scan, the last
+  one counts.
 - Tracks are moved to the truth's time along their own velocity.
-- What the tracker could not know is not held against it: a known bearing bias turns the truth
-  about own ship, and a known lag of the plots moves it back along its velocity.
-- A truth is scored where the radar saw it: it lies within the ranges that have plots, and in the
-  11 scans around it at least 5 had a plot of it (plots shared out, one to a target, within
-  `seen_within`). This never looks at the tracks. Tracks on truth that is not scored are set
-  aside, neither right nor wrong.
+- Known sensor errors do not count against the tracker. A known bearing bias turns the truth about
+  own ship. A known lag of the plots moves the truth back along its velocity.
+- A truth is scored where the radar saw it: it lies within the ranges that have plots, and at least
+  5 of the 11 scans around it had a plot of it (plots are shared out, one to a target, within
+  `seen_within`). This rule never looks at the tracks. Tracks on truth that is not scored are set
+  aside: they are neither right nor wrong.
 - GOSPA has p = 2, alpha = 2. Errors are taken over its pairs. Holding, breaks and switches are
-  taken over pairs that stick: a target keeps its track while within the cutoff.
-- A track matched to no truth is false. Where not every vessel in view has a truth, such tracks may
-  be right: then GOSPA without the false part and the short-lived false tracks tell more.
+  taken over pairs that persist: a target keeps its track while within the cutoff.
+- A track matched to no truth is false. If not every vessel in view has a truth, such a track may be
+  right. Then use GOSPA without the false part, and the number of short-lived false tracks.
 """
 
 from typing import NamedTuple
@@ -21,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..files import shown
 from ..recording.csv_folder import Recording
 from ..recording.track_file import TrackRows
 from ..types import Array
@@ -28,7 +30,7 @@ from .gospa import assign, assign_sticky, gospa_parts
 from .recorded_truth import Truths, as_plotted, by_scan, seen_by_radar
 
 SHORT_LIVED = 20  # scans
-CUTOFF = 100.0  # m, where the recording's notes do not tell
+CUTOFF = 100.0  # m, if the recording's notes give none
 SEEN_WITHIN = 50.0  # m, likewise
 LIVE = ('confirmed', 'coasting')
 
@@ -73,7 +75,7 @@ TARGET_FIGURES = {
 
 
 class Score(NamedTuple):
-    """What `score` found; a value is None where there was nothing to take it from.
+    """The result of `score`; a value is None where there was no data for it.
 
     figures             value by name, those of FIGURES in that order
     targets             the same for each scored target, those of TARGET_FIGURES
@@ -86,7 +88,7 @@ class Score(NamedTuple):
 
 
 class Live(NamedTuple):
-    """The rows [R] of live tracks, in the order of scans, at most one a track and scan."""
+    """The rows [R] of live tracks, in the order of scans, at most one for each track and scan."""
 
     scan: NDArray[np.int64]  # index of the scan
     track: NDArray[np.int64]  # number of the track in this file
@@ -104,14 +106,14 @@ def score(
     bias_deg: float | None = None,
     lag: float | None = None,
 ) -> Score:
-    """Score tracks against the truth of a recording, by the rules above.
+    """Scores tracks against the truth of a recording, by the rules above.
 
     cutoff    m; default the notes' cutoff_m, else 100
-    bias_deg  what the bearings of plots and tracks are too great by, deg; default the notes'
-              azimuth_bias_deg, else 0
-    lag       s by which plots are later than their times; default the notes' plot_lag_s, else 0
-    ValueError for a recording without truth, for a distance that is not above 0, and for what is
-    no finite number.
+    bias_deg  how much the bearings of plots and tracks are too large, deg; default the notes'
+    azimuth_bias_deg, else 0
+    lag       s by which plots are older than their times; default the notes' plot_lag_s, else 0
+    ValueError for a recording without truth, for a distance that is not above 0, and for a value
+    that is not a finite number.
     """
     cutoff = chosen(recording, 'cutoff_m', cutoff, CUTOFF, above=0.0)
     within = chosen(recording, 'seen_within_m', None, SEEN_WITHIN, above=0.0)
@@ -127,7 +129,7 @@ def score(
     scans = len(recording.scans)
     parts = np.zeros((scans, 3))  # m^2: localisation, missed, false
     pairs: list[NDArray[np.int64]] = []  # rows of truth and live, by GOSPA
-    holder = np.full(len(truth.time), -1)  # track on each truth, by pairs that stick
+    holder = np.full(len(truth.time), -1)  # track on each truth, by pairs that persist
     false = np.zeros(len(live.time), bool)
     last: dict[int, int] = {}  # target -> the track it had last
     for k, (at, rows) in enumerate(zip(by_scan(truth.scan, scans), by_scan(live.scan, scans))):
@@ -181,7 +183,7 @@ def score(
 def chosen(
     recording: Recording, name: str, given: float | None, default: float, above: float = -np.inf
 ) -> float:
-    """What was given, else what the recording's notes say, else the default."""
+    """The given value, else the value in the recording's notes, else the default."""
     value = recording.notes.get(name, default) if given is None else given
     if (
         isinstance(value, bool)
@@ -189,17 +191,17 @@ def chosen(
         or not (above < value < np.inf)
     ):
         limit = 'finite' if above == -np.inf else f'above {above:g} and finite'
-        raise ValueError(f'{name} is {value!r}; it must be a number, {limit}')
+        raise ValueError(f'{name} is {shown(value)}; it must be a number, {limit}')
     return float(value)
 
 
 def live_rows(recording: Recording, tracks: TrackRows) -> Live:
-    """The rows that count: of a track in a scan the last one, standing where its first one does."""
+    """The rows that count: of a track in a scan the last one, at the place of the first one."""
     scan, known = _scan_of(recording, tracks)
     rows = np.argsort(tracks.time, kind='stable')
     rows = rows[(np.isin(tracks.status, LIVE) & known)[rows]]
     names, track = np.unique(tracks.track[rows], return_inverse=True)
-    slot = scan[rows] * len(names) + track  # one number for a scan and a track
+    slot = scan[rows] * len(names) + track  # one number for each scan and track
     slots, first = np.unique(slot, return_index=True)
     last = len(slot) - 1 - np.unique(slot[::-1], return_index=True)[1]
     scan_before = np.searchsorted(slots, slots - len(names))

@@ -1,4 +1,4 @@
-"""The truth of a recording as its radar saw it: which of it tracks can be scored against."""
+"""The truth of a recording as its radar saw it, and which of it tracks can be scored against."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from ..types import Array
 from .gospa import assign
 
 WINDOW = 11  # scans around a truth ...
-NEEDED = 5  # ... of which this many need a plot; 3 are met by chance among landmarks
+NEEDED = 5  # ... of which this many need a plot; landmarks alone can give 3 by chance
 
 
 class Truths(NamedTuple):
@@ -31,9 +31,9 @@ class Truths(NamedTuple):
 
 
 def as_plotted(recording: Recording, bias_deg: float, lag: float) -> Truths:
-    """The recording's truth as its plots show it: late by `lag` s, turned clockwise by the bias.
+    """The recording's truth as its plots show it: `lag` s late, and turned clockwise by the bias.
 
-    Where the recording gives no velocity it is taken from the positions two scans before and after.
+    If the recording gives no velocity, it is taken from the positions two scans before and after.
     """
     scan = np.repeat(np.arange(len(recording.scans)), [len(t.time) for t in recording.truths])
     time, target, position, velocity = (np.concatenate(column) for column in zip(*recording.truths))
@@ -56,9 +56,9 @@ def as_plotted(recording: Recording, bias_deg: float, lag: float) -> Truths:
 def seen_by_radar(
     recording: Recording, truth: Truths, within: float
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """[T] whether the radar saw each truth, and whether it had a plot in that very scan.
+    """[T] whether the radar saw each truth, and whether it had a plot of it in that scan.
 
-    within  m, a plot no farther than this from a truth may be its plot
+    within  m; a plot at most this far from a truth may be its plot
     """
     plotted = np.zeros(len(truth.time), bool)
     for rows, scan in zip(by_scan(truth.scan, len(recording.scans)), recording.scans):
@@ -87,6 +87,6 @@ def by_scan(scan, count: int) -> list[NDArray[np.intp]]:
 
 
 def _own_ship_at(recording: Recording, time) -> Array:
-    """Own ship's position [..., 2] m by the whole recording; at rest before and after it."""
+    """Own ship's position [..., 2] m from the whole recording; at rest before and after it."""
     own_ship = recording.own_ship
     return np.stack([np.interp(time, own_ship.time, column) for column in own_ship.position.T], -1)

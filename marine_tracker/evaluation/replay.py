@@ -22,7 +22,7 @@ from ..simulation import radar, scenario
 from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
 from ..tracking.radars import fused, merged
 from ..types import Scan
-from . import metrics
+from . import metrics, screened
 
 NAMES = np.array(STATUS_NAMES)
 ALARM_COLUMNS = ('time_s', 'alarm', 'target', 'where', 'priority', 'state', 'text')
@@ -34,16 +34,19 @@ class Source(NamedTuple):
     scans               (number, scan) in time order
     total               how many; None where it is not known
     tracker_parameters  those that belong to the radar and its waters
+    remarks             what people should know of the files that were read
     """
 
     scans: Iterable[tuple[int, Scan]]
     total: int | None
     tracker_parameters: dict[str, Any]
+    remarks: tuple[str, ...] = ()
 
 
 class Summary(NamedTuple):
-    """scans done, tracks ever confirmed, the service's mean CPU time a scan in ms, and whether any
-    plots told radial speeds."""
+    """Number of scans; number of tracks ever confirmed; the service's mean CPU time a scan in ms;
+    whether any plots had radial speeds.
+    """
 
     scans: int
     confirmed: int
@@ -52,23 +55,27 @@ class Summary(NamedTuple):
 
 
 def open_source(name: str, seed: int = 1) -> Source:
-    """A recording where `name` is a folder, else a scenario run with `seed`.
+    """A recording if `name` is a folder, else a scenario run with `seed`.
 
-    ValueError where it is neither, or is not in order.
+    ValueError if it is neither, or has an error.
     """
     if Path(name).is_dir():
-        recording = csv_folder.read(name)
+        recording, remarks = screened.read(name)
         numbers = recording.numbers.tolist()
-        return Source(zip(numbers, recording.scans), len(numbers), recording.tracker_parameters)
+        return Source(
+            zip(numbers, recording.scans), len(numbers), recording.tracker_parameters, remarks
+        )
     chosen = scenario.load(name)
     simulated = enumerate(scan for scan, _ in radar.simulate(chosen, seed))
-    return Source(simulated, None, chosen.tracker_parameters())
+    return Source(simulated, None, chosen.tracker_parameters(), chosen.fleet.remarks)
 
 
 def fuse(names: Sequence[str], seed: int = 1) -> Source:
-    """The sources of one scene as one, each of them a radar of its own; a single one as it is.
+    """The sources of one scene combined, each as a radar of its own. A single source is returned as
+    it is.
 
-    Scans are numbered as they end. Of scenarios each has noise of its own, from `seed` on.
+    Scans are numbered in the order of their ends. Each scenario has its own noise: seeds count up
+    from `seed`.
     """
     sources = [open_source(name, seed + k) for k, name in enumerate(names)]
     if len(sources) == 1:
@@ -79,11 +86,12 @@ def fuse(names: Sequence[str], seed: int = 1) -> Source:
         enumerate(merged(*((scan for _, scan in source.scans) for source in sources))),
         sum(totals) if len(totals) == len(sources) else None,
         fused([source.tracker_parameters for source in sources], radars),
+        sum((source.remarks for source in sources), ()),
     )
 
 
 def run(service: Service, scans: Iterable[Scan]) -> Iterator[Output]:
-    """What each scan comes to; own ship heads as she goes."""
+    """The output of each scan. Own ship's heading is its course."""
     memory = service.start()
     for scan in scans:
         memory, output = service.step(memory, scan)
@@ -96,8 +104,10 @@ def write_tracks(
     file: IO[str],
     alarm_file: IO[str] | None = None,
 ) -> Summary:
-    """Run the service over numbered scans and write what it tells after each of them: one row a
-    track, and one in `alarm_file` for each alert that changes."""
+    """Runs the service over numbered scans and writes the results after each scan.
+
+    One row a track; in `alarm_file` one row for each alert that changes.
+    """
     confirmed: set[int] = set()
     count, cpu, doppler = 0, 0.0, False
     memory = service.start()
@@ -130,7 +140,7 @@ def write_tracks(
 
 
 def target_columns(output: Output) -> TargetColumns:
-    """What a track file tells of the targets among the N tracks, and of the tracks' sizes."""
+    """The target columns of a track file for N tracks: target data and sizes."""
     picture, count = output.picture, len(output.report.tracks.id)
 
     def of_targets(values):
@@ -184,13 +194,13 @@ def _write_alarms(file: IO[str], service: Service, output: Output) -> None:
 
 
 def figures(recording: Recording, estimator: str) -> dict[str, Any]:
-    """`metrics.score` of the tracks with the recording's own parameters and this estimator."""
+    """`metrics.score` of the tracks, with the recording's own parameters and this estimator."""
     service = service_for(recording.tracker_parameters, estimator=estimator)
     return metrics.score(recording, follow(service, recording)).figures
 
 
 def follow(service: Service, recording: Recording) -> TrackRows:
-    """The rows that `write_tracks` would write, as far as scores need them."""
+    """The rows that `write_tracks` would write, with the columns that scores need."""
     rows = []
     for number, output in zip(recording.numbers.tolist(), run(service, recording.scans)):
         tracks, now = output.report.tracks, output.estimate

@@ -7,14 +7,16 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from ..files import write_text
+
 
 class Figure(NamedTuple):
     """One measured figure.
 
-    name     stable: scripts look for it         value    None where there was nothing to measure
-    unit     '' for a plain number               limit    what is demanded, e.g. '<= 5.5'
-    ok       whether the demand is met           against  the baseline or source of the demand
-    limit and ok are None where nothing is demanded.
+    name     stable: scripts look for it         value    None if there was nothing to measure
+    unit     '' for a plain number               limit    the requirement, e.g. '<= 5.5'
+    ok       whether the requirement is met      against  the baseline or source of the requirement
+    limit and ok are None if there is no requirement.
     """
 
     name: str
@@ -26,7 +28,7 @@ class Figure(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """A published claim: where it stands, what it says, what was found, and the verdict."""
+    """A published claim: its source, its text, what was found, and the verdict."""
 
     source: str
     claim: str
@@ -35,21 +37,21 @@ class Claim(NamedTuple):
 
 
 def at_most(name: str, value, limit: float, unit: str = '', against: str | None = None) -> Figure:
-    """A figure that must not exceed `limit`; one that could not be measured fails."""
+    """A figure that must not exceed `limit`. A value that could not be measured fails."""
     return Figure(
         name, value, unit, f'<= {limit:g}', value is not None and bool(value <= limit), against
     )
 
 
 def at_least(name: str, value, limit: float, unit: str = '', against: str | None = None) -> Figure:
-    """A figure that must reach `limit`; one that could not be measured fails."""
+    """A figure that must reach `limit`. A value that could not be measured fails."""
     return Figure(
         name, value, unit, f'>= {limit:g}', value is not None and bool(value >= limit), against
     )
 
 
 def add_arguments(parser) -> None:
-    """--json, for every command that measures."""
+    """Adds --json, for every command that measures."""
     parser.add_argument(
         '--json',
         metavar='FILE',
@@ -65,12 +67,12 @@ def publish(
     facts: dict[str, Any] | None = None,
     claims: Sequence[Claim] = (),
 ) -> int:
-    """Print the table and the claims, write the JSON where asked, and return the exit code.
+    """Prints the table and the claims, writes the JSON if asked, and returns the exit code.
 
     json_to  a file, '-' for standard output, None for no JSON
-    facts    what else the JSON object holds beside `figures`, e.g. {'seed': 1}
-    claims   printed below the table; a list `claims` in the JSON where there are any
-    Returns 0, or 1 where a figure misses its limit.
+    facts    what the JSON object has in addition to `figures`, e.g. {'seed': 1}
+    claims   printed below the table; in the JSON as a list `claims`, if there are any
+    Returns 0, or 1 if a figure misses its limit.
     """
     text = '\n'.join([title, table(figures), *map(in_words, claims)])
     print(text, file=sys.stderr if json_to == '-' else sys.stdout)
@@ -80,8 +82,7 @@ def publish(
         if json_to == '-':
             print(text)
         else:
-            with open(json_to, 'w') as file:
-                file.write(text + '\n')
+            write_text(json_to, text + '\n')
     return 1 if any(figure.ok is False for figure in figures) else 0
 
 
@@ -92,13 +93,13 @@ def to_json(figures: Sequence[Figure], facts: dict[str, Any] | None = None) -> s
 
 
 def in_words(claim: Claim) -> str:
-    """A claim as a paragraph: the verdict beside the claim, what was found below."""
+    """A claim as a paragraph: first the claim with the verdict, then what was found."""
     head = f'\n{claim.source}: "{claim.claim}": {claim.verdict}'
     return f'{head}\n{textwrap.fill(claim.found, 96, initial_indent="  ", subsequent_indent="  ")}'
 
 
 def table(figures: Sequence[Figure]) -> str:
-    """The figures as aligned lines; a column that says nothing is left out."""
+    """The figures as aligned lines. Empty columns are left out."""
     verdict = {None: '', True: 'ok', False: 'MISSED'}
     rows = [('figure', 'value', 'unit', 'limit', '', 'against')]
     rows += [
@@ -117,7 +118,7 @@ def table(figures: Sequence[Figure]) -> str:
 
 
 def number(value) -> str:
-    """A value as people read it: up to four digits after the point, - for none."""
+    """A value as text: up to four digits after the point; - for None."""
     value = _plain(value)
     if value is None:
         return '-'

@@ -1,18 +1,19 @@
-"""What an experiment comes to: figures, claims and pictures."""
+"""The result of an experiment: figures, claims and pictures."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..files import written
 from .report import Claim, Figure
 
 BORNE_OUT, NOT_BORNE_OUT, IN_PART = 'borne out', 'not borne out', 'borne out in part'
 
-Progress = Callable[[int, int], None]  # parts done, and of how many
+Progress = Callable[[int, int], None]  # parts done, and number of parts
 
 
 class Picture(NamedTuple):
-    """name of its file, size in inches, and what paints it on a figure of matplotlib."""
+    """File name, size in inches, and the function that paints it on a matplotlib figure."""
 
     name: str
     size: tuple[float, float]
@@ -20,7 +21,7 @@ class Picture(NamedTuple):
 
 
 class Result(NamedTuple):
-    """figures; claims, published ones and our own, with verdicts; pictures not yet drawn."""
+    """figures; claims (published ones and our own) with verdicts; pictures, not drawn yet."""
 
     figures: list[Figure]
     claims: Sequence[Claim] = ()
@@ -28,16 +29,18 @@ class Result(NamedTuple):
 
 
 def verdict(holds, otherwise: str = NOT_BORNE_OUT) -> str:
-    """In words."""
+    """The verdict as text."""
     return BORNE_OUT if holds else otherwise
 
 
 def silent(done: int, whole: int) -> None:
-    """Progress that nobody sees."""
+    """Progress that shows nothing."""
 
 
 def draw(folder, pictures: Sequence[Picture]) -> list[Path]:
-    """Draw all as PNG into the folder, which is made; the files. ValueError without matplotlib."""
+    """Draws all as PNG into the folder, which is created; returns the files. ValueError without
+    matplotlib.
+    """
     try:
         from matplotlib.figure import Figure as Canvas
     except ModuleNotFoundError as error:
@@ -49,5 +52,6 @@ def draw(folder, pictures: Sequence[Picture]) -> list[Path]:
         canvas = Canvas(figsize=picture.size, layout='constrained')
         picture.paint(canvas)
         drawn.append(folder / f'{picture.name}.png')
-        canvas.savefig(drawn[-1], dpi=110)
+        with written(drawn[-1], 'wb') as file:
+            canvas.savefig(file, format='png', dpi=110)
     return drawn

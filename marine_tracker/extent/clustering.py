@@ -1,13 +1,13 @@
-"""Cells that touch make one cluster: one target, or several close together, or land.
+"""Groups cells that touch into clusters. A cluster is one target, several close together, or land.
 
-Two cells touch when they lie within LINK cells of each other in range and in bearing, or within
-GAP, for fine cells tell the parts of a ship apart. Where hulls are expected, of targets already
-tracked, their gates come first: a cell inside one belongs to it, whatever it touches, so a hull
-that breaks up stays one cluster, ships side by side stay two, and a ship that passes close to land
-is not drawn into it.
+Two cells touch if they lie within LINK cells of each other in range and in bearing. They also touch
+if they lie within GAP, because fine cells separate the parts of a ship. The gates of tracked
+targets, where hulls are expected, come first: a cell inside a gate belongs to it, whatever it
+touches. So a hull that breaks up stays one cluster, ships side by side stay two, and a ship that
+passes close to land is not merged with it.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +16,15 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..gaussian.linear import invert_2x2, squared_distance
-from ..types import Array, Plots
+from ..types import Array, BoolArray, IntArray, Plots, take
 from .smear import smear
 
 LINK = 1.5  # range resolutions, and beam widths
 GAP = 40.0  # m
 TURN = 2 * np.pi
-REACH = 225.0  # m from a hull's middle: so far what touches it is still its own
+REACH = 225.0  # m from a hull's middle; touching cells up to here still belong to the hull
+
+Number = TypeVar('Number', np.float64, np.int64, np.bool_)
 
 
 class Gates(NamedTuple):
@@ -43,14 +45,14 @@ class Gates(NamedTuple):
 class Clusters(NamedTuple):
     """C clusters; `of_cell` [M] is the cluster of each cell.
 
-    time       [C]        s, mean of the cells'
+    time       [C]        s, mean over the cells
     position   [C, 2]     m, east and north: the centroid
     scatter    [C, 2, 2]  m^2, sum over the cells of d d' with d from the centroid
-    cells      [C]        how many
+    cells      [C]        number of cells
     noise      [C, 2, 2]  m^2, R of a single cell
     size       [C]        m, between the farthest cells along the longer of two axes
     amplitude  [C]        dB, of the strongest cell
-    gate       [C]        which hull's gate it belongs to, -1 for none
+    gate       [C]        the hull whose gate it belongs to, -1 for none
     crowded    [C]        it touches another cluster, so its cells may not be its own
     land       [C]        most of its cells lie on land
     """
@@ -58,23 +60,41 @@ class Clusters(NamedTuple):
     time: Array
     position: Array
     scatter: Array
-    cells: NDArray[np.int64]
+    cells: IntArray
     noise: Array
     size: Array
     amplitude: Array
-    gate: NDArray[np.int64]
-    crowded: NDArray[np.bool_]
-    land: NDArray[np.bool_]
-    of_cell: NDArray[np.int64]
+    gate: IntArray
+    crowded: BoolArray
+    land: BoolArray
+    of_cell: IntArray
+
+
+NOTHING = Clusters(
+    time=np.zeros(1),
+    position=np.zeros((1, 2)),
+    scatter=np.zeros((1, 2, 2)),
+    cells=np.ones(1, np.int64),
+    noise=np.eye(2)[None],
+    size=np.zeros(1),
+    amplitude=np.zeros(1),
+    gate=np.full(1, -1),
+    crowded=np.zeros(1, bool),
+    land=np.zeros(1, bool),
+    of_cell=np.zeros(0, np.int64),
+)
 
 
 class Place(NamedTuple):
-    """Where M cells lie: `gate` [M] of a hull that each is in, -1 for none; `off` [M] m from the
-    middle of that hull, or of the nearest; `land` [M] on land."""
+    """Where M cells lie.
 
-    gate: NDArray[np.int64]
+    gate [M]: the hull whose gate the cell is in, -1 for none; off [M] m from the middle of that
+    hull, or of the nearest; land [M]: the cell is on land.
+    """
+
+    gate: IntArray
     off: Array
-    land: NDArray[np.bool_]
+    land: BoolArray
 
 
 def cluster(cells: Plots, range_resolution: float, beam_width: float, place: Place) -> Clusters:
@@ -85,8 +105,8 @@ def cluster(cells: Plots, range_resolution: float, beam_width: float, place: Pla
     return _summary(cells, group, crowded, place, range_resolution, beam_width)
 
 
-def _links(cells, range_resolution, beam_width):
-    """All pairs of cells that touch, [P] each; over north as well."""
+def _links(cells: Plots, range_resolution: float, beam_width: float) -> IntArray:
+    """All pairs of cells that touch, [P] each, also across north."""
     if len(cells.range) < 2:
         return np.zeros((2, 0), np.int64)
     turn = TURN / (LINK * beam_width)
@@ -107,7 +127,7 @@ def _links(cells, range_resolution, beam_width):
 
 
 def in_gates(cells: Plots, gates: Gates) -> Place:
-    """Where the cells [M] lie among the gates; of land nothing is known."""
+    """Where the cells [M] lie among the gates. `land` is False for all."""
     dry = np.zeros(len(cells.time), bool)
     if not len(gates.time):
         return Place(np.full(len(dry), -1), np.full(len(dry), np.inf), dry)
@@ -124,11 +144,11 @@ def in_gates(cells: Plots, gates: Gates) -> Place:
     )
 
 
-def _groups(first, second, place):
-    """A label [M] of each cell's cluster; and whether [M] it touches another cluster.
+def _groups(first: IntArray, second: IntArray, place: Place) -> tuple[IntArray, BoolArray]:
+    """A label [M] of each cell's cluster, and whether [M] that cluster touches another one.
 
-    Cells of a gate are one cluster. What touches a single gate, is not land and does not reach too
-    far off is part of that hull too.
+    Cells in one gate are one cluster. Cells outside belong to a hull too if they touch only its
+    gate, are not land and do not reach too far.
     """
     gate, count = place.gate, len(place.gate)
     same = gate[first] == gate[second]
@@ -146,7 +166,7 @@ def _groups(first, second, place):
         return group[:count], crowded[:count]
     one, other = first[~same], second[~same]
     swap = gate[one] < 0
-    one, other = np.where(swap, other, one), np.where(swap, one, other)  # `one` in a gate
+    one, other = np.where(swap, other, one), np.where(swap, one, other)  # let `one` be in a gate
     hull, part = group[one], group[other]
     reach = np.zeros(len(group))
     np.maximum.at(reach, group[:count], place.off)
@@ -162,20 +182,27 @@ def _groups(first, second, place):
     return group, crowded[group]
 
 
-def _mostly(land, group, groups):
-    """Of which groups more than half the cells are land."""
+def _mostly(land: BoolArray, group: IntArray, groups: int) -> BoolArray:
+    """The groups of which more than half the cells are land."""
     return np.bincount(group, land, groups) > 0.5 * np.bincount(group, minlength=groups)
 
 
-def _summary(cells, group, crowded, place, range_resolution, beam_width):
+def _summary(
+    cells: Plots,
+    group: IntArray,
+    crowded: BoolArray,
+    place: Place,
+    range_resolution: float,
+    beam_width: float,
+) -> Clusters:
     clusters = int(group.max(initial=-1)) + 1
     count = np.bincount(group, minlength=clusters)
 
-    def mean(values):
+    def mean(values: Array) -> Array:
         return np.bincount(group, values, clusters) / count
 
-    def most(values, start):
-        out = np.full(clusters, start)
+    def most(values: NDArray[Number], start: Number | float) -> NDArray[Number]:
+        out = np.full(clusters, start, values.dtype)
         np.maximum.at(out, group, values)
         return out
 
@@ -200,3 +227,8 @@ def _summary(cells, group, crowded, place, range_resolution, beam_width):
         _mostly(place.land, group, clusters),
         group,
     )
+
+
+def take_clusters(clusters: Clusters, rows: IntArray) -> Clusters:
+    """The chosen clusters; of_cell is left as it is."""
+    return take(clusters._replace(of_cell=clusters.cells), rows)._replace(of_cell=clusters.of_cell)

@@ -1,56 +1,56 @@
-"""Extended targets around a point tracker: one plot a cluster in, sizes and headings out.
+"""Extended targets around a point tracker: it gets one plot a cluster; sizes and headings come out.
 
     plain, seen = extents.reduce(known, scan, ids, ahead)   # one plot a cluster
     tracks, report = tracker.step(tracks, plain)
     known = extents.step(known, seen, ...)
     shapes = extents.shapes(known, seen, estimate)
 
-service.py has it in full. The tracker knows nothing of extents.
+See service.py for the full sequence. The tracker knows nothing of extents.
 
-What is longer than any ship and stays where it is, is land: its clusters give no plots.
+An echo that is longer than any ship and stays in place is land. Its clusters give no plots.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import locate, own_ship_at, polar_to_position, to_range_bearing, unit_vector
 from ..parameters import TrackerParameters
-from ..types import Array, Extrapolation, Plots, PolarPlots, Scan, row_of, take
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, PolarPlots, Scan, row_of, take
 from . import hulls, land_map
-from .clustering import Clusters, Gates, cluster, in_gates
+from .clustering import Clusters, Gates, cluster, in_gates, take_clusters
 from .hulls import BY_GAUSSIAN_PROCESS, Hulls, Shapes
 from .land_map import LONGEST, LandMap
 from .lit_edge import lit_edge
 from .random_matrix import SHIP, cell_covariance
 from .smear import smear
 
-# Of a ship's length: how far the centroid strays along her axis; across, as the lit side changes.
+# Deviation of the centroid over the ship's length: along her axis; and across it, as the lit side
+# changes.
 STRAY_ALONG, STRAY_ACROSS = 0.1, 0.04
-RAMP = 0.2  # of the way to an outline's centre that the plots move each scan
+RAMP = 0.2  # share of the way to an outline's centre that the plots move each scan
 ROD_SPREAD = 12.0  # length^2 over variance of a rod
-# A gate is so many times the extent, the smear and the expectation's covariance: half again the
-# half length, and 2.8 deviations.
+# A gate is a multiple of the extent, the smear and the expectation's covariance: 1.5 times the half
+# length, and 2.8 deviations.
 OF_EXTENT, OF_NOISE = 1.5, 8.0
-AT_SEA = 22  # scans clear of land that prove a ship, though she lies on it later
+AT_SEA = 22  # scans clear of land that prove a ship, even if she lies on it later
 ALIKE, DRIFT = 9.0, 2.0  # squared distance of velocities, and m/s, of two parts of one hull
 
 
 class ExtentsMemory(NamedTuple):
-    """All that is known between two scans.
+    """The memory between two scans.
 
     hulls   one row a track
-    shift   [N, 2]  m, from the centroid of its cells to where each track is led
-    at_sea  [N]     scans in which each track was clear of land
-    land    where it lies
+    shift   [N, 2]  m, from the centroid of the cells to the place where each track is led
+    at_sea  [N]     number of scans in which each track was clear of land
+    land    where land lies
     shores  clusters of land in the last scan
     """
 
     hulls: Hulls
     shift: Array
-    at_sea: NDArray[np.int64]
+    at_sea: IntArray
     land: LandMap
     shores: int
 
@@ -61,28 +61,28 @@ class Seen(NamedTuple):
     cells     M plots, as they came
     clusters  C rows
     chosen    [P]  the clusters that gave plots, in the order of the plots
-    shores    how many were land
+    shores    number of clusters that were land
     own       [2] m, own ship in the middle of the scan
     map       of the land, this scan included
     """
 
     cells: Plots
     clusters: Clusters
-    chosen: NDArray[np.int64]
+    chosen: IntArray
     shores: int
     own: Array
     map: LandMap
 
 
 class Extents:
-    """The pure core: parameters in, no state of its own.
+    """The pure core: it takes parameters and has no state.
 
     on  whether the parameters ask for extents
     """
 
     def __init__(self, parameters: TrackerParameters):
         self.parameters = parameters
-        self.on = parameters.extent != 'off'
+        self.on = parameters.extent != 'none'
         self.beam_width = float(np.radians(parameters.beam_width_deg))
 
     def start(self) -> ExtentsMemory:
@@ -96,16 +96,16 @@ class Extents:
         )
 
     def adopt(self, known: ExtentsMemory, previous: 'Extents') -> ExtentsMemory:
-        """The memory of another; sizes are found anew where it was asked for something else."""
+        """Takes over the memory of another instance. Sizes start again if it had other settings."""
         same = self.parameters.extent == previous.parameters.extent
         return known if same else self.start()
 
     def reduce(
-        self, memory: ExtentsMemory, scan: Scan, ids, ahead: Extrapolation
+        self, memory: ExtentsMemory, scan: Scan, ids: IntArray, ahead: Extrapolation
     ) -> tuple[Scan, Seen]:
-        """The scan with one plot a cluster, land left out.
+        """The scan with one plot a cluster, without land.
 
-        ids [N] of the tracks that are surely targets, and where they are expected.
+        ids [N] of the tracks that are certainly targets; ahead: where they are expected.
         """
         p = self.parameters
         cells = locate(
@@ -125,14 +125,23 @@ class Extents:
         )
         dry = found.land | ((found.size > LONGEST) & (found.gate < 0))
         chosen = (~dry).nonzero()[0]
-        plots = self._plots(memory, hulls.take_clusters(found, chosen), row, scan)
+        plots = self._plots(memory, take_clusters(found, chosen), row, scan)
         return scan._replace(plots=plots), Seen(cells, found, chosen, int(dry.sum()), own, land)
 
     def step(
-        self, memory: ExtentsMemory, seen: Seen, ids, time, plot, estimate: Extrapolation
+        self,
+        memory: ExtentsMemory,
+        seen: Seen,
+        ids: IntArray,
+        time: Array,
+        plot: IntArray,
+        estimate: Extrapolation,
     ) -> ExtentsMemory:
-        """After the tracker's step: ids [N] of its tracks, time [N] s, plot [N] rows of the
-        reduced scan or -1, and its estimate then."""
+        """The memory after the tracker's step.
+
+        ids [N] of its tracks; time [N] s; plot [N] rows of the reduced scan or -1; its estimate
+        then.
+        """
         taken = np.where(plot >= 0, np.append(seen.chosen, -1)[plot], -1)
         edge = (
             lit_edge(
@@ -163,16 +172,18 @@ class Extents:
         noise = self._noise(memory.hulls.matrix.mean[:, :2] - seen.own)
         return hulls.shapes(memory.hulls, noise, estimate.position)
 
-    def _noise(self, offset):
+    def _noise(self, offset: Array) -> Array:
         range_, bearing = to_range_bearing(offset)
         return smear(range_, bearing, self.parameters.range_resolution_m, self.beam_width)
 
-    def _gates(self, memory, ids, ahead, own):
+    def _gates(
+        self, memory: ExtentsMemory, ids: IntArray, ahead: Extrapolation, own: Array
+    ) -> tuple[Gates, IntArray]:
         """Where hulls are expected, and their rows of the memory.
 
-        What was never long at sea and lies on land is land that was taken for a target before it
-        was known: it has no gate. Nor has a track that never had a cluster to itself: one begun on
-        a single cell before extents were asked for.
+        A track that lies on land and was never clear of land for long is land that was taken for a
+        target. It has no gate. A track that never had a cluster has no gate either: it began on a
+        single cell before extents were switched on.
         """
         row = row_of(memory.hulls.id, ids)
         row, ahead = row[row >= 0], take(ahead, row >= 0)
@@ -184,17 +195,20 @@ class Extents:
         area = OF_EXTENT * matrix.extent[row] + OF_NOISE * (
             self._noise(ahead.position - own) + ahead.covariance[:, :2, :2]
         )
-        gates, kept = one_a_ship(
+        gates, alone = one_a_ship(
             Gates(ahead.time, ahead.position - memory.shift[row], ahead.velocity, area),
             ahead.covariance[:, 2:, 2:],
             memory.hulls.scans[row] < hulls.SCANS,
         )
-        return gates, row[kept]
+        return gates, row[alone]
 
-    def _plots(self, memory, chosen, row, scan):
-        """One plot a cluster: the centroid, with (z_s X + R) / n and what it strays along the hull.
+    def _plots(
+        self, memory: ExtentsMemory, chosen: Clusters, row: IntArray, scan: Scan
+    ) -> PolarPlots:
+        """One plot a cluster: the centroid, with noise (z_s X + R) / n plus its deviation along the
+        hull.
 
-        A cluster of a single cell is a plot like any other.
+        A cluster of a single cell becomes a normal plot.
         """
         p = self.parameters
         count = chosen.cells[:, None, None]
@@ -218,17 +232,20 @@ class Extents:
         return PolarPlots(chosen.time, range_, bearing, chosen.amplitude, covariance=covariance)
 
 
-def one_a_ship(gates: Gates, velocity_covariance, young) -> tuple[Gates, NDArray[np.int64]]:
-    """The gates without those of parts of a hull that has another; and their rows.
+def one_a_ship(
+    gates: Gates, velocity_covariance: Array, young: BoolArray
+) -> tuple[Gates, IntArray]:
+    """The gates, with at most one for each hull, and their rows.
 
-    Two that overlap and move alike, as far as velocities with covariances [H, 2, 2] m^2/s^2 tell,
-    are one hull in two pieces, unless both are known for long; young [H] tells which are not. The
-    gate of the older track, which comes first, grows over both; the other gets no more plots.
+    Two gates belong to one hull in two pieces if they overlap and their velocities agree within the
+    covariances [H, 2, 2] m^2/s^2. They stay two if both tracks are old; young [H] tells which are
+    not. The gate of the older track comes first and grows over both. The other gets no more plots.
     """
     apart = gates.middle[:, None] - gates.middle
     way = np.hypot(*np.moveaxis(apart, -1, 0))
     inverse, _ = invert_2x2(gates.area)
-    # From the middle of each row's gate to its edge, towards each column's.
+    # Distance from the middle of each row's gate to its edge, in the direction of each column's
+    # gate.
     edge = way / np.sqrt(np.maximum(squared_distance(apart, inverse[:, None]), 1e-12))
     differ = gates.velocity[:, None] - gates.velocity
     certain, _ = invert_2x2(velocity_covariance[:, None] + velocity_covariance)

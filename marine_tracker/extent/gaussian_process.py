@@ -5,15 +5,15 @@ The state is x = [e n ve vn psi psi' f_1 .. f_M]: centre, velocity, heading and 
 
     z = c + p s r(b) + e,   b = theta - psi,   theta = bearing of z - c
 
-with p along and t across theta, e ~ N(0, R). s is 1 for cells on the outline; where they lie
-inside it, it is random (Wahlstroem and Oezkan 2015, section V). Only the distance |z - c| says
-something, so each cell is one number:
+with p along and t across theta, e ~ N(0, R). s is 1 for cells on the outline. For cells inside it,
+s is random (Wahlstroem and Oezkan 2015, section V). Only the distance |z - c| carries information,
+so each cell is one number:
 
     nu = |z - c| - s mu,  H_c = p' - (s mu' / |z - c|) t',  H_psi = -s mu',  H_f = s h
     S = H P H' + p' R p + s^2 V + var(s) (mu^2 + v)
 
-mu, mu', h and V are those of `input_noise`. Cells are taken one after the other, each linearised
-where the one before left the state.
+mu, mu', h and V are those of `input_noise`. Cells are taken one after the other. Each one is
+linearised at the state after the previous one.
 """
 
 from typing import NamedTuple
@@ -21,25 +21,25 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector
-from ..types import Array, put, take
+from ..types import Array, IntArray, put, take
 from .input_noise import VARIANTS, input_variance, noisy_radius
 from .radial_function import Contour, radius
 from .random_matrix import constant_velocity
 
-HEADING, RATE, FIRST_RADIUS = 4, 5, 6  # where they begin in the state
-PLACE = np.array([0, 1, HEADING])  # on which the angle depends
-NEAREST = 0.5  # of mu: cells nearer to the centre turn no further
+HEADING, RATE, FIRST_RADIUS = 4, 5, 6  # index in the state where each begins
+PLACE = np.array([0, 1, HEADING])  # entries of the state on which the angle depends
+NEAREST = 0.5  # of mu: closer cells have no more effect on the angle than one at this distance
 TINY = 1e-6  # m
 
 
 class Model(NamedTuple):
-    """What is assumed of a class of targets, and how.
+    """The assumptions about a class of targets.
 
     contour     prior of the outline
     variant     one of VARIANTS
     noise       m^2/s^3, density of the white acceleration of each axis
     turn_noise  rad^2/s^3, the same of the heading
-    full        whether the input variance counts the state's own besides the cell's
+    full        whether the input variance counts the state's variance in addition to the cell's
     inside      mean and deviation of s
     gate        cells whose nu^2 / S exceeds it are left out
     """
@@ -76,11 +76,13 @@ class Measurement(NamedTuple):
     noise: Array
 
 
-def start(model: Model, time, motion, covariance, f, semi_axes) -> GpState:
+def start(
+    model: Model, time: Array, motion: Array, covariance: Array, f: Array, semi_axes: Array
+) -> GpState:
     """New rows of time [N] s, motion [N, 6] = [e n ve vn psi psi'] with covariance [N, 6, 6].
 
-    f [N, M], in units of the base with semi_axes [N, 2] m, has the prior's covariance.
-    ValueError where the variant is none of VARIANTS.
+    f [N, M], in units of the base with semi_axes [N, 2] m, has the prior's covariance. ValueError
+    if the variant is not one of VARIANTS.
     """
     if model.variant not in VARIANTS:
         raise ValueError(f'variant is {model.variant!r}; it must be one of {", ".join(VARIANTS)}')
@@ -93,8 +95,10 @@ def start(model: Model, time, motion, covariance, f, semi_axes) -> GpState:
     )
 
 
-def predict(state: GpState, time, model: Model) -> GpState:
-    """All rows at the times [N] s: straight on, turning evenly, the outline as it is."""
+def predict(state: GpState, time: Array, model: Model) -> GpState:
+    """Predicts all rows to the times [N] s: straight motion, constant rate of turn, unchanged
+    outline.
+    """
     step = time - state.time
     _, kick = constant_velocity(step)
     mean, covariance = state.mean.copy(), state.covariance.copy()
@@ -111,8 +115,10 @@ def predict(state: GpState, time, model: Model) -> GpState:
     return GpState(np.array(time, float), mean, covariance, state.semi_axes)
 
 
-def measure(state: GpState, cell, noise, model: Model, rng=None) -> Measurement:
-    """How cells [N, 2] m with noise [N, 2, 2] m^2, one of each row, stand to the state."""
+def measure(
+    state: GpState, cell: Array, noise: Array, model: Model, rng: np.random.Generator | None = None
+) -> Measurement:
+    """Measurements of cells [N, 2] m with noise [N, 2, 2] m^2, one for each row of the state."""
     distance, bearing = to_range_bearing(cell - state.mean[:, :2])
     along = unit_vector(bearing)
     across = np.stack([along[:, 1], -along[:, 0]], -1)  # t = dp / dtheta
@@ -146,11 +152,20 @@ def measure(state: GpState, cell, noise, model: Model, rng=None) -> Measurement:
     )
 
 
-def update(state: GpState, rows, cells, count, noise, model: Model, rng=None):
-    """The K named rows, predicted to their cells' times, take their cells; the new state and the
-    mean nu^2 / S [K] of the cells, about 1 where the model holds, nan without cells.
+def update(
+    state: GpState,
+    rows: IntArray,
+    cells: Array,
+    count: IntArray,
+    noise: Array,
+    model: Model,
+    rng: np.random.Generator | None = None,
+) -> tuple[GpState, Array]:
+    """Updates the K named rows, which are predicted to their cells' times, with their cells.
 
-    cells [K, C, 2] m, of which the first count [K] count; noise [K, 2, 2] m^2, R of one cell.
+    cells [K, C, 2] m, of which the first count [K] of each row are used; noise [K, 2, 2] m^2, R of
+    one cell. Returns the new state and the mean nu^2 / S [K] of the cells: about 1 if the model
+    holds, nan without cells.
     """
     now = take(state, rows)
     total = np.zeros(len(rows))

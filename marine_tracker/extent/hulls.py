@@ -1,23 +1,22 @@
-"""Length, beam and heading of the tracked targets: random matrix first, an outline close by.
+"""Length, beam and heading of the tracked targets: first by random matrix, later by an outline.
 
-One row a target, whatever it is; the point tracker is authoritative for where targets are and
-which cluster is whose. A row starts with a random matrix. It goes over to a Gaussian-process
-outline once SCANS clusters of CELLS cells on average have come and the smear is small against the
-beam; it goes back when the outline contradicts the course or its cells. A scan without a
-cluster, or with one that touches another, leaves size and outline as they are.
+There is one row for each target. The point tracker decides where targets are and which cluster
+belongs to which. A row starts with a random matrix. It changes to a Gaussian-process outline when
+SCANS clusters with CELLS cells on average have come, and the smear is small compared with the beam.
+It changes back if the outline contradicts the course or its cells. A scan without a cluster, or
+with one that touches another, leaves size and outline unchanged.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..estimators.contract import Velocity
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import unit_vector
-from ..types import Array, Extrapolation, append, put, take, where
+from ..types import Array, BoolArray, CodeArray, Extrapolation, IntArray, append, put, take, where
 from . import gaussian_process, outline_measures, random_matrix
-from .clustering import Clusters
+from .clustering import NOTHING, Clusters, take_clusters
 from .gaussian_process import HEADING, GpState
 from .lit_edge import FRINGE, Edge
 from .random_matrix import BOX_SPREAD, NO_MEMORY, RandomMatrixState
@@ -25,32 +24,32 @@ from .ship_outline import SHIP, SLENDER, from_random_matrix, off_course
 
 BY_RANDOM_MATRIX, BY_GAUSSIAN_PROCESS = 0, 1  # methods
 SCANS, CELLS, SMEAR = 10, 10.0, 0.4  # for an outline: scans; mean cells; smear over half beam
-OFF_COURSE = np.radians(15)  # of an outline's heading: it is wrong
-NIS = 3.0  # mean nu^2 / S of an outline's cells: they contradict it
-EDGE_CELLS = 6  # of the lit edge that an outline needs to start
-RECENT = 5.0  # scans that the means of cells and NIS remember
+OFF_COURSE = np.radians(15)  # between outline's heading and course; above this the heading is wrong
+NIS = 3.0  # mean nu^2 / S of an outline's cells; above this they contradict it
+EDGE_CELLS = 6  # cells of the lit edge that an outline needs to start
+RECENT = 5.0  # scans, memory of the means of cells and NIS
 FIRST_WEIGHT = 6.0  # of a random matrix's first cluster
-LOST_TOUCH = 16.0  # squared distance of the random matrix from the track
-SLOW = 1.0  # m/s: slower, a course says little about the heading
+LOST_TOUCH = 16.0  # squared distance of a random matrix from its track; above it is reset
+SLOW = 1.0  # m/s; at a lower speed the course says little about the heading
 
 
 class Hulls(NamedTuple):
-    """What is known of N targets.
+    """The memory of N targets.
 
     id       [N]  of the track
     matrix   N rows
-    outline  N rows, of no meaning where the method is RANDOM_MATRIX; None where never asked for
+    outline  N rows, without meaning where the method is RANDOM_MATRIX; None if not asked for
     method   [N]  RANDOM_MATRIX or OUTLINE
     scans    [N]  clusters since the start, or since an outline failed
-    cells    [N]  mean number of cells of late
-    nis      [N]  mean nu^2 / S of the outline's cells of late, about 1
+    cells    [N]  mean number of cells in recent scans
+    nis      [N]  mean nu^2 / S of the outline's cells in recent scans, about 1
     """
 
-    id: NDArray[np.int64]
+    id: IntArray
     matrix: RandomMatrixState
     outline: GpState | None
-    method: NDArray[np.int8]
-    scans: NDArray[np.int64]
+    method: CodeArray
+    scans: IntArray
     cells: Array
     nis: Array
 
@@ -58,49 +57,36 @@ class Hulls(NamedTuple):
 class Shapes(NamedTuple):
     """N targets as they are shown.
 
-    extended            [N]  the target is longer than what pulse and beam make of a point
+    extended            [N]  the target is longer than pulse and beam make a point
     length, length_sd   [N]  m
     beam                [N]  m, an upper bound where the method is RANDOM_MATRIX
-    heading             [N]  rad clockwise from north; of an axis the half that course points to
+    heading             [N]  rad clockwise from north; of an axis, the end nearer to the course
     heading_sd          [N]  rad
     source              [N]  of the heading: index into SOURCES
     method              [N]  RANDOM_MATRIX or OUTLINE
-    outline             [N, CORNERS, 2]  m, east and north of where the tracker has the target
+    outline             [N, CORNERS, 2]  m, east and north of the tracker's position
     """
 
-    extended: NDArray[np.bool_]
+    extended: BoolArray
     length: Array
     length_sd: Array
     beam: Array
     heading: Array
     heading_sd: Array
-    source: NDArray[np.int8]
-    method: NDArray[np.int8]
+    source: CodeArray
+    method: CodeArray
     outline: Array
 
 
-NOTHING = Clusters(
-    time=np.zeros(1),
-    position=np.zeros((1, 2)),
-    scatter=np.zeros((1, 2, 2)),
-    cells=np.ones(1, np.int64),
-    noise=np.eye(2)[None],
-    size=np.zeros(1),
-    amplitude=np.zeros(1),
-    gate=np.full(1, -1),
-    crowded=np.zeros(1, bool),
-    land=np.zeros(1, bool),
-    of_cell=np.zeros(0, np.int64),
-)
 METHODS = ('random_matrix', 'gp')
 COURSE, AXIS, BY_OUTLINE = 0, 1, 2
 SOURCES = ('course', 'axis', 'outline')
 CORNERS = 36
-_AROUND = 2 * np.pi / CORNERS * np.arange(CORNERS)
+_AROUND: Array = 2 * np.pi / CORNERS * np.arange(float(CORNERS))
 
 
 def begin(outlines: bool) -> Hulls:
-    """No targets yet; outlines: whether there may be some."""
+    """No targets yet. outlines: whether outlines are used."""
     none = np.zeros(0)
     matrix = random_matrix.start(
         none,
@@ -122,19 +108,19 @@ def begin(outlines: bool) -> Hulls:
 
 def step(
     before: Hulls,
-    ids,
-    time,
+    ids: IntArray,
+    time: Array,
     estimate: Extrapolation,
     clusters: Clusters,
-    taken,
+    taken: IntArray,
     edge: Edge | None,
-    own_ship,
+    own_ship: Array,
 ) -> Hulls:
-    """One scan.
+    """Processes one scan.
 
-    ids [N] of the tracks, time [N] s when the beam passed them, estimate of the point tracker
-    then; taken [N]: the cluster of each, -1 for none; edge of the clusters, None for no
-    outlines; own_ship [2] m.
+    ids [N] of the tracks; time [N] s when the beam passed them; estimate of the point tracker then;
+    taken [N]: the cluster of each, -1 for none; edge of the clusters, None if outlines are not
+    used; own_ship [2] m.
     """
     new = ~np.isin(ids, before.id)
     hulls = append(
@@ -161,22 +147,20 @@ def step(
     return _outlines(hulls, time, rows, taken, own, edge, own_ship)
 
 
-def take_clusters(clusters: Clusters, rows) -> Clusters:
-    """The chosen clusters; of_cell is left as it is."""
-    return take(clusters._replace(of_cell=clusters.cells), rows)._replace(of_cell=clusters.of_cell)
-
-
-def first_extent(scatter, count, noise):
-    """A first guess of X [K, 2, 2] m^2 from one cluster each: what the noise leaves."""
+def first_extent(scatter: Array, count: IntArray, noise: Array) -> Array:
+    """A first guess of X [K, 2, 2] m^2 from one cluster each: its spread without the noise."""
     spread = scatter / count[:, None, None] - noise
     value, vector = np.linalg.eigh(spread)
     value = np.maximum(value, 0.25 * np.linalg.eigvalsh(noise)) / random_matrix.SHIP.spread
-    return (vector * value[:, None]) @ vector.swapaxes(1, 2)
+    found: Array = (vector * value[:, None]) @ vector.swapaxes(1, 2)
+    return found
 
 
-def _start(ids, estimate, clusters, taken, outlines):
+def _start(
+    ids: IntArray, estimate: Extrapolation, clusters: Clusters, taken: IntArray, outlines: bool
+) -> Hulls:
     count = len(ids)
-    # A track that was there before extents were asked for may have no cluster.
+    # A track that began before extents were switched on may have no cluster.
     none = taken < 0
     own = take_clusters(clusters if len(clusters.cells) else NOTHING, taken)
     scatter = np.where(none[:, None, None], 0.0, own.scatter)
@@ -205,7 +189,7 @@ def _start(ids, estimate, clusters, taken, outlines):
     )
 
 
-def _no_outline(count):
+def _no_outline(count: int) -> GpState:
     none = np.zeros(count)
     return gaussian_process.start(
         SHIP,
@@ -217,10 +201,12 @@ def _no_outline(count):
     )
 
 
-def _keep_touch(matrix, rows, own, estimate):
-    """The matrices, those of the named rows that lost touch with their track set on it again.
+def _keep_touch(
+    matrix: RandomMatrixState, rows: IntArray, own: Clusters, estimate: Extrapolation
+) -> RandomMatrixState:
+    """The matrices; of the named rows, those far from their track are reset to it.
 
-    A random matrix goes straight on; the track knows manoeuvres.
+    A random matrix moves straight on, but the track follows manoeuvres.
     """
     ahead = take(matrix, rows)
     off = own.position - ahead.mean[:, :2]
@@ -237,9 +223,18 @@ def _keep_touch(matrix, rows, own, estimate):
     )
 
 
-def _outlines(hulls, time, rows, taken, own, edge, own_ship):
-    """The outlines of the rows that may have one: predicted, started, updated, given up."""
+def _outlines(
+    hulls: Hulls,
+    time: Array,
+    rows: IntArray,
+    taken: IntArray,
+    own: Clusters,
+    edge: Edge,
+    own_ship: Array,
+) -> Hulls:
+    """The outlines of the rows that may have one: predicted, started, updated or given up."""
     matrix, outline = hulls.matrix, hulls.outline
+    assert outline is not None
     noise, cells = np.zeros_like(matrix.extent), np.zeros(len(time), np.int64)
     noise[rows] = own.noise
     cells[rows] = np.bincount(edge.cluster, minlength=taken.max(initial=-1) + 1)[taken[rows]]
@@ -285,7 +280,7 @@ def _outlines(hulls, time, rows, taken, own, edge, own_ship):
     )
 
 
-def _padded(edge, chosen):
+def _padded(edge: Edge, chosen: IntArray) -> tuple[Array, IntArray]:
     """Cells [K, C, 2] m of the chosen clusters' edges, and how many [K] each has."""
     first, last = (np.searchsorted(edge.cluster, chosen, side) for side in ('left', 'right'))
     count = last - first
@@ -293,12 +288,13 @@ def _padded(edge, chosen):
     return edge.position[np.minimum(place, len(edge.cluster) - 1)], count
 
 
-def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
+def size(matrix: RandomMatrixState, noise: Array) -> random_matrix.Measures:
     """Length, beam and axis of the random matrices; noise [N, 2, 2] m^2, R of a single cell.
 
-    A radar shows cells wherever an echo reaches, and they count alike: those of a hull lie evenly
-    over its length L and F = FRINGE deviations of R beyond either end, not as a sum of both. So a
-    random matrix, which takes R off in squares, is left with about L^2 + 4 L F; here F goes.
+    A radar shows a cell wherever an echo reaches, and all cells count the same. So the cells of a
+    hull lie evenly over its length L plus F = FRINGE deviations of R at either end. The random
+    matrix subtracts R as a variance, which leaves about L^2 + 4 L F. This function removes the F
+    term.
     """
     found = random_matrix.measures(matrix, noise, size=BOX_SPREAD)
     line = unit_vector(found.axis)
@@ -306,10 +302,10 @@ def size(matrix: RandomMatrixState, noise) -> random_matrix.Measures:
     return found._replace(length=np.sqrt(found.length**2 + 4 * fringe**2) - 2 * fringe)
 
 
-def shapes(hulls: Hulls, noise, position) -> Shapes:
-    """What is shown of the targets.
+def shapes(hulls: Hulls, noise: Array, position: Array) -> Shapes:
+    """The shapes of the targets as they are shown.
 
-    noise [N, 2, 2] m^2, R of a single cell where each is; position [N, 2] m of the point tracker.
+    noise [N, 2, 2] m^2, R of a single cell at each target; position [N, 2] m of the point tracker.
     """
     matrix, found = hulls.matrix, size(hulls.matrix, noise)
     velocity = matrix.mean[:, 2:]
@@ -329,7 +325,7 @@ def shapes(hulls: Hulls, noise, position) -> Shapes:
     heading_sd = np.where(by_course, course_sd, found.axis_sd)
     source = np.where(by_course, COURSE, AXIS).astype(np.int8)
     lined = (hulls.method == BY_GAUSSIAN_PROCESS).nonzero()[0]
-    if len(lined):
+    if hulls.outline is not None and len(lined):
         outline = take(hulls.outline, lined)
         of = outline_measures.measures(outline, SHIP.contour)
         points[lined] = outline_measures.of_gaussian_process(outline, SHIP.contour, _AROUND).points

@@ -1,28 +1,29 @@
-"""Radii at angles that are themselves uncertain: paper 004, eq 30-47 as reconstructed.
+"""Radii at uncertain angles: paper 004, eq 30-47 as reconstructed.
 
-The angle b at which a cell meets the outline comes of the cell's noise and of the target's
-estimated place and heading; its variance Sigma is `input_variance`. The variants differ in what
-they make of it:
+The angle b at which a cell meets the outline depends on the cell's noise and on the target's
+estimated position and heading. Its variance Sigma is `input_variance`. The variants use it in
+different ways:
 
-    gp      nothing: V = v(b)
+    gp      not at all: V = v(b)
     gp_ts   first order:                   V = v(b) + mu'(b)^2 Sigma
     gp_ss   three sigma points b, b +- sqrt(3 Sigma), weights 2/3 1/6 1/6
     gp_mc   100 draws of N(b, Sigma)
-    gp_q15  15 even nodes over +- 2.8 sigma with Gaussian weights: gp_mc without chance
+    gp_q15  15 even nodes over +- 2.8 sigma with Gaussian weights: gp_mc without random draws
 
 With nodes b_i, means replace mu, mu', h and v, and V = mean v + var mu(b_i).
 """
 
 import numpy as np
 
+from ..types import Array
 from .radial_function import Contour, Radius, radius
 
 VARIANTS = ('gp', 'gp_ts', 'gp_ss', 'gp_mc', 'gp_q15')
 DRAWS = 100
-MOST = (np.pi / 3) ** 2  # rad^2: a wider angle says nothing, and its moments are not these
+MOST = (np.pi / 3) ** 2  # rad^2; the moments do not hold for a larger variance
 
 
-def _even_nodes():
+def _even_nodes() -> tuple[Array, Array]:
     nodes = np.linspace(-2.8, 2.8, 15)
     weights = np.exp(-0.5 * nodes**2)
     weights /= weights.sum()
@@ -38,7 +39,9 @@ NODES = {
 }
 
 
-def input_variance(across, distance, noise, covariance=None):
+def input_variance(
+    across: Array, distance: Array, noise: Array, covariance: Array | None = None
+) -> Array:
     """Sigma [N] rad^2 of the angles at which cells meet outlines, at most MOST.
 
     across [N, 2] unit vectors, distance [N] m of the cells from the centres; noise [N, 2, 2] m^2
@@ -51,12 +54,21 @@ def input_variance(across, distance, noise, covariance=None):
     return np.minimum(found, MOST)
 
 
-def noisy_radius(prior: Contour, semi_axes, f, angle, variance, variant: str, rng=None) -> Radius:
-    """Radii [N] at the angles [N] rad with the variances [N] rad^2; the rest as in `radius`.
+def noisy_radius(
+    prior: Contour,
+    semi_axes: Array,
+    f: Array,
+    angle: Array,
+    variance: Array,
+    variant: str,
+    rng: np.random.Generator | None = None,
+) -> Radius:
+    """Radii [N] at the angles [N] rad with the variances [N] rad^2; other arguments as in `radius`.
 
-    `variance` of the result is V. rng is drawn from by gp_mc only.
+    `variance` of the result is V. Only gp_mc draws from rng.
     """
     if variant == 'gp_mc':
+        assert rng is not None
         nodes, weights = rng.standard_normal((len(angle), DRAWS)), np.full(DRAWS, 1 / DRAWS)
     else:
         nodes, weights = NODES[variant]
@@ -68,6 +80,7 @@ def noisy_radius(prior: Contour, semi_axes, f, angle, variance, variant: str, rn
     return Radius(mean, slope, weights @ at.weight, left)
 
 
-def _square(vector, matrix):
+def _square(vector: Array, matrix: Array) -> Array:
     """a' M a [N]."""
-    return ((vector[:, None] @ matrix)[:, 0] * vector).sum(-1)
+    found: Array = ((vector[:, None] @ matrix)[:, 0] * vector).sum(-1)
+    return found

@@ -1,20 +1,19 @@
-"""The lit edge of clusters: of each beam's cells the nearest, set back by what the radar smears.
+"""The lit edge of clusters: the nearest cell in each beam, moved back by the radar's smear.
 
-Cells fill a hull unevenly, and beyond its edges; the first echo in a beam tells where the near
-side is. These are the cells that an outline can be measured by.
+Cells fill a hull unevenly and spread beyond its edges. The first echo in a beam shows where the
+near side is. These cells are used to measure an outline.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..geometry import unit_vector, wrap_angle
-from ..types import Array, Plots
+from ..types import Array, IntArray, Plots
 from .smear import ACROSS, ALONG
 
-FRINGE = 1.1  # deviations of a cell by which echoes reach beyond a hull
-NOISE = 0.36  # of a cell's R: that of a cell of the edge, which is known to within a cell
+FRINGE = 1.1  # in deviations of a cell; echoes reach this far beyond a hull
+NOISE = 0.36  # of a cell's R: variance of an edge cell, which is known to within one cell
 
 
 class Edge(NamedTuple):
@@ -25,12 +24,14 @@ class Edge(NamedTuple):
     noise     [C, 2, 2]  m^2, of one point of each cluster
     """
 
-    cluster: NDArray[np.int64]
+    cluster: IntArray
     position: Array
     noise: Array
 
 
-def lit_edge(cells: Plots, of_cell, noise, range_resolution: float, beam_width: float) -> Edge:
+def lit_edge(
+    cells: Plots, of_cell: IntArray, noise: Array, range_resolution: float, beam_width: float
+) -> Edge:
     """The edges of all clusters; of_cell [M] is the cluster of each cell.
 
     noise [C, 2, 2] m^2, R of a cell of each cluster; range_resolution m, beam_width rad.

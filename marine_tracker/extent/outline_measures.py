@@ -1,5 +1,6 @@
-"""What outlines measure, and how far they are from a true star-convex one."""
+"""Measures of outlines, and their errors against a true star-convex outline."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -7,10 +8,10 @@ import numpy as np
 from ..geometry import to_range_bearing, unit_vector
 from ..types import Array
 from .gaussian_process import FIRST_RADIUS, HEADING, GpState
-from .radial_function import Contour, radius
+from .radial_function import Contour, Radius, radius
 from .random_matrix import Measures, RandomMatrixState
 
-AROUND = np.arange(360) * np.pi / 180  # rad: where outlines are looked at
+AROUND = np.arange(360) * np.pi / 180  # rad: angles at which outlines are evaluated
 
 
 class Outline(NamedTuple):
@@ -27,11 +28,11 @@ class Outline(NamedTuple):
 
 
 class Error(NamedTuple):
-    """How far estimated outlines are from the truth, one row a target.
+    """Errors of estimated outlines, one row a target.
 
     rmse         [N]  m, over the angles of f
-    mahalanobis  [N]  about sqrt(M) for M angles where the covariance is right
-    coverage     [N]  part of the angles at which the truth is within 3 deviations
+    mahalanobis  [N]  about sqrt(M) for M angles if the covariance is right
+    coverage     [N]  share of the angles at which the truth is within 3 deviations
     """
 
     rmse: Array
@@ -39,8 +40,8 @@ class Error(NamedTuple):
     coverage: Array
 
 
-def of_gaussian_process(state: GpState, prior: Contour, angle=AROUND) -> Outline:
-    """At the angles [A] rad clockwise from the bow."""
+def of_gaussian_process(state: GpState, prior: Contour, angle: Array = AROUND) -> Outline:
+    """The outline at the angles [A] rad clockwise from the bow."""
     at = _radius(state, prior, angle)
     variance = _form(at.weight, _outline_covariance(state)) + at.variance
     return Outline(
@@ -50,7 +51,9 @@ def of_gaussian_process(state: GpState, prior: Contour, angle=AROUND) -> Outline
     )
 
 
-def of_random_matrix(state: RandomMatrixState, bearing=AROUND, size: float = 1.0) -> Outline:
+def of_random_matrix(
+    state: RandomMatrixState, bearing: Array = AROUND, size: float = 1.0
+) -> Outline:
     """The ellipse p' X^-1 p = size^2, at the bearings [A] rad from its centroid."""
     line = unit_vector(bearing)
     inverse = np.linalg.inv(state.extent)
@@ -62,11 +65,12 @@ def of_random_matrix(state: RandomMatrixState, bearing=AROUND, size: float = 1.0
     )
 
 
-def area(points):
+def area(points: Array) -> Array:
     """m^2 [N] inside polygons [N, A, 2] m."""
     east, north = points[..., 0], points[..., 1]
     doubled = east * np.roll(north, -1, 1) - np.roll(east, -1, 1) * north
-    return 0.5 * np.abs(doubled.sum(1))
+    found: Array = 0.5 * np.abs(doubled.sum(1))
+    return found
 
 
 def measures(state: GpState, prior: Contour) -> Measures:
@@ -84,7 +88,7 @@ def measures(state: GpState, prior: Contour) -> Measures:
     )
 
 
-def error(state: GpState, prior: Contour, truth) -> Error:
+def error(state: GpState, prior: Contour, truth: Array) -> Error:
     """Against the true radii [M] or [N, M] m at the angles of f."""
     at = _radius(state, prior, prior.angle)
     off = at.mean - truth
@@ -96,36 +100,41 @@ def error(state: GpState, prior: Contour, truth) -> Error:
     )
 
 
-def shape_error(points, centre, heading, true_radius):
-    """RMS m [N] of polygons [N, A, 2] m off the true outline, along rays from its true centre.
+def shape_error(
+    points: Array, centre: Array, heading: Array, true_radius: Callable[[Array], Array]
+) -> Array:
+    """RMS distance m [N] of polygons [N, A, 2] m from the true outline, along rays from its true
+    centre.
 
-    centre [N, 2] m and heading [N] rad of the truth; true_radius(angle [N, A]) m. Errors of place
-    and heading count: what an estimate without a heading can be compared by.
+    centre [N, 2] m and heading [N] rad of the truth; true_radius(angle [N, A]) m. Errors of
+    position and heading count. So it can compare estimates that have no heading.
     """
     distance, bearing = to_range_bearing(points - centre[:, None])
     off = distance - true_radius(bearing - heading[:, None])
-    return np.sqrt(np.square(off).mean(1))
+    found: Array = np.sqrt(np.square(off).mean(1))
+    return found
 
 
-def _radius(state, prior, angle):
+def _radius(state: GpState, prior: Contour, angle: Array) -> Radius:
     each = np.broadcast_to(angle, (len(state.time), len(angle)))
     return radius(prior, state.semi_axes, state.mean[:, FIRST_RADIUS:], each)
 
 
-def _outline_covariance(state):
+def _outline_covariance(state: GpState) -> Array:
     return state.covariance[:, FIRST_RADIUS:, FIRST_RADIUS:]
 
 
-def _points(centre, distance, bearing):
+def _points(centre: Array, distance: Array, bearing: Array) -> Array:
     return centre[:, None] + distance[..., None] * unit_vector(bearing)
 
 
-def _form(rows, matrix):
+def _form(rows: Array, matrix: Array) -> Array:
     """a' M a [N, S] of rows [N, S, M] and matrices [N, M, M]."""
-    return ((rows @ matrix) * rows).sum(-1)
+    found: Array = ((rows @ matrix) * rows).sum(-1)
+    return found
 
 
-def _width(state, prior, found, direction):
+def _width(state: GpState, prior: Contour, found: Array, direction: float) -> tuple[Array, Array]:
     """Width m [N] along an angle off the bow, and its deviation; found [N, A] m at AROUND."""
     share = np.cos(AROUND - direction)
     ends = np.stack([(found * share).argmax(1), (found * share).argmin(1)], 1)  # [N, 2]

@@ -1,14 +1,14 @@
 """A star-convex outline as a radial function, with a Gaussian process over the angle.
 
 Wahlstroem and Oezkan, IEEE T-SP 63(16), 2015; paper 004, eq 12-14. The radius at the angle b,
-clockwise from the bow, is known by its values f at M angles U:
+clockwise from the bow, is given by its values f at M angles U:
 
     r(b) = base(b) [m + h(b) (f - m) + e],  h(b) = k(b, U) K^-1,  e ~ N(0, v(b))
     k(a, b) = sf^2 exp(-2 sin^2(|a - b| / 2) / l^2) + sr^2
 
-base is the radius of a plain outline (`lame`): a circle of 1 m in the paper, where m = 0; for ships
-a rounded box of the size known before, about which f stays near m = 1. With folds = 2 the angle
-counts twice, and what is abaft is like what is ahead.
+base is the radius of a plain outline (`lame`). In the paper it is a circle of 1 m, with m = 0. For
+ships it is a rounded box of the size known before, and f stays near m = 1. With folds = 2 the
+angle counts twice, so the stern half looks like the bow half.
 """
 
 from typing import NamedTuple
@@ -17,7 +17,7 @@ import numpy as np
 
 from ..types import Array
 
-JITTER = 1e-6  # of sf^2: keeps K from being singular
+JITTER = 1e-6  # of sf^2; keeps K invertible
 
 
 class Contour(NamedTuple):
@@ -51,7 +51,7 @@ class Radius(NamedTuple):
     mean      [..., S]     m
     slope     [..., S]     m/rad, dr/db
     weight    [..., S, M]  m, dr/df
-    variance  [..., S]     m^2, what f leaves open
+    variance  [..., S]     m^2, the part that f does not determine
     """
 
     mean: Array
@@ -78,13 +78,13 @@ def contour(
     empty = np.empty((0, 0))
     prior = Contour(angle, deviation, mean_deviation, scale, folds, mean, power, empty, empty)
     covariance = kernel(prior, angle)[0] + JITTER * deviation**2 * np.eye(points)
-    return prior._replace(covariance=covariance, precision=np.linalg.inv(covariance))
+    return prior._replace(covariance=covariance, precision=np.linalg.inv(covariance).astype(float))
 
 
-def kernel(prior: Contour, angle):
+def kernel(prior: Contour, angle: Array) -> tuple[Array, Array]:
     """k(b, U) and dk/db, both [..., M], at the angles [...] rad."""
     turned, points = prior.folds * np.asarray(angle)[..., None], prior.folds * prior.angle
-    cosine, sine = np.cos(turned), np.sin(turned)  # of few; then those of all the differences
+    cosine, sine = np.cos(turned), np.sin(turned)  # of few angles; then of all differences
     along, across = np.cos(points), np.sin(points)
     squared = prior.scale**2
     # 2 sin^2(d / 2) = 1 - cos d
@@ -93,7 +93,7 @@ def kernel(prior: Contour, angle):
     return bell + prior.mean_deviation**2, slope
 
 
-def radius(prior: Contour, semi_axes, f, angle) -> Radius:
+def radius(prior: Contour, semi_axes: Array, f: Array, angle: Array) -> Radius:
     """Radii at the angles [N, S] rad of N targets with f [N, M] and bases of the semi-axes
     [N, 2] m, ahead and abeam."""
     k, dk = kernel(prior, angle)
@@ -111,7 +111,7 @@ def radius(prior: Contour, semi_axes, f, angle) -> Radius:
     )
 
 
-def lame(semi_axes, power, angle):
+def lame(semi_axes: Array, power: float, angle: Array) -> tuple[Array, Array]:
     """Radius m and slope m/rad [...] of |x / a|^p + |y / b|^p = 1 (Lame's curve) at the angles
     [...] off the first of its semi-axes [..., 2] m; power p > 1: 2 for an ellipse, more for boxes.
     """
@@ -127,6 +127,6 @@ def lame(semi_axes, power, angle):
     return size, (ahead * sine - abeam * cosine) * size / total
 
 
-def _dot(rows, vector):
+def _dot(rows: Array, vector: Array) -> Array:
     """[N, S] of rows [N, S, M] with vectors [N, M]."""
     return (rows @ vector[..., None])[..., 0]

@@ -1,32 +1,33 @@
 """Centroid, motion and elliptic extent of targets by a random matrix.
 
-Feldmann, Fraenken, Koch, IEEE T-SP 59(4), 2011. The extent X is a symmetric matrix, m^2: the
-ellipse p' X^-1 p = 1 about the centroid is the outline. Cells have the covariance Y = z_s X + R
-about it, where z_s tells how the scatterers lie and R is the noise of a single cell.
+Feldmann, Fraenken, Koch, IEEE T-SP 59(4), 2011. The extent X is a symmetric matrix, m^2. Its
+outline is the ellipse p' X^-1 p = 1 about the centroid. Cells have the covariance Y = z_s X + R
+about the centroid. z_s describes how the scatterers are distributed; R is the noise of one cell.
 
-All functions take and return rows of N targets; those that had no cluster are not named.
+All functions take and return rows of N targets. Rows that had no cluster are not named.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
+from ..estimators.contract import Velocity
 from ..gaussian.linear import invert_2x2, kalman_update
 from ..geometry import unit_vector
-from ..types import Array, put, take
+from ..types import Array, IntArray, put, take
 
-SURFACE, CONTOUR = 1 / 4, 1 / 2  # z_s of scatterers all over an ellipse, and along its outline
-NO_MEMORY = 2.0  # the weight at which an extent says nothing
-BOX_SPREAD = np.sqrt(3.0)  # length over sqrt(X) of a box, all over: L^2 / 12 = X / 4
+SURFACE, CONTOUR = 1 / 4, 1 / 2  # z_s of scatterers over a whole ellipse, and along its outline
+NO_MEMORY = 2.0  # at this weight an extent carries no information
+BOX_SPREAD = np.sqrt(3.0)  # length over sqrt(X) of a filled box: L^2 / 12 = X / 4
 ELLIPSE = 2.0  # the same of the ellipse itself
-AXIS_UNKNOWN = np.pi / np.sqrt(12)  # rad, deviation of an axis that may lie anywhere
+AXIS_UNKNOWN = np.pi / np.sqrt(12)  # rad, deviation of an axis of unknown direction
 
 
 class Model(NamedTuple):
-    """What is assumed of a class of targets.
+    """The assumptions about a class of targets.
 
     noise   m^2/s^3, density of the white acceleration of each axis
-    memory  s, in which the weight of what the extent was falls to 1/e
+    memory  s, in which the weight of the past extent falls to 1/e
     spread  z_s
     """
 
@@ -45,7 +46,7 @@ class RandomMatrixState(NamedTuple):
     mean        [N, 4]     centroid m and velocity m/s, [e n ve vn]
     covariance  [N, 4, 4]
     extent      [N, 2, 2]  m^2, X
-    weight      [N]        degrees of freedom of X: about the number of cells it rests on
+    weight      [N]        degrees of freedom of X: about the number of cells that it is based on
     """
 
     time: Array
@@ -71,12 +72,19 @@ class Measures(NamedTuple):
     axis_sd: Array
 
 
-def start(time, position, covariance, velocity, extent, weight=6.0) -> RandomMatrixState:
+def start(
+    time: Array,
+    position: Array,
+    covariance: Array,
+    velocity: Velocity,
+    extent: Array,
+    weight: Array | float = 6.0,
+) -> RandomMatrixState:
     """New rows.
 
-    time [N] s; position [N, 2] m with covariance [N, 2, 2] m^2, of the centroid; velocity a
-    `contract.Velocity` of N rows; extent [N, 2, 2] m^2, a first guess, with the weight (a number
-    or [N]) it shall have.
+    time [N] s; position [N, 2] m of the centroid with covariance [N, 2, 2] m^2; velocity a
+    `contract.Velocity` of N rows; extent [N, 2, 2] m^2, a first guess; weight of that guess, a
+    number or [N].
     """
     count = len(time)
     mean = np.concatenate([position, velocity.mean], 1)
@@ -87,13 +95,13 @@ def start(time, position, covariance, velocity, extent, weight=6.0) -> RandomMat
     )
 
 
-def predict(state: RandomMatrixState, time, model: Model = SHIP) -> RandomMatrixState:
-    """All rows at the times [N] s: straight on, while the extent stays and loses weight."""
+def predict(state: RandomMatrixState, time: Array, model: Model = SHIP) -> RandomMatrixState:
+    """Predicts all rows to the times [N] s: straight motion; the extent stays and loses weight."""
     step = time - state.time
     mean = state.mean.copy()
     mean[:, :2] += step[:, None] * mean[:, 2:]
-    transition, noise = constant_velocity(step)
-    transition = np.kron(transition, np.eye(2))
+    of_axis, noise = constant_velocity(step)
+    transition = np.kron(of_axis, np.eye(2))
     covariance = transition @ state.covariance @ transition.swapaxes(1, 2) + model.noise * np.kron(
         noise, np.eye(2)
     )
@@ -107,9 +115,10 @@ def predict(state: RandomMatrixState, time, model: Model = SHIP) -> RandomMatrix
     )
 
 
-def constant_velocity(step):
-    """Transition [N, 2, 2] of [x v] over the steps [N] s; covariance [N, 2, 2] that white
-    acceleration of unit density leaves."""
+def constant_velocity(step: Array) -> tuple[Array, Array]:
+    """Transition [N, 2, 2] of [x v] over the steps [N] s; and the process covariance [N, 2, 2] of
+    white acceleration with unit density.
+    """
     size = np.abs(step)
     transition = np.tile(np.eye(2), (len(step), 1, 1))
     transition[:, 0, 1] = step
@@ -120,9 +129,16 @@ def constant_velocity(step):
 
 
 def update(
-    state: RandomMatrixState, rows, centroid, scatter, count, noise, model: Model = SHIP
+    state: RandomMatrixState,
+    rows: IntArray,
+    centroid: Array,
+    scatter: Array,
+    count: IntArray,
+    noise: Array,
+    model: Model = SHIP,
 ) -> RandomMatrixState:
-    """The K named rows, predicted to their clusters' times, take one cluster each.
+    """Updates the K named rows, which are predicted to their clusters' times, with one cluster
+    each.
 
     centroid [K, 2] m; scatter [K, 2, 2] m^2, the sum over the cells of d d' with d from the
     centroid; count [K] >= 1 cells; noise [K, 2, 2] m^2, R of a single cell.
@@ -147,12 +163,12 @@ def update(
     return put(state, rows, RandomMatrixState(before.time, mean, covariance, extent, weight))
 
 
-def cell_covariance(extent, noise, model: Model = SHIP):
+def cell_covariance(extent: Array, noise: Array, model: Model = SHIP) -> Array:
     """Y [..., 2, 2] m^2 of cells about their centroid; extent and noise [..., 2, 2] m^2."""
     return model.spread * extent + noise
 
 
-def root_2x2(matrix):
+def root_2x2(matrix: Array) -> Array:
     """The symmetric root [..., 2, 2] of symmetric positive definite 2 x 2 matrices."""
     root = np.sqrt(
         np.maximum(
@@ -160,23 +176,27 @@ def root_2x2(matrix):
         )
     )
     trace = matrix[..., 0, 0] + matrix[..., 1, 1]
-    return (matrix + root[..., None, None] * np.eye(2)) / np.sqrt(trace + 2 * root)[..., None, None]
+    found: Array = (matrix + root[..., None, None] * np.eye(2)) / np.sqrt(trace + 2 * root)[
+        ..., None, None
+    ]
+    return found
 
 
 def measures(
-    state: RandomMatrixState, noise, model: Model = SHIP, size: float = BOX_SPREAD
+    state: RandomMatrixState, noise: Array, model: Model = SHIP, size: float = BOX_SPREAD
 ) -> Measures:
     """Length, beam and axis of all rows; size: BOX for hulls, ELLIPSE.
 
-    noise [N, 2, 2] m^2: R of a single cell, which widens the deviations. These are what `weight`
-    independent cells leave: off by a factor where cells share an echo.
+    noise [N, 2, 2] m^2, R of a single cell, widens the deviations. The deviations hold for `weight`
+    independent cells. If cells share an echo, they are wrong by a factor.
     """
     axis = axis_of(state.extent)
     line = unit_vector(axis)
     side = unit_vector(axis + np.pi / 2)
 
-    def between(matrix, a, b):
-        return np.einsum('ni,nij,nj->n', a, matrix, b)
+    def between(matrix: Array, a: Array, b: Array) -> Array:
+        found: Array = np.einsum('ni,nij,nj->n', a, matrix, b)
+        return found
 
     along, across = (between(state.extent, unit, unit) for unit in (line, side))
     cells = cell_covariance(state.extent, noise, model)
@@ -195,7 +215,7 @@ def measures(
     )
 
 
-def axis_of(extent):
+def axis_of(extent: Array) -> Array:
     """Bearing [...] rad in [0, pi) of the long axis of extents [..., 2, 2]."""
     half = 0.5 * np.arctan2(2 * extent[..., 0, 1], extent[..., 1, 1] - extent[..., 0, 0])
     return np.mod(half, np.pi)

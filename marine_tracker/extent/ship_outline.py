@@ -1,14 +1,16 @@
-"""Outlines of ships at sea: where they start from, and when they are worth having.
+"""Outlines of ships at sea: how they start, and the check against the course.
 
-Only the side that faces the radar gives cells, so the centroid lies towards it, and how wide a ship
-is can hardly be told: moved away and made wider, she would give the same cells. Small errors of the
-model, always of one sign, would drive an outline that way for hundreds of cells. So it starts half
-a beam behind the centroid, as wide as ships of that length are, and is stiff: a few per cent.
+Only the side that faces the radar gives cells, so the centroid is shifted towards the radar. The
+width of a ship can hardly be measured: a wider ship farther away gives the same cells. Small model
+errors of constant sign would move an outline that way over hundreds of cells. So the outline starts
+half a beam behind the centroid, with the usual width for its length, and it is stiff: it changes
+by a few per cent.
 """
 
 import numpy as np
 
 from ..geometry import to_range_bearing, unit_vector, wrap_angle
+from ..types import Array
 from .gaussian_process import HEADING, GpState, Model, start
 from .radial_function import contour
 from .random_matrix import Measures, RandomMatrixState
@@ -16,13 +18,13 @@ from .random_matrix import Measures, RandomMatrixState
 PRIOR = contour(24, 0.03, 0.01, np.pi / 8, folds=2, mean=1.0, power=4.0)
 SHIP = Model(PRIOR, 'gp_q15', noise=0.0025, turn_noise=1e-7, gate=16.0)
 SLENDER = 6.3  # length over beam of ships
-ALONG, ACROSS = 0.015, 0.25  # deviations of the first centre, of length and half beam
-HEADING_SD = np.radians(2.0)  # at least, of the first heading
+ALONG, ACROSS = 0.015, 0.25  # deviations of the first centre, relative to length and half beam
+HEADING_SD = np.radians(2.0)  # least deviation of the first heading
 RATE_SD = np.radians(0.1)  # rad/s
 
 
-def from_random_matrix(matrix: RandomMatrixState, found: Measures, own) -> GpState:
-    """Outlines of N ships, all as known by their random matrices; model SHIP.
+def from_random_matrix(matrix: RandomMatrixState, found: Measures, own: Array) -> GpState:
+    """Outlines of N ships from their random matrices; model SHIP.
 
     found: their measures; own [2] or [N, 2] m: the radar.
     """
@@ -45,13 +47,14 @@ def from_random_matrix(matrix: RandomMatrixState, found: Measures, own) -> GpSta
     )
 
 
-def heading_of(matrix: RandomMatrixState, found: Measures):
-    """Bearing [N] rad of the bow: the end of the axis that is nearer to the course."""
+def heading_of(matrix: RandomMatrixState, found: Measures) -> Array:
+    """Bearing [N] rad of the bow: the end of the axis nearer to the course."""
     astern = (unit_vector(found.axis) * matrix.mean[:, 2:]).sum(1) < 0
-    return found.axis + np.pi * astern
+    value: Array = found.axis + np.pi * astern
+    return value
 
 
-def off_course(state: GpState):
+def off_course(state: GpState) -> Array:
     """Angle [N] rad in [0, pi] between heading and course; large where the outline is wrong."""
     course = to_range_bearing(state.mean[:, 2:4])[1]
     return np.abs(wrap_angle(state.mean[:, HEADING] - course))

@@ -1,17 +1,19 @@
-"""How far a radar's pulse and beam smear a point echo: the noise of a single cell's place.
+"""How far a radar's pulse and beam smear a point echo: the position noise of a single cell.
 
-A cell stands anywhere in what pulse and beam light up at once, weighed by their shapes. The
-factors are the deviations of cells about a point target at 25 dB, over resolution and beam width.
+A cell can stand anywhere in the area that pulse and beam light up at once, weighted by their
+shapes. The factors are the deviations of cells about a point target at 25 dB, divided by range
+resolution and beam width.
 """
 
 import numpy as np
 
 from ..geometry import unit_vector
+from ..types import Array
 
 ALONG, ACROSS = 0.55, 0.4  # of the range resolution, of the beam's width
 
 
-def smear(range_, bearing, range_resolution: float, beam_width: float):
+def smear(range_: Array, bearing: Array, range_resolution: float, beam_width: float) -> Array:
     """Covariances [..., 2, 2] m^2, east and north, of cells about a point target.
 
     range_, bearing [...] m, rad; range_resolution m; beam_width rad.

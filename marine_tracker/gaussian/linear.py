@@ -1,12 +1,14 @@
-"""Small matrices, many at once: what the Kalman filters share.
+"""Operations on many small matrices at once, shared by the Kalman filters.
 
-Shapes lead with any axes [...]; H picks the two position entries of a state.
+Shapes may have any leading axes [...]. H picks the two position entries of a state.
 """
 
 import numpy as np
 
+from ..types import Array
 
-def invert_2x2(matrix):
+
+def invert_2x2(matrix: Array) -> tuple[Array, Array]:
     """Inverse [..., 2, 2] and determinant [...] of symmetric 2 x 2 matrices."""
     a, b, d = matrix[..., 0, 0], matrix[..., 0, 1], matrix[..., 1, 1]
     determinant = a * d - b * b
@@ -18,16 +20,19 @@ def invert_2x2(matrix):
     return inverse, determinant
 
 
-def sandwich(matrix, symmetric):
+def sandwich(matrix: Array, symmetric: Array) -> Array:
     """A P A' [..., m, m] for A [..., m, n] and symmetric P [..., n, n].
 
-    The transpose is laid out anew: a product with a transposed view takes twice the time.
+    The transpose is copied: a product with a transposed view takes twice the time.
     """
     half = np.matmul(matrix, symmetric)
-    return np.matmul(matrix, np.ascontiguousarray(half.swapaxes(-1, -2)))
+    found: Array = np.matmul(matrix, np.ascontiguousarray(half.swapaxes(-1, -2)))
+    return found
 
 
-def kalman_update(mean, covariance, innovation, noise, position):
+def kalman_update(
+    mean: Array, covariance: Array, innovation: Array, noise: Array, position: tuple[int, int]
+) -> tuple[Array, Array, Array, Array]:
     """Joint Kalman update of states [..., n] with one position measurement each.
 
     covariance [..., n, n]; innovation [..., 2] m; noise [..., 2, 2] m^2; position: the two
@@ -43,10 +48,14 @@ def kalman_update(mean, covariance, innovation, noise, position):
     return mean, covariance, inverse, determinant
 
 
-def weighted_fusion(first, first_noise, second, second_noise):
-    """Two measurements of one place as one: positions [..., 2] m and covariances [..., 2, 2] m^2.
+def weighted_fusion(
+    first: Array, first_noise: Array, second: Array, second_noise: Array
+) -> tuple[Array, Array]:
+    """Combines two measurements of one position: positions [..., 2] m and covariances [..., 2, 2]
+    m^2.
 
-    Weighted by their accuracy. A Kalman update with the result is that with both in turn.
+    Weighted by their accuracy. A Kalman update with the result equals updates with both, one after
+    the other.
     """
     gain = np.matmul(first_noise, invert_2x2(first_noise + second_noise)[0])
     return (
@@ -55,7 +64,7 @@ def weighted_fusion(first, first_noise, second, second_noise):
     )
 
 
-def squared_distance(innovation, inverse):
+def squared_distance(innovation: Array, inverse: Array) -> Array:
     """Squared Mahalanobis distance [...] of innovations [..., 2] by the inverse [..., 2, 2]."""
     east, north = innovation[..., 0], innovation[..., 1]
     return (

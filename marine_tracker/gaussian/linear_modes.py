@@ -1,31 +1,30 @@
-"""Linear-Gaussian modes of motion, many at once: what `imm` and the bank of `gwnn` are made of.
+"""Linear-Gaussian modes of motion, many at once: the basis of `imm` and of the bank of `gwnn`.
 
-A mode is constant velocity or a coordinated turn, with the state [e n ve vn]. All J modes of all
-N tracks are worked on together, as *columns* [14, J, N]: the four means, then the ten different
-entries of the covariance, row by row (`PACKED`). Whole-array sums and products of such columns
-cost a tenth of what stacks of 4 x 4 matrix products do.
+A mode is constant velocity or a coordinated turn, with the state [e n ve vn]. All J modes of all N
+tracks are computed together, as *columns* [14, J, N]: the four means, then the ten different
+entries of the covariance, row by row (`PACKED`). Sums and products of whole columns cost a tenth of
+products of stacked 4 x 4 matrices.
 
-Modes may belong to several chains (IMM filters): `Chain` says which and how they change.
+Modes may belong to several chains (IMM filters). `Chain` says which modes, and how they change.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array
+from ..types import Array, IntArray, Numbers
 
-# Entry [i, j] of a covariance by its place among the ten packed ones, and the other way round.
+# Entry [i, j] of a covariance by its index among the ten packed ones, and the reverse.
 ROW, COLUMN = np.triu_indices(4)
 PACKED = ROW * 4 + COLUMN
 UNPACKED = np.zeros((4, 4), int)
 UNPACKED[ROW, COLUMN] = UNPACKED[COLUMN, ROW] = np.arange(10)
-LEAST_WEIGHT = 1e-12  # no mode is ruled out for ever
+LEAST_WEIGHT = 1e-12  # keeps every mode possible
 
 
 class Chain(NamedTuple):
-    """Modes that one target passes between.
+    """Modes that a target changes between.
 
     modes  a slice of the bank's modes
     over   function of steps [N] s to the transition matrices [N, J, J]
@@ -36,55 +35,56 @@ class Chain(NamedTuple):
 
 
 class Bank(NamedTuple):
-    """The modes of a bank; those in no chain are filters of their own.
+    """The modes of a bank. A mode in no chain is a filter of its own.
 
     noise      [J, 1]  m^2/s^3, density of the white acceleration of each axis
     turn_rate  [J, 1]  rad/s, clockwise positive; 0 for constant velocity
     chains     the IMM filters among them
-    rates      [U, 1]  rad/s, the different sizes of turn_rate; size [J]: which of them each mode's
-               is. A sine costs as much as twenty products: modes that turn alike share theirs.
+    rates      [U, 1]  rad/s, the different absolute values of turn_rate
+    size       [J]     index into rates for each mode; modes with equal rates share a sine, which
+    costs as much as twenty products
     """
 
     noise: Array
     turn_rate: Array
     chains: tuple[Chain, ...]
     rates: Array
-    size: NDArray[np.int64]
+    size: IntArray
 
 
-def bank(noise, turn_rate, chains) -> Bank:
+def bank(noise: Numbers, turn_rate: Numbers, chains: Iterable[Chain]) -> Bank:
     """A bank from plain sequences."""
-    turn_rate = np.array(turn_rate, float)
-    rates, size = np.unique(np.abs(turn_rate), return_inverse=True)
-    return Bank(
-        np.array(noise, float)[:, None], turn_rate[:, None], tuple(chains), rates[:, None], size
-    )
+    turn = np.array(turn_rate, float)
+    rates, size = np.unique(np.abs(turn), return_inverse=True)
+    return Bank(np.array(noise, float)[:, None], turn[:, None], tuple(chains), rates[:, None], size)
 
 
-def straight(noise) -> Bank:
+def straight(noise: Array) -> Bank:
     """A bank of constant-velocity filters: noise [J, 1], or [J, N] where tracks differ."""
     count = len(noise)
     return Bank(noise, np.zeros((count, 1)), (), np.zeros((1, 1)), np.zeros(count, int))
 
 
-def transition_power(stay, period, entered=None):
+def transition_power(
+    stay: Numbers, period: float, entered: Numbers | None = None
+) -> Callable[[Array], Array]:
     """A mode chain in continuous time: function of steps [N] s to transition matrices [N, J, J].
 
     stay     [J]  probability to be in the same mode `period` s later
-    entered  [J]  how readily each mode is entered when another is left; all alike by default
+    entered  [J]  relative probability of each mode when another one is left; equal by default
     """
-    stay = np.asarray(stay, float)
-    count = len(stay)
+    staying = np.asarray(stay, float)
+    count = len(staying)
     share = np.ones(count) if entered is None else np.asarray(entered, float)
-    # A chain of this form is reversible: rescaled, its matrix is symmetric. Of that one, modes
-    # alike, whose eigenvalues coincide, do no harm. The floor is for modes that are never left.
-    rate = np.maximum(1 - stay, 1e-12) / np.maximum(share.sum() - share, 1e-12)
+    # Such a chain is reversible: after rescaling, its matrix is symmetric. A symmetric matrix
+    # allows equal eigenvalues, which equal modes have. The floor is for modes that are never left.
+    rate = np.maximum(1 - staying, 1e-12) / np.maximum(share.sum() - share, 1e-12)
     matrix = np.sqrt(np.outer(rate * share, rate * share))
-    np.fill_diagonal(matrix, stay)
+    np.fill_diagonal(matrix, staying)
     values, vectors = np.linalg.eigh(matrix)
     if values.min() <= 0:
         raise ValueError(
-            f'stay probabilities {tuple(stay)} are too small for a chain in '
+            f'stay probabilities {tuple(staying)} are too small for a chain in '
             'continuous time; they must be well above 1 / number of modes'
         )
     scale = np.sqrt(rate / share)[:, None]
@@ -92,42 +92,44 @@ def transition_power(stay, period, entered=None):
     decay = np.log(values) / period
     outer = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(count, -1)
 
-    def over(step):
+    def over(step: Array) -> Array:
         powers = np.exp(np.abs(step)[:, None] * decay)
         found = (powers @ outer).reshape(-1, count, count)
-        return np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
+        value: Array = np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
+        return value
 
     return over
 
 
-def stationary(chain: Chain):
-    """The law [J] of a chain left alone for ever."""
-    return chain.over(np.array([1e6]))[0, 0]
+def stationary(chain: Chain) -> Array:
+    """The stationary distribution [J] of a chain."""
+    found: Array = chain.over(np.array([1e6]))[0, 0]
+    return found
 
 
-def pack(mean, covariance):
+def pack(mean: Array, covariance: Array) -> Array:
     """Rows [N, J, 14] of means [N, J, 4] and covariances [N, J, 4, 4]."""
     entries = covariance.reshape(covariance.shape[:2] + (16,)).take(PACKED, 2)
     return np.concatenate([mean, entries], 2)
 
 
-def unpack(rows):
+def unpack(rows: Array) -> tuple[Array, Array]:
     """Means [..., 4] and covariances [..., 4, 4] of rows [..., 14]."""
     return rows[..., :4], rows[..., 4:].take(UNPACKED, -1)
 
 
-def columns_of(rows):
+def columns_of(rows: Array) -> Array:
     """Columns [14, J, N] of rows [N, J, 14], always a copy."""
     return rows.transpose(2, 1, 0).copy()
 
 
-def rows_of(columns):
+def rows_of(columns: Array) -> Array:
     """Rows [N, J, 14] of columns [14, J, N], always a copy."""
     return columns.transpose(2, 1, 0).copy()
 
 
-def _shares(chain: Chain, weight, step):
-    """Mode probabilities after the step, and the shares [N, to, from] each mode is mixed of.
+def _shares(chain: Chain, weight: Array, step: Array) -> tuple[Array, Array]:
+    """Mode probabilities after the step, and the mixing weights [N, to, from] of each mode.
 
     step [N] s, or [1] for all.
     """
@@ -137,11 +139,11 @@ def _shares(chain: Chain, weight, step):
     return ahead, joint
 
 
-def mix(bank: Bank, rows, weight, step):
-    """Columns [14, J, N] and weights [N, J] after the mode changes of the steps [N] s.
+def mix(bank: Bank, rows: Array, weight: Array, step: Array) -> tuple[Array, Array]:
+    """Columns [14, J, N] and weights [N, J] after the mode changes over the steps [N] s.
 
     Takes rows [N, J, 14]. Blom and Bar-Shalom, IEEE T-AC 33(8), 1988, eq 7-9, in second moments:
-    those of a mixture are the mixture of those of its parts.
+    the moments of a mixture are the mixture of the moments of its parts.
     """
     columns = columns_of(rows)
     centre = columns[:4, :1].copy()  # keeps the squares small
@@ -158,14 +160,14 @@ def mix(bank: Bank, rows, weight, step):
     return columns, weight
 
 
-def _add_squares(columns, add):
+def _add_squares(columns: Array, add: np.ufunc) -> None:
     """Add the square of the means to the covariances (or subtract it), in place."""
     for k, (i, j) in enumerate(zip(ROW, COLUMN), 4):
         add(columns[k], columns[i] * columns[j], out=columns[k])
 
 
-def mix_means(bank: Bank, mean, weight, step):
-    """As `mix`, of the means alone: [N, J, 4] before and after. step [N] s, or [1] for all."""
+def mix_means(bank: Bank, mean: Array, weight: Array, step: Array) -> tuple[Array, Array]:
+    """As `mix`, for the means only: [N, J, 4] before and after. step [N] s, or [1] for all."""
     mean, weight = mean.copy(), weight.copy()
     for chain in bank.chains:
         weight[:, chain.modes], share = _shares(chain, weight[:, chain.modes], step)
@@ -173,8 +175,8 @@ def mix_means(bank: Bank, mean, weight, step):
     return mean, weight
 
 
-def _turn(bank: Bank, step):
-    """sin and cos [J, N] of the angles turned; metres along and across per m/s of velocity."""
+def _turn(bank: Bank, step: Array) -> tuple[Array, Array, Array, Array]:
+    """sin and cos [J, N] of the turn angles; metres along and across per m/s of velocity."""
     angle = bank.rates * step
     sin, cos = np.sin(angle), np.cos(angle)
     none = bank.rates == 0
@@ -184,7 +186,7 @@ def _turn(bank: Bank, step):
     return side * sin[bank.size], cos[bank.size], along[bank.size], side * across[bank.size]
 
 
-def move_means(bank: Bank, mean, step):
+def move_means(bank: Bank, mean: Array, step: Array) -> Array:
     """Means [4, J, N] moved by the steps [N] s, or [1] for all."""
     sin, cos, along, across = _turn(bank, step)
     e, n, ve, vn = mean
@@ -198,7 +200,7 @@ def move_means(bank: Bank, mean, step):
     )
 
 
-def move(bank: Bank, columns, step):
+def move(bank: Bank, columns: Array, step: Array) -> Array:
     """Columns [14, J, N] moved by the steps [N] s, of either sign; noise grows with |step|.
 
     With A = [[1, G], [0, R]] and P = [[X, C], [C', V]]: D = C + G V, then X + G C' + D G',
@@ -226,11 +228,14 @@ def move(bank: Bank, columns, step):
     return out
 
 
-def innovate(columns, plot, noise):
-    """Innovations [2, J, N], their squared distances [J, N] and their inverse covariances' parts.
+def innovate(
+    columns: Array, plot: Array, noise: Array
+) -> tuple[tuple[Array, Array], Array, tuple[Array, Array, Array, Array]]:
+    """Innovations [2, J, N], their squared distances [J, N] and the parts of their inverse
+    covariances.
 
-    plot [2, N] m; noise [3, N] m^2: its covariance's ee, en, nn. The parts are ee, en, nn and
-    the determinant of S, each [J, N].
+    plot [2, N] m; noise [3, N] m^2: its covariance's ee, en, nn. The parts are ee, en, nn and the
+    determinant of S, each [J, N].
     """
     de, dn = plot[0] - columns[0], plot[1] - columns[1]
     see, sen, snn = columns[4] + noise[0], columns[5] + noise[1], columns[8] + noise[2]
@@ -239,7 +244,7 @@ def innovate(columns, plot, noise):
     return (de, dn), distance, (see, sen, snn, determinant)
 
 
-def correct(columns, plot, noise):
+def correct(columns: Array, plot: Array, noise: Array) -> tuple[Array, Array]:
     """Kalman update of columns [14, J, N] with one plot a track; also the log-likelihoods [J, N].
 
     plot [2, N] m; noise [3, N] m^2: its covariance's ee, en, nn. Log-likelihoods are up to a
@@ -257,13 +262,14 @@ def correct(columns, plot, noise):
     return out, -0.5 * (distance + np.log(determinant))
 
 
-def reweigh(weight, score):
-    """Mode probabilities [J, N] of one chain after plots of the log-likelihoods [J, N]."""
+def reweigh(weight: Array, score: Array) -> Array:
+    """Mode probabilities [J, N] of one chain after plots with the log-likelihoods [J, N]."""
     weight = weight * np.exp(score - score.max(0)) + LEAST_WEIGHT
-    return weight / weight.sum(0)
+    found: Array = weight / weight.sum(0)
+    return found
 
 
-def combine(columns, weight):
+def combine(columns: Array, weight: Array) -> Array:
     """Mean and covariance [14, N] of mixtures of columns [14, J, N] with the weights [J, N]."""
     mean = (columns[:4] * weight).sum(1)
     apart = columns[:4] - mean[:, None]
@@ -274,6 +280,6 @@ def combine(columns, weight):
     return out
 
 
-def packed_noise(covariance):
+def packed_noise(covariance: Array) -> Array:
     """[3, N] ee, en, nn of plots' covariances [N, 2, 2]."""
     return np.stack([covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]])

@@ -1,9 +1,9 @@
-"""The classical filters at sea: position and velocity errors on three tracks.
+"""The classical filters on a marine radar: position and velocity errors on three tracks.
 
-22 rpm, 15 m and 0.5 deg, targets that start 5 km off: a straight run at 8 m/s; the same with two
-turns of 90 deg at 1.5 deg/s; a fast boat, 15 m/s with turns of 90 deg at 3 deg/s. Errors are RMS an
-axis after the first 40 scans. The figures demanded of `cs_kalman` come from a prototype of the same
-filter on the same tracks.
+The radar turns at 22 rpm; plots have deviations of 15 m and 0.5 deg. Targets start at 5 km: a
+straight run at 8 m/s; the same with two turns of 90 deg at 1.5 deg/s; a fast boat at 15 m/s with
+turns of 90 deg at 3 deg/s. Errors are RMS per axis, after the first 40 scans. The limits for
+`cs_kalman` come from a prototype of the same filter on the same tracks.
 """
 
 from typing import NamedTuple
@@ -28,7 +28,7 @@ START, COURSE = np.array([-4000.0, 3000.0]), np.radians(80)  # m east and north;
 
 
 class Leg(NamedTuple):
-    """speed m/s; turn_rate rad/s of two opposite turns that last `turning` scans."""
+    """speed m/s; turn_rate rad/s of two opposite turns, each of `turning` scans."""
 
     speed: float
     turn_rate: float
@@ -43,7 +43,7 @@ TRACKS = {
 
 
 def cv(noise: float) -> Estimator:
-    """Constant velocity with white acceleration of one density, m^2/s^3."""
+    """Constant velocity with white acceleration; its density is in m^2/s^3."""
     return imm.imm(imm.Modes((noise,), (0.0,), (1.0,), PERIOD), 30.0)
 
 
@@ -62,19 +62,19 @@ def filters() -> dict[str, Estimator]:
 
 
 def truth(leg: Leg):
-    """Position [SCANS, 2] m and velocity [SCANS, 2] m/s, exact along straights and arcs."""
+    """Position [SCANS, 2] m and velocity [SCANS, 2] m/s, exact on straights and arcs."""
     rate = np.zeros(SCANS)
     rate[FIRST_TURN : FIRST_TURN + leg.turning] = leg.turn_rate
     rate[SECOND_TURN : SECOND_TURN + leg.turning] = -leg.turn_rate
     course = COURSE + np.concatenate([[0], np.cumsum(rate[:-1] * PERIOD)])
-    half = 0.5 * rate * PERIOD  # a chord points half the turn ahead
+    half = 0.5 * rate * PERIOD  # a chord's direction is ahead by half the turn of its step
     step = leg.speed * PERIOD * np.sinc(half / np.pi)[:, None] * unit_vector(course + half)
     position = START + np.concatenate([np.zeros((1, 2)), np.cumsum(step[:-1], 0)])
     return position, leg.speed * unit_vector(course)
 
 
 def errors(estimator: Estimator, leg: Leg, runs: int, seed: int, detection: float = 1.0):
-    """RMS position error m and velocity error m/s an axis; every run is a track of one batch.
+    """RMS position error m and velocity error m/s per axis. Every run is one track of a batch.
 
     detection  probability of each plot after the first
     """
@@ -102,7 +102,7 @@ def errors(estimator: Estimator, leg: Leg, runs: int, seed: int, detection: floa
 
 
 def run(runs: int, seed: int, progress: Progress = silent) -> Result:
-    """Every filter on every track, then the figures demanded of `cs_kalman`."""
+    """Every filter on every track, then the figures of `cs_kalman` that have limits."""
     figures: list[report.Figure] = []
     found = {}
     for done, (name, estimator) in enumerate(filters().items()):

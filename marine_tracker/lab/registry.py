@@ -1,11 +1,14 @@
-"""Experiments by name: each module has HELP, RUNS and run(runs, seed, progress) -> Result.
+"""Experiments by name. Each module has HELP, RUNS and run(runs, seed, progress) -> Result.
 
-It may have OPTIONS, {name: how argparse is to read --name}: its `run` takes them as keywords.
+A module may have OPTIONS, {name: keywords of argparse for --name}. Its `run` takes the options as
+keywords. If `run` takes `workers` too (evaluation.parallel.Workers), the user chooses where its
+parts run.
 """
 
 from types import ModuleType
 
 from . import marine_table
+from .alarms import alarms
 from .alpha_beta import alpha_beta
 from .compare import compare
 from .extended import extended
@@ -28,4 +31,5 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'extended': extended,
     'hulls': hulls,
     'compare': compare,
+    'alarms': alarms,
 }

@@ -1,11 +1,11 @@
-"""Networks trained on line, one to a row: the paper's rules of variable step and momentum.
+"""Networks trained on line, one a row: the paper's rules of variable step and momentum.
 
-Paper 000, section 2. B networks of one design stand side by side, each with weights of its own
-(tracks, or seeds of a Monte Carlo); every function works on all of them at once. A design has
-three layers (eq 15 with L = 2): S of the inputs and a bias, one hidden layer, linear outputs.
+Paper 000, section 2. B networks have one design, and each has its own weights (for tracks, or for
+seeds of a Monte Carlo). Every function works on all of them at once. A design has three layers
+(eq 15 with L = 2): S of the inputs and a bias, one hidden layer, linear outputs.
 
 - `bp`: hidden units S, every output connected to all of them: the paper's baseline;
-- `gwnn`: hidden units are scaling functions and wavelets, every output has a group of its own.
+- `gwnn`: hidden units are scaling functions and wavelets; every output has its own group.
 
 Symbols: E_R radial error; p step; mu momentum; delta the error signals of eq 8.
 """
@@ -17,17 +17,17 @@ import numpy as np
 from ..types import Array, take
 from .wavelets import Units, hidden, sigmoid, sigmoid_slope, slope, units
 
-# The paper draws the weights from (0, 1]; unscaled they saturate the hidden units.
+# The paper draws the weights from (0, 1]. Without scaling they saturate the hidden units.
 INNER_SCALE, OUTER_SCALE = 0.3, 0.1
-MAX_MOMENTUM = 0.9  # eq 7 gives 1 where one unit has all the error
+MAX_MOMENTUM = 0.9  # eq 7 gives 1 if one unit has all the error
 
 
 class Design(NamedTuple):
-    """What all networks of a batch share.
+    """The common design of all networks of a batch.
 
     inputs, outputs  I, O
     width            q of S
-    groups, group    hidden units: C groups of G; C = O where connected locally, else 1
+    groups, group    hidden units: C groups of G; C = O if connected locally, else 1
     form             the C G wavelet units; None for units S
     """
 
@@ -40,7 +40,7 @@ class Design(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """Weights of B networks and their last changes, which the momentum carries on.
+    """Weights of B networks and their last changes, which the momentum uses.
 
     inner  [B, C G, I + 1]  the last column is the bias
     outer  [B, O, G]
@@ -53,7 +53,7 @@ class Weights(NamedTuple):
 
 
 class Passed(NamedTuple):
-    """A pass forward: layer [B, I + 1], units [B, C, G], slopes [B, C, G], output [B, O]."""
+    """A forward pass: layer [B, I + 1], units [B, C, G], slopes [B, C, G], output [B, O]."""
 
     layer: Array
     units: Array
@@ -64,9 +64,9 @@ class Passed(NamedTuple):
 class Rule(NamedTuple):
     """How a plot trains the networks.
 
-    step            p of the equal-step rule; eta of eq 9 where `variable`
-    variable        variable step and momentum (eq 6-10), else gradient descent of equal step
-    rounds          most corrections by one plot
+    step            p of the equal-step rule; eta of eq 9 if `variable`
+    variable        variable step and momentum (eq 6-10), else gradient descent with equal step
+    rounds          largest number of corrections by one plot
     fast, slow      m/s, v1 > v2 of eq 9; fast_spread, slow_spread its b1 < b2
     grow, shrink    factors of the step (eq 10)
     """
@@ -93,7 +93,7 @@ def gwnn(inputs: int, outputs: int, levels: int, translations: int, width: float
     return Design(inputs, outputs, width, outputs, translations * (levels + 2), form)
 
 
-def draw(design: Design, count: int, rng) -> Weights:
+def draw(design: Design, count: int, rng: np.random.Generator) -> Weights:
     """Random weights of `count` networks."""
     inner = INNER_SCALE * (1 - rng.random((count, design.groups * design.group, design.inputs + 1)))
     outer = OUTER_SCALE * (1 - rng.random((count, design.outputs, design.group)))
@@ -139,7 +139,7 @@ def hidden_error(weights: Weights, passed: Passed, error):
 
 
 def input_gradient(design: Design, weights: Weights, inputs, error):
-    """-dE/de0 [B, I]: how the squared error falls with the inputs [B, I] (eq 17)."""
+    """-dE/de0 [B, I]: how fast the squared error falls with the inputs [B, I] (eq 17)."""
     passed = forward(design, weights, inputs)
     back = hidden_error(weights, passed, error)[:, None]
     return np.matmul(back, weights.inner)[:, 0, :-1] * sigmoid_slope(inputs, design.width)
@@ -153,10 +153,10 @@ def momentum(delta):
 
 
 def first_step(rule: Rule, speed):
-    """A(v): the step [B] with which a plot begins, for target speeds [B] m/s (eq 9)."""
+    """A(v): the first step [B] for a plot, for target speeds [B] m/s (eq 9)."""
     if not rule.variable:
         return np.full(len(speed), rule.step)
-    # Beyond any ship's speed exp would overflow.
+    # exp would overflow above the speed of any ship.
     speed = np.minimum(speed, 100.0)
     return rule.step * (
         1 / (1 + np.exp((speed - rule.fast) / rule.fast_spread))
@@ -165,24 +165,25 @@ def first_step(rule: Rule, speed):
 
 
 def next_step(rule: Rule, step, error, before, far):
-    """p [B] after the radial error has gone from `before` to `error` [B] m (eq 10).
+    """p [B] after the radial error has changed from `before` to `error` [B] m (eq 10).
 
     far [B] or number, m: E2, above which the step grows.
     """
     return step * np.where(error >= before, rule.shrink, np.where(error > far, rule.grow, 1.0))
 
 
-def learn(design: Design, weights: Weights, inputs, wanted, speed, rule: Rule, unit, near, far):
+def learn(
+    design: Design, weights: Weights, inputs, wanted, speed, rule: Rule, unit: float, near, far
+) -> Weights:
     """The weights after one plot each: steps 1 to 5 of the paper's algorithm.
 
-    inputs, wanted  [B, I], [B, O]  what the networks should have given; outputs 0 and 1 are
-                                    those of the position
+    inputs, wanted  [B, I], [B, O]  what the networks should have given; outputs 0 and 1: position
     speed           [B] m/s, for the first step
     unit            m, of a position output of 1
-    near, far       E1, E2 [B] or number, m: corrected until E_R <= E1, the step grows above E2
+    near, far       E1, E2 [B] or number, m: corrected until E_R <= E1; the step grows above E2
 
-    The step starts anew with every plot: carried over, it shrinks for good. Gradient descent of
-    equal step corrects by every plot, as often as `rounds` says.
+    The step is reset for every plot. If it were kept, it would shrink to zero. Gradient descent
+    with equal step makes `rounds` corrections for every plot.
     """
     count = len(wanted)
     near, far = np.broadcast_to(near, count), np.broadcast_to(far, count)

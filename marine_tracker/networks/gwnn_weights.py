@@ -1,12 +1,13 @@
-"""The trained weights of `gwnn`: one file that says what it is and notices when it is damaged."""
+"""The trained weights of `gwnn`: one file that describes itself and detects damage."""
 
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..files import shortened, shown
 from . import weight_file
-from .wavelet_network import Layout, Network, group_size
+from .wavelet_network import Layout, Network, group_size, units
 from .weight_file import FOLDER
 
 FORMAT = 1
@@ -15,10 +16,10 @@ NETWORKS = ('fusion', 'spread')
 
 
 class Weights(NamedTuple):
-    """fusion: weighs and corrects the experts; spread: says how sure that is.
+    """fusion: weights and corrects the experts; spread: the uncertainty of the result.
 
-    manifest: how they came about; made known to people, not used. All arrays are float32: half
-    the time, for a micrometre or so.
+    manifest: how the weights were made, for people; not used. All arrays are float32: half the
+    time, at a cost of about a micrometre.
     """
 
     fusion: Network
@@ -39,8 +40,8 @@ def _arrays(weights: Weights) -> dict[str, np.ndarray]:
     }
 
 
-def save(path, weights: Weights) -> dict[str, Any]:
-    """Write the file; returns its manifest, with format, layouts and checksum filled in."""
+def save(path: str | Path, weights: Weights) -> dict[str, Any]:
+    """Writes the file; returns its manifest with format, layouts and checksum."""
     arrays = _arrays(weights)
     manifest = {
         **weights.manifest,
@@ -52,23 +53,34 @@ def save(path, weights: Weights) -> dict[str, Any]:
     return manifest
 
 
-def load(path, inputs: int, outputs: dict[str, int]) -> Weights:
-    """Read a file of weights for networks of so many inputs, and outputs by network.
+def load(path: str | Path, inputs: int, outputs: dict[str, int]) -> Weights:
+    """Reads a file of weights for networks with `inputs` inputs, and with the number of outputs by
+    network.
 
-    Raises ValueError for a file that cannot be read, is damaged, or belongs to other networks.
+    Raises ValueError if the file cannot be read, is damaged, or belongs to other networks.
     """
-    what = f'GWNN weights {path}'
+    what = f'GWNN weights {shortened(path)}'
     names = [f'{name}_{array}' for name in NETWORKS for array in ARRAYS]
     arrays, manifest = weight_file.read(path, 'GWNN', 'marine_tracker train gwnn', FORMAT, names)
+    layouts = [_layout(manifest, name, what) for name in NETWORKS]
     networks = [
-        _network(name, arrays, manifest['layouts'][name], inputs, outputs[name], what)
-        for name in NETWORKS
+        _network(name, arrays, layout, inputs, outputs[name], what)
+        for name, layout in zip(NETWORKS, layouts)
     ]
     return Weights(networks[0], networks[1], manifest)
 
 
-def _network(name, arrays, layout, inputs, outputs, what) -> Network:
-    form = Layout(int(layout[0]), int(layout[1]), float(layout[2]), int(layout[3]), *layout[4:])
+def _layout(manifest, name: str, what: str) -> Layout:
+    layouts = manifest.get('layouts')
+    given = layouts.get(name) if isinstance(layouts, dict) else None
+    try:
+        levels, translations, q, outputs, *kind = given  # type: ignore[misc]
+        return Layout(int(levels), int(translations), float(q), int(outputs), *kind)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f'{what}: the layout of {name} is {shown(given)}: {error}') from error
+
+
+def _network(name, arrays, form, inputs, outputs, what) -> Network:
     group = group_size(form)
     shapes = {
         'centre': (inputs,),
@@ -83,4 +95,8 @@ def _network(name, arrays, layout, inputs, outputs, what) -> Network:
         )
         for array in ARRAYS
     ]
+    try:
+        units(form)
+    except (TypeError, ValueError, ArithmeticError) as error:
+        raise ValueError(f'{what}: the layout of {name} is {shown(form)}: {error}') from error
     return Network._make([*found, form])

@@ -1,13 +1,13 @@
 """The rough neural network of paper 001, section 1, and the plain one it is compared with.
 
-A node holds K neurons, each connected with every neuron of the next layer. Of a rough node (K = 2)
-the lower neuron puts out the lesser, the upper one the greater of the two activations
+A node holds K neurons. Each is connected with every neuron of the next layer. In a rough node
+(K = 2) the lower neuron puts out the smaller of the two activations, and the upper one the larger:
 
-    a = f(In - theta),   f(x) = 2 / (1 + exp(-x)) - 1 = tanh(x / 2),
+    a = f(In - theta),   f(x) = 2 / (1 + exp(-x)) - 1 = tanh(x / 2)
 
-so a node holds an interval; the network's output is the middle of its last one. With K = 1 the
-same lines are the plain backpropagation network. Inputs are [lower, upper] of each input, or one
-value where K = 1. The W_IU of the printed In_U is read as W_LU, from lower to upper neurons.
+So a node holds an interval. The network's output is the middle of its last interval. With K = 1 the
+same equations are the plain backpropagation network. Inputs are [lower, upper] of each input, or
+one value if K = 1. W_IU in the printed In_U is read as W_LU, from lower to upper neurons.
 """
 
 from typing import NamedTuple
@@ -46,7 +46,7 @@ def shapes(inputs: int, hidden: int, neurons: int) -> Shapes:
 
 
 def from_vector(vector, form: Shapes) -> Network:
-    """The network whose arrays have the shapes `form` and stand in the vector one after another."""
+    """The network with arrays of the shapes `form`, taken from the vector one after another."""
     ends = np.cumsum([np.prod(shape, dtype=int) for shape in form])
     return Network._make(
         part.reshape(shape) for part, shape in zip(np.split(vector, ends[:-1]), form)
@@ -58,13 +58,13 @@ def to_vector(network: Network):
     return np.concatenate([array.ravel() for array in network])
 
 
-def draw(form: Shapes, rng, scale: float = 0.35) -> Network:
+def draw(form: Shapes, rng: np.random.Generator, scale: float = 0.35) -> Network:
     """Random weights of that deviation."""
     return Network._make(rng.normal(0, scale, shape) for shape in form)
 
 
 def _activations(network: Network, inputs):
-    """Of the hidden neurons [N, H, K], before they are put in order."""
+    """Activations of the hidden neurons [N, H, K], before they are sorted."""
     nodes = network.inner_theta
     net = _flat(inputs) @ network.inner.reshape(-1, nodes.size)
     return np.tanh(0.5 * (net - nodes.ravel())).reshape(-1, *nodes.shape)

@@ -5,21 +5,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..files import shortened
 from ..types import Array
 from . import weight_file
 from .rough_network import Network, shapes
 
 FORMAT = 1
-NEURONS = {'rough': 2, 'bp': 1}  # of a node, by kind of network
+NEURONS = {'rough': 2, 'bp': 1}  # neurons of a node, by kind of network
 INPUTS, HIDDEN = 3, 6
 
 
 class Quiet(NamedTuple):
-    """How far apart noise alone drives the two filters: the unit of the inputs.
+    """Difference between the two filters by noise alone: the unit of the inputs.
 
     log_gamma  [G]        log of sigma_a1 T^2 / sigma_plot, ascending
     log_y      [Y]        log of alpha T, ascending
-    variance   [G, Y, 3]  variance of d_i over s_i, where the target does not manoeuvre
+    variance   [G, Y, 3]  variance of d_i over s_i, while the target does not manoeuvre
     """
 
     log_gamma: Array
@@ -31,7 +32,7 @@ NAMES = Network._fields + Quiet._fields  # of the arrays in a file
 
 
 class Weights(NamedTuple):
-    """manifest: how they came about; made known to people, not used."""
+    """manifest: how the weights were made, for people; not used."""
 
     network: Network
     quiet: Quiet
@@ -43,8 +44,8 @@ def shipped(kind: str) -> Path:
     return weight_file.FOLDER / f'cs_{kind}_nn.npz'
 
 
-def save(path, weights: Weights) -> dict[str, Any]:
-    """Write the file; returns its manifest, with format and checksum filled in."""
+def save(path: str | Path, weights: Weights) -> dict[str, Any]:
+    """Writes the file; returns its manifest with format and checksum."""
     arrays = {
         name: np.asarray(array, np.float32)
         for part in (weights.network, weights.quiet)
@@ -55,12 +56,12 @@ def save(path, weights: Weights) -> dict[str, Any]:
     return manifest
 
 
-def load(path, kind: str) -> Weights:
-    """Read a file of weights of a `rough` or `bp` network.
+def load(path: str | Path, kind: str) -> Weights:
+    """Reads a file of weights of a `rough` or `bp` network.
 
-    Raises ValueError for a file that cannot be read, is damaged, or belongs to other networks.
+    Raises ValueError if the file cannot be read, is damaged, or belongs to other networks.
     """
-    what = f'rough network weights {path}'
+    what = f'rough network weights {shortened(path)}'
     arrays, manifest = weight_file.read(
         path, 'rough network', 'marine_tracker train rough_nn', FORMAT, NAMES
     )

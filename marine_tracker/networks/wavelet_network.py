@@ -1,11 +1,11 @@
 """The generalised wavelet network of paper 000: sigmoid inputs, wavelets hidden, local outputs.
 
 S(t) = tanh(t / 2q), phi(t) = S(t + 1) - S(t - 1), psi(t) = phi(t + 1) - phi(t - 1) (eq 12-13 with
-d = p = 1). Each linear output has a group of hidden units of its own (local connection): the
-scaling functions phi_{M,k} and the wavelets psi_{m,k}, m = 0..M, each over n translations k, so
-n (M + 2) units a group. The number of hidden units follows from M, n and the number of outputs.
+d = p = 1). Each linear output has its own group of hidden units (local connection): the scaling
+functions phi_{M,k} and the wavelets psi_{m,k}, m = 0..M, each over n translations k, so n (M + 2)
+units a group. The number of hidden units follows from M, n and the number of outputs.
 
-To tell what the wavelets are worth, a network may have as many plain units S(t) in their place.
+A network may have the same number of plain units S(t) instead, to measure the value of wavelets.
 """
 
 from functools import lru_cache
@@ -16,7 +16,7 @@ import numpy as np
 from ..types import Array
 from . import wavelets
 
-BLOCK = 128  # rows at once: their hidden units fit the processor's cache
+BLOCK = 128  # rows at once; their hidden units fit into the processor's cache
 WAVELET, TANH = 'wavelet', 'tanh'
 
 
@@ -42,7 +42,7 @@ Form = wavelets.Units | Sigmoids
 class Network(NamedTuple):
     """A network of I inputs, O outputs and H = O G hidden units, G to a group.
 
-    centre, scale  [I]         what standardises the inputs
+    centre, scale  [I]         standardise the inputs
     inner          [I + 1, H]  weights of the hidden units; the last row is their bias
     outer          [O, G]      weights of each output's own units
     bias           [O]         of the outputs
@@ -58,13 +58,13 @@ class Network(NamedTuple):
 
 
 def group_size(layout: Layout) -> int:
-    """G: hidden units to an output."""
+    """G: number of hidden units for each output."""
     return layout.translations * (layout.levels + 2)
 
 
 @lru_cache
 def units(layout: Layout, dtype=np.float64) -> Form:
-    """The form of all H hidden units; ValueError for units of no known kind."""
+    """The form of all H hidden units. ValueError for an unknown kind of units."""
     if layout.units == TANH:
         return Sigmoids(0.5 / layout.q)
     if layout.units != WAVELET:
@@ -83,7 +83,7 @@ def hidden(form: Form, net):
 
 
 def slope(form: Form, value, tanh):
-    """Derivatives [..., H] of the units by their net inputs, from what `hidden` gave."""
+    """Derivatives [..., H] of the units by their net inputs, from the results of `hidden`."""
     if isinstance(form, Sigmoids):
         return form.dilation * (1 - tanh * tanh)
     return wavelets.slope(form, value, tanh)
@@ -120,7 +120,7 @@ def connect(outer):
 def backward(network: Network, form: Form, layer, value, tanh, gradient):
     """Gradients of a loss by inner, outer and bias, from its gradient [N, O] by the outputs.
 
-    layer, value, tanh: what `squash` and `hidden` gave on the way forward.
+    layer, value, tanh: the results of `squash` and `hidden` in the forward pass.
     """
     count, group = network.outer.shape
     spread = np.repeat(gradient, group, 1)
@@ -142,7 +142,7 @@ def jacobian(network: Network, inputs):
     return by_layer * ((1 - layer[:, None, :-1] ** 2) * (0.5 / network.scale))
 
 
-def start(layout: Layout, centre, scale, rng, dtype=np.float32) -> Network:
+def start(layout: Layout, centre, scale, rng: np.random.Generator, dtype=np.float32) -> Network:
     """Random weights: net inputs that spread over the translations, and small outputs."""
     inputs, group = len(centre), group_size(layout)
     inner = rng.normal(0, 1.5 * layout.q / np.sqrt(inputs), (inputs + 1, layout.outputs * group))

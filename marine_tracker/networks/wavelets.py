@@ -1,12 +1,12 @@
-"""Scaling functions and wavelets built of sigmoids: the units of the wavelet network.
+"""Scaling functions and wavelets made of sigmoids: the units of the wavelet network.
 
 Paper 000, eq 12-15 (after Pati and Krishnaprasad 1993), with S(t) = tanh(t / 2q):
 
     phi(t) = S(t + d) - S(t - d),        psi(t) = phi(t + p) - phi(t - p),
     psi_mk(t) = a^(-m/2) psi(a^-m t - k b),   phi_mk likewise,   a = 2, 0 < b <= 3.5, d = p = 1.
 
-A group of hidden units is phi_Mk and psi_mk, m = 0..M, over n translations k centred on 0. By
-the addition theorem of tanh each is a fraction of one T = S(t), which is how `hidden` finds them:
+A group of hidden units is phi_Mk and psi_mk, m = 0..M, over n translations k centred on 0. By the
+addition theorem of tanh each is a fraction in one T = S(t). `hidden` computes them this way:
 
     phi = 2 g (1 - T^2) / (1 - g^2 T^2),          g = S(1)
     psi = -2 h^2 T (1 - T^2) / (1 - h^2 T^2),     h = S(2)
@@ -21,8 +21,8 @@ from ..types import Array
 
 D = P = 1.0  # half widths of phi and psi
 DILATION = 2.0  # a
-MAX_SPACING = 3.5  # b, the paper's limit of a frame
-MIN_Q = 0.2  # narrower, S(2) is so near 1 that the quotients lose their digits
+MAX_SPACING = 3.5  # b, the paper's upper limit for a frame
+MIN_Q = 0.2  # below this, S(2) is so near 1 that the quotients lose precision
 
 
 def sigmoid(t, q: float):
@@ -71,7 +71,7 @@ def steepest(q: float, d: float = D, p: float = P) -> float:
 class Units(NamedTuple):
     """The form of H hidden units: unit(e) = (1 - T^2) (even + odd T) / (1 - pole T^2).
 
-    With T = tanh(dilation e - shift); [H] each, the order of a group as in `units`.
+    With T = tanh(dilation e - shift); each field is [H], in the order of `units`.
     """
 
     dilation: Array
@@ -91,8 +91,8 @@ def units(
 ) -> Units:
     """`groups` equal groups of n (M + 2) units for M = `levels`, n = `translations`, b = `spacing`.
 
-    A group is phi_Mk for all k, then psi_0k, psi_1k, ... psi_Mk. ValueError where a figure is
-    outside its limits.
+    A group is phi_Mk for all k, then psi_0k, psi_1k, ... psi_Mk. ValueError if a value is outside
+    its limits.
     """
     if levels < 0 or translations < 1:
         raise ValueError(
@@ -135,7 +135,7 @@ def hidden(form: Units, net):
 
 
 def slope(form: Units, value, tanh):
-    """Derivatives [..., H] of the units by their net inputs, from what `hidden` gave."""
+    """Derivatives [..., H] of the units by their net inputs, from the results of `hidden`."""
     square = tanh * tanh
     rest = 1 - square
     inside = form.pole * value - (form.even + form.odd * tanh)

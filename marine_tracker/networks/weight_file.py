@@ -2,12 +2,15 @@
 
 import hashlib
 import json
-import zipfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from .. import yaml_file
+from ..files import shortened, shown, written
+from . import array_file
 
 FOLDER = Path(__file__).parent / 'weights'
 
@@ -21,46 +24,40 @@ def checksum(arrays) -> str:
     return digest.hexdigest()
 
 
-def write(path, arrays: dict[str, np.ndarray], manifest: dict[str, Any]) -> None:
+def write(path: str | Path, arrays: dict[str, np.ndarray], manifest: dict[str, Any]) -> None:
     """Write arrays of float32 and the manifest, which holds `format` and `checksum`."""
-    with open(path, 'wb') as file:
+    with written(path, 'wb') as file:
         np.savez(file, manifest=np.array(json.dumps(manifest)), **arrays)  # type: ignore[arg-type]
 
 
 def read(
-    path, kind: str, command: str, form: int, names: Iterable[str]
+    path: str | Path, kind: str, command: str, form: int, names: Iterable[str]
 ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """The arrays of the given names and the manifest.
 
     kind: what the weights are of; command: what writes such files; form: their format. Raises
     ValueError for a file that cannot be read, is damaged, or is of another kind or format.
     """
-    what = f'{kind} weights {path}'
+    what = f'{kind} weights {shortened(path)}'
     try:
-        with np.load(path, allow_pickle=False) as file:
-            manifest = json.loads(str(file['manifest']))
-            arrays = {name: file[name] for name in file.files if name != 'manifest'}
+        arrays = array_file.read(path)
     except OSError as error:
         raise ValueError(f'{what} cannot be read: {error.strerror or error}') from error
-    except (
-        ValueError,
-        KeyError,
-        EOFError,
-        TypeError,
-        RuntimeError,
-        MemoryError,
-        zipfile.BadZipFile,
-    ) as error:  # a wrong bit anywhere, or another kind of file
-        raise ValueError(f'{what}: this is no file of `{command}`, or it is damaged') from error
-    if not isinstance(manifest, dict) or 'format' not in manifest:
-        raise ValueError(f'{what}: this is no file of `{command}`')
-    if manifest['format'] != form:
+    except ValueError as error:  # a wrong bit anywhere, or another kind of file
         raise ValueError(
-            f'{what} has format {manifest["format"]}; this version reads {form}: train anew'
+            f'{what}: this is no file of `{command}`, or it is damaged: {error}'
+        ) from error
+    if 'manifest' not in arrays:
+        raise ValueError(f'{what}: this is no file of `{command}`')
+    manifest = yaml_file.parse_json(str(arrays.pop('manifest')), f'{what}: its manifest')
+    if manifest.get('format') != form:
+        raise ValueError(
+            f'{what} has format {shown(manifest.get("format"))}; this version reads {form}: '
+            'train anew'
         )
     wanted = set(names)
     if set(arrays) != wanted:
-        odd = ', '.join(sorted(set(arrays) ^ wanted))
+        odd = ', '.join(shortened(name) for name in sorted(set(arrays) ^ wanted)[:10])
         raise ValueError(f'{what} does not hold the right arrays: {odd}')
     if checksum(arrays) != manifest.get('checksum'):
         raise ValueError(f'{what} is damaged: the checksum does not match')

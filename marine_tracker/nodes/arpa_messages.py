@@ -33,13 +33,14 @@ def alarms_message(
     return diagnostics.array(
         time_ns,
         [
-            _alert(kind, target, part, state, age, position, text, hardware_id)
-            for kind, target, part, state, age, position, text in zip(
+            _alert(kind, target, part, state, age, left, position, text, hardware_id)
+            for kind, target, part, state, age, left, position, text in zip(
                 shown.kind.tolist(),
                 targets,
                 alarm_text.parts(shown, zones, radars),
                 shown.state.tolist(),
                 (now - shown.since).tolist(),
+                ((shown.until - now) / 60).tolist(),
                 shown.position.tolist(),
                 alarm_text.text(shown, zones, radars),
             )
@@ -48,7 +49,15 @@ def alarms_message(
 
 
 def _alert(
-    kind: int, target: str, part: str, state: int, age: float, position, text: str, hardware_id: str
+    kind: int,
+    target: str,
+    part: str,
+    state: int,
+    age: float,
+    left: float,
+    position: Sequence[float],
+    text: str,
+    hardware_id: str,
 ) -> DiagnosticStatus:
     what, priority = alarms.NAMES[kind], alarms.PRIORITY[kind]
     of_radar = kind == alarms.PLOTS_MISSING
@@ -66,6 +75,7 @@ def _alert(
             'target': target,
             'zone': '' if of_radar else part,
             'in_state_s': figure(age, 0),
+            'acknowledged_for_min': figure(left, 1),
             'east_m': figure(position[0], 0),
             'north_m': figure(position[1], 0),
         },

@@ -1,13 +1,34 @@
 """What every node of this package is."""
 
+import functools
+import time
+from collections.abc import Callable
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.subscription import Subscription
 
+from . import diagnostics, topics
+from .diagnostics import FAILED, Tally, one_line
+
 
 class RunnableNode(Node):
-    """A node as run.py takes it. Its constructor raises ValueError where it cannot start."""
+    """A node as run.py takes it. Its constructor raises ValueError where it cannot start.
+
+    No exception leaves a callback of its subscriptions, timers, services and parameters, those
+    that rclpy itself adds included. It is logged once for each kind and callback, and counted.
+
+    failures  the exceptions counted, for /diagnostics
+    """
+
+    def __init__(self, name: str, **node_arguments):
+        self.failures = Tally((), self.tell)
+        self._to_failures: Publisher | None = None
+        super().__init__(name, **node_arguments)
 
     @property
     def done(self) -> bool:
@@ -16,6 +37,98 @@ class RunnableNode(Node):
 
     def close(self) -> None:
         """Last messages; called before the executor stops."""
+
+    # -- callbacks, guarded ----------------------------------------------------------------------
+
+    def create_subscription(self, msg_type, topic, callback, *arguments, **named):
+        """As in rclpy."""
+        return super().create_subscription(
+            msg_type, topic, self._guarded(callback), *arguments, **named
+        )
+
+    def create_timer(self, timer_period_sec, callback, *arguments, **named):
+        """As in rclpy."""
+        return super().create_timer(timer_period_sec, self._guarded(callback), *arguments, **named)
+
+    def create_service(self, srv_type, srv_name, callback, **named):
+        """As in rclpy; where the callback fails, the answer is that it did."""
+        return super().create_service(
+            srv_type, srv_name, self._guarded(callback, _not_done), **named
+        )
+
+    def add_on_set_parameters_callback(self, callback):
+        """As in rclpy; where the callback fails, the change is refused."""
+        super().add_on_set_parameters_callback(self._guarded(callback, _refused))
+
+    def add_post_set_parameters_callback(self, callback):
+        """As in rclpy."""
+        super().add_post_set_parameters_callback(self._guarded(callback))
+
+    def _guarded(self, callback: Callable, otherwise: Callable = lambda error, *_: None):
+        """The callback; otherwise(error, *its arguments) is returned where it raises."""
+        name = getattr(getattr(callback, 'func', callback), '__name__', 'a callback')
+
+        @functools.wraps(callback)
+        def run_guarded(*arguments):
+            try:
+                return callback(*arguments)
+            except Exception as error:
+                self.failures.add(
+                    f'{FAILED}: {type(error).__name__} in {name}',
+                    time.monotonic(),
+                    detail=str(error),
+                )
+                return otherwise(error, *arguments)
+
+        return run_guarded
+
+    # -- how it fares ----------------------------------------------------------------------------
+
+    def tell(self, reason: str, detail: str) -> None:
+        """Log the first of its kind; /diagnostics counts the rest."""
+        self.get_logger().warning(
+            f'{reason}{": " + detail if detail else ""} (told once; counted on /diagnostics)'
+        )
+
+    @property
+    def label(self) -> str:
+        """The node with its namespace, as in radar_1/tracker."""
+        return f'{self.get_namespace()}/{self.get_name()}'.strip('/')
+
+    @property
+    def hardware_id(self) -> str:
+        """The radar that it belongs to, as in radar_1/radar."""
+        return f'{self.get_namespace()}/radar'.strip('/')
+
+    def watch_failures(self, clock) -> None:
+        """For a node that has nothing else to say on /diagnostics: failures, once there are any."""
+        self.create_timer(1.0, self._tell_failures, clock=clock)
+
+    def _tell_failures(self) -> None:
+        counts = self.failures.counts
+        if not counts:
+            return
+        if self._to_failures is None:
+            self._to_failures = self.publisher(
+                DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
+            )
+        fresh = self.failures.fresh(time.monotonic())
+        self._to_failures.publish(
+            diagnostics.array(
+                self.get_clock().now().nanoseconds,
+                [
+                    diagnostics.status(
+                        f'{self.label}: callbacks',
+                        self.hardware_id,
+                        diagnostics.ERROR if fresh else diagnostics.OK,
+                        'lately: ' + ', '.join(fresh) if fresh else 'they work again',
+                        {FAILED: sum(counts.values()), **counts},
+                    )
+                ],
+            )
+        )
+
+    # -- without event handlers ------------------------------------------------------------------
 
     def publisher(self, kind, topic: str, quality) -> Publisher:
         """A publisher without event handlers.
@@ -39,3 +152,23 @@ class RunnableNode(Node):
             quality,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
+
+
+def _why(error: Exception) -> str:
+    """A reason that names the kind of error, where its text is not written for users."""
+    return one_line(error if isinstance(error, ValueError) else f'{type(error).__name__}: {error}')
+
+
+def _refused(error: Exception, changed: list) -> SetParametersResult:
+    """Names the parameters that were to be changed."""
+    names = ', '.join(one_line(parameter.name) for parameter in changed)
+    return SetParametersResult(
+        successful=False, reason=one_line(f'parameter {names}: {_why(error)}')
+    )
+
+
+def _not_done(error: Exception, request, response: Any) -> Any:
+    """Every request gets a response; those with room for a reason tell it."""
+    if hasattr(response, 'success') and hasattr(response, 'message'):
+        response.success, response.message = False, _why(error)
+    return response

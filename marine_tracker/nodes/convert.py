@@ -226,7 +226,9 @@ def own_ship_to_odometry(
 
     heading  None: her course, if she makes way; nan: not known, which the variance of the yaw tells
     """
-    heading = float(heading_from(np.asarray(velocity), np.nan)) if heading is None else heading
+    heading = (
+        float(heading_from(np.asarray(velocity), np.array(np.nan))) if heading is None else heading
+    )
     known = math.isfinite(heading)
     yaw = math.pi / 2 - heading if known else 0.0
     cos, sin = math.cos(yaw), math.sin(yaw)

@@ -13,8 +13,10 @@ from rcl_interfaces.msg import (
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from ..files import shown
 from ..parameter_files import limits
 from ..parameters import from_mappings
+from .diagnostics import one_line
 
 P = TypeVar('P')
 M = TypeVar('M')
@@ -38,11 +40,13 @@ def declare(node: Node, *kinds: type) -> tuple[Any, ...]:
     }
     for name, value in given.items():
         if name in fields:
-            _check_type(name, value, fields[name].type)
+            _check_type(name, value, fields[name])
     parameters = from_mappings(kinds, given)
     for kind, values in zip(kinds, parameters):
         for field in dataclasses.fields(kind):
-            node.declare_parameter(field.name, getattr(values, field.name), descriptor(field))
+            node.declare_parameter(
+                field.name, getattr(values, field.name), descriptor(field), ignore_override=True
+            )
     return parameters
 
 
@@ -89,7 +93,7 @@ def follow(
             try:
                 made[:] = [make(*from_mappings(kinds, values(changed)))]
             except ValueError as error:
-                return SetParametersResult(successful=False, reason=str(error))
+                return SetParametersResult(successful=False, reason=_named(error, changed))
         return SetParametersResult(successful=True)
 
     def changed(changed: list[Parameter]) -> None:
@@ -100,7 +104,18 @@ def follow(
     node.add_post_set_parameters_callback(changed)
 
 
-def _check_type(name: str, value: Any, wanted: Any) -> None:
+def _named(error: ValueError, changed: list[Parameter]) -> str:
+    """Why a change is refused, in one line that names a parameter of it."""
+    names = [parameter.name for parameter in changed]
+    if any(name in str(error) for name in names):
+        return one_line(error)
+    return one_line(f'parameter {", ".join(names)}: {error}')
+
+
+def _check_type(name: str, value: Any, field: dataclasses.Field) -> None:
+    wanted: Any = field.type
+    if isinstance(value, (str, bool)) and value in field.metadata['old']:
+        return
     if value is None:
         raise ValueError(
             f'parameter {name} has no value (an empty entry or list); it must be {WORDS[wanted]}'
@@ -109,5 +124,5 @@ def _check_type(name: str, value: Any, wanted: Any) -> None:
         hint = f' (write {value}.0)' if wanted is float and type(value) is int else ''
         found = WORDS.get(type(value), 'a list')
         raise ValueError(
-            f'parameter {name} is {value!r}, {found}; it must be {WORDS[wanted]}{hint}'
+            f'parameter {name} is {shown(value)}, {found}; it must be {WORDS[wanted]}{hint}'
         )

@@ -1,7 +1,6 @@
 """How the node fares, for /diagnostics: counters with names, and statuses from them."""
 
 import functools
-import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -17,13 +16,14 @@ OK, WARN, ERROR, STALE = (
     DiagnosticStatus.STALE,
 )
 FAILED = 'callbacks failed'
+LONGEST = 300  # characters of what somebody else wrote, in a log or a message
 FRESH_S = 10.0  # a fault counts as present for so long after it was last seen
 
 
 class Tally:
     """Counts by reason, and which reasons are fresh.
 
-    on_first(reason, detail) is called the first time a reason comes up.
+    on_first(reason, detail) is called the first time a reason comes up; the detail is one line.
     """
 
     def __init__(self, reasons: Iterable[str], on_first: Callable[[str, str], None]):
@@ -34,7 +34,7 @@ class Tally:
     def add(self, reason: str, wall: float, count: int = 1, detail: str = '') -> None:
         """`count` more, at the time `wall` s of a steady clock."""
         if reason not in self._last:
-            self._on_first(reason, detail)
+            self._on_first(reason, one_line(detail))
         self.counts[reason] += count
         self._last[reason] = wall
 
@@ -43,42 +43,27 @@ class Tally:
         return [reason for reason, last in self._last.items() if wall - last < FRESH_S]
 
 
-def guarded(callback):
-    """A method as callback: no exception leaves it; it is counted in `self.failures`, and told
-    once for each kind."""
-
-    @functools.wraps(callback)
-    def run_guarded(self, *arguments):
-        try:
-            callback(self, *arguments)
-        except Exception as error:
-            self.failures.add(
-                f'{FAILED}: {type(error).__name__} in {callback.__name__}',
-                time.monotonic(),
-                detail=str(error),
-            )
-
-    return run_guarded
-
-
 def answered(callback):
-    """A method that returns what to answer, as callback of a service: `guarded` likewise."""
+    """A method that returns what to answer, as callback of a service with success and message."""
 
     @functools.wraps(callback)
     def run_answered(self, request, response):
-        try:
-            response.message = callback(self, request)
-            response.success = True
-        except Exception as error:
-            self.failures.add(
-                f'{FAILED}: {type(error).__name__} in {callback.__name__}',
-                time.monotonic(),
-                detail=str(error),
-            )
-            response.success, response.message = False, str(error)
+        response.message, response.success = callback(self, request), True
         return response
 
     return run_answered
+
+
+def one_line(text: object, longest: int = LONGEST) -> str:
+    """What is said in a log or a message: one line of printable characters, cut in the middle.
+
+    Whoever sends a name of 100,000 characters fills neither the log nor the disk.
+    """
+    line = str(text)
+    half = longest // 2
+    if len(line) > longest:
+        line = f'{line[:half]} ... ({len(line)} characters) ... {line[-half:]}'
+    return ' '.join(''.join(c if c.isprintable() else ' ' for c in line).split())
 
 
 class Durations:

@@ -18,7 +18,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.utilities import get_rmw_implementation_identifier
 
-from . import topics
+from . import log_folder, topics
 
 NODE = 'marine_tracker_doctor'
 NEEDED = (topics.PLOTS, topics.ODOMETRY, topics.TRACKS)
@@ -54,6 +54,7 @@ def look(seconds: float, namespace: str = '/', names: Iterable[str] = NEEDED) ->
     Raises what rclpy raises where no middleware can be started.
     """
     context = Context()
+    log_folder.provide()
     rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
     try:
         node = Node(

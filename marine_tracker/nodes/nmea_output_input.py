@@ -21,7 +21,9 @@ from ..arpa.nmea import (
     Targets,
     as_acquired,
 )
-from ..geometry import AT_REST, KNOT, NAUTICAL_MILE, geodetic_from_local, to_range_bearing
+from ..files import shown
+from ..geodesy import LocalFrame
+from ..geometry import AT_REST, KNOT, NAUTICAL_MILE, to_range_bearing
 from ..tracking import own_ship
 from ..types import Array
 from .convert import heading_of_odometry, nanoseconds, odometry_to_own_ship
@@ -33,6 +35,7 @@ FIX_BY_ARRIVAL = 'fixes with stamps far from those of own ship: paired as they a
 TIME_BY_ARRIVAL = 'own ship told for stamps far from hers: as she was last'
 LOST_AFTER = 6  # timeouts without a fix: nobody knows where she is
 NAMED = re.compile(r'(TT|Q)([0-9]{1,9})')
+LONGEST_NAME = 80  # characters; no sentence holds more
 STATUS = {'LOST': LOST, 'ACQUIRING': ACQUIRING}  # all others are tracked
 FIGURES = {
     'range_nm': NAUTICAL_MILE,
@@ -48,7 +51,8 @@ def read_targets(message: DiagnosticArray) -> Targets:
     """The targets of a message on `targets`, with their own numbers; nan for what it lacks.
 
     TT07 has the number 7; Q123, which is being acquired and has none yet, -123. Entries that are
-    no target are passed over.
+    no target are passed over. Names are cut to LONGEST_NAME: all rows of an array of texts take
+    the room of the longest.
     """
     rows = []
     for entry in message.status:
@@ -61,7 +65,7 @@ def read_targets(message: DiagnosticArray) -> Targets:
                 int(named[2]) * (1 if named[1] == 'TT' else -1),
                 STATUS.get(entry.message, TRACKING),
                 MANUAL if values.get('acquired') == MANUAL else AUTOMATIC,
-                values.get('name') or entry.name,
+                values.get('name', '')[:LONGEST_NAME] or entry.name,
                 *(_figure(values.get(key, ''), unit) for key, unit in FIGURES.items()),
             )
         )
@@ -86,20 +90,18 @@ def _figure(text: str, unit: float) -> float:
     return value if math.isfinite(value) else math.nan
 
 
-def read_origin(text: str) -> tuple[float, float] | None:
-    """The parameter origin: latitude and longitude in degrees; None where it is empty."""
+def read_origin(text: str) -> LocalFrame | None:
+    """The frame `map` by the parameter origin, latitude and longitude; None where it is empty."""
     if not text.strip():
         return None
     try:
         latitude, longitude = map(float, text.replace(',', ' ').split())
-    except ValueError:
-        latitude = longitude = math.nan
-    if not (abs(latitude) <= 90 and abs(longitude) <= 180):
+        return LocalFrame(latitude, longitude)
+    except ValueError as error:
         raise ValueError(
-            f'parameter origin is {text!r}; it must be latitude and longitude in '
-            'degrees, as "54.1 10.9"'
-        )
-    return latitude, longitude
+            f'parameter origin is {shown(text)}; it must be latitude and longitude in degrees, '
+            'from -90 to 90 and from -180 to 180, as "54.1 10.9"'
+        ) from error
 
 
 def named(reason: str) -> str:
@@ -108,17 +110,16 @@ def named(reason: str) -> str:
 
 
 class Anchor(NamedTuple):
-    """A place known both in `map`, position [2] m, and on earth, degrees."""
+    """A place known both in `map`, position [2] m, and on Earth: the frame about it."""
 
     position: Array
-    latitude: float
-    longitude: float
+    frame: LocalFrame
 
 
 class OwnShipInput:
     """Own ship as last heard.
 
-    origin   latitude and longitude of the origin of `map`; None: fixes tell where own ship is
+    origin   the frame `map`; None: fixes tell where own ship is
     trust    what tells her velocity (own_velocity.chosen)
     timeout  s without a fix, after which the position is an estimate; six of them: is not known
     count    count(reason, detail) of what is wrong with a message
@@ -126,13 +127,13 @@ class OwnShipInput:
 
     def __init__(
         self,
-        origin: tuple[float, float] | None,
+        origin: LocalFrame | None,
         trust: str,
         timeout: float,
         count: Callable[[str, str], None],
     ):
         self._from_fixes = origin is None
-        self.anchor = None if origin is None else Anchor(np.zeros(2), *origin)
+        self.anchor = None if origin is None else Anchor(np.zeros(2), origin)
         self._trust, self._timeout, self._count = trust, timeout, count
         self.log = own_ship.empty_log()
         self._base_ns: int | None = None  # the log's times are seconds after this
@@ -184,7 +185,7 @@ class OwnShipInput:
             at, _, told = self._now(time_ns)
             if not told:
                 self._count(FIX_BY_ARRIVAL, '')
-            self.anchor = Anchor(at, message.latitude, message.longitude)
+            self.anchor = Anchor(at, LocalFrame(message.latitude, message.longitude))
 
     @property
     def fix_age(self) -> float:
@@ -202,11 +203,11 @@ class OwnShipInput:
 
     def at(self, time_ns: int) -> OwnShipData:
         """Own ship as the sentences tell her."""
-        position, velocity, told = self._now(time_ns)
+        _, velocity, told = self._now(time_ns)
         if not told:
             self._count(TIME_BY_ARRIVAL, '')
         speed, course = to_range_bearing(velocity)
-        latitude, longitude = self.place(position)
+        latitude, longitude = self._place(time_ns)
         return OwnShipData(
             float(latitude),
             float(longitude),
@@ -226,11 +227,23 @@ class OwnShipInput:
             self._count(NO_STAMP, '')
         return time_ns or now_ns
 
-    def place(self, position) -> tuple[Array, Array]:
-        """Degrees of latitude and longitude [...] of positions [..., 2] m; nan if not known."""
-        if self.anchor is None or not self.placed:
-            nowhere = np.full(np.shape(position)[:-1], np.nan)
+    def target_places(self, time_ns: int, offset) -> tuple[Array, Array]:
+        """Latitude and longitude [...] deg at offsets [..., 2] m from own ship; nan if not known.
+
+        The offset is laid off from own ship over the Earth, with y true north there, and not in
+        `map`, where north is true on the meridian of the origin only. So a receiver that lays
+        off range and bearing (TTM) from own ship (RMC) finds the target where TLL puts it, however
+        far own ship is from the origin. At the origin both ways are the same; a target 10 NM off
+        own ship, who is 22 NM east of the origin at 54 N, would stand 160 m aside in `map`.
+        """
+        own = self._place(time_ns)
+        if not np.isfinite(own).all():
+            nowhere = np.full(np.shape(offset)[:-1], np.nan)
             return nowhere, nowhere
-        return geodetic_from_local(
-            position - self.anchor.position, self.anchor.latitude, self.anchor.longitude
-        )
+        return LocalFrame(*own).to_geodetic(offset)
+
+    def _place(self, time_ns: int) -> tuple[Array, Array]:
+        """Own ship's latitude and longitude, deg; nan if not known."""
+        if self.anchor is None or not self.placed:
+            return np.array(np.nan), np.array(np.nan)
+        return self.anchor.frame.to_geodetic(self.position(time_ns) - self.anchor.position)

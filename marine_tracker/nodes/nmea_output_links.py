@@ -1,95 +1,169 @@
 """Lines out over UDP and TCP, without ever waiting for anybody."""
 
+import contextlib
+import errno
+import os
 import socket
 from typing import NamedTuple
 
+from .diagnostics import one_line
+
 PENDING = 1 << 18  # bytes that may wait for a slow TCP client before it is dropped
 CLIENTS = 50  # TCP clients at a time
+FAMILIES = (socket.AF_INET6, socket.AF_INET)
 
 
 class Endpoint(NamedTuple):
-    """family and address as `socket` takes them; text as it was given."""
+    """A host:port as it was given, and what it stands for: addresses by family, as `socket` takes
+    them, each list in the order to try."""
 
-    family: socket.AddressFamily
-    address: tuple
     text: str
+    addresses: dict[socket.AddressFamily, list[tuple]]
 
 
 def endpoints(name: str, text: str) -> list[Endpoint]:
     """What stands in the parameter `name`: host:port, several separated by blanks.
 
-    ValueError names the parameter where one is none, or cannot be resolved.
+    A name has addresses in both families where it can: the resolver is asked for each by itself,
+    for asked at once it gives `localhost` no IPv4 address where the hosts file has `::1` alone.
+    ValueError names the parameter where one is no host:port, or cannot be resolved.
     """
-    found = []
-    for word in text.split():
-        host, colon, port = word.rpartition(':')
-        if not (colon and host and port.isdecimal() and 0 < int(port) < 65536):
-            raise ValueError(
-                f'parameter {name} has {word!r}; it must be host:port, as '
-                '127.0.0.1:10110, with a port from 1 to 65535'
-            )
+    return [Endpoint(word, _addresses(name, word)) for word in text.split()]
+
+
+def _addresses(name: str, word: str) -> dict[socket.AddressFamily, list[tuple]]:
+    host, colon, port = word.rpartition(':')
+    if not (colon and host and port.isdecimal() and 0 < int(port[:6]) < 65536):
+        raise ValueError(
+            f'parameter {name} has {one_line(repr(word))}; it must be host:port, as '
+            '127.0.0.1:10110, with a port from 1 to 65535'
+        )
+    found, refusal = {}, None
+    for family in FAMILIES:
         try:
-            family, _, _, _, address = socket.getaddrinfo(
-                host.strip('[]'), int(port), type=socket.SOCK_DGRAM
-            )[0]
+            answers = socket.getaddrinfo(
+                host.strip('[]'), int(port), family=family, type=socket.SOCK_DGRAM
+            )
         except (OSError, UnicodeError) as error:
-            raise ValueError(f'parameter {name} has {word!r}: {error}') from error
-        found.append(Endpoint(family, address, word))
+            refusal = error
+        else:
+            found[family] = list(dict.fromkeys(address for *_, address in answers))
+    if not found:
+        raise ValueError(f'parameter {name} has {one_line(repr(word))}: {refusal}') from refusal
     return found
 
 
 class Datagrams:
-    """Sends each line as one datagram to every destination of the parameter `name`."""
+    """Sends each line as one datagram to every destination of the parameter `name`.
+
+    A name with addresses in both families gets it in both: whether somebody listens in the one or
+    the other is not known for sure. In each family it goes to the first address that takes it.
+
+    sent     datagrams that at least one address took
+    refused  datagrams that none took because nobody listens there, as far as hosts tell: the own
+             one at once, others after a moment, so that the first one counts as sent
+    error    why the last one could not be sent
+    """
 
     def __init__(self, name: str, text: str):
         self.destinations = endpoints(name, text)
-        self.sent = 0
-        self.error = ''  # what the last failure said
-        self._sockets: dict[int, socket.socket] = {}
-        for family in {destination.family for destination in self.destinations}:
-            self._sockets[family] = socket.socket(family, socket.SOCK_DGRAM)
-            self._sockets[family].setblocking(False)
-            self._sockets[family].setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
+        self.sent = self.refused = 0
+        self.error = ''
+        self._sockets: dict[tuple, socket.socket] = {}
 
     def send(self, lines: list[bytes]) -> int:
-        """How many could not be sent; `error` says why the last one could not."""
+        """How many could not be sent; those that were refused are not among them."""
         failed = 0
         for destination in self.destinations:
             for line in lines:
-                try:
-                    self._sockets[destination.family].sendto(line, destination.address)
+                errors = [
+                    self._send_to_first(family, addresses, line)
+                    for family, addresses in destination.addresses.items()
+                ]
+                if 0 in errors:
                     self.sent += 1
-                except OSError as error:
+                elif errno.ECONNREFUSED in errors:
+                    self.refused += 1
+                else:
                     failed += 1
-                    self.error = f'{destination.text}: {error.strerror}'
+                    self.error = f'{one_line(destination.text)}: {os.strerror(errors[-1])}'
         return failed
 
     def close(self) -> None:
         """No more."""
         for one in self._sockets.values():
             one.close()
+        self._sockets.clear()
+
+    def _send_to_first(self, family: int, addresses: list[tuple], line: bytes) -> int:
+        """To the first address that takes it: 0, else the error number of the last one."""
+        for address in addresses:
+            error = self._send(family, address, line)
+            if error == 0:
+                break
+        return error
+
+    def _send(self, family: int, address: tuple, line: bytes) -> int:
+        try:
+            if address not in self._sockets:
+                self._sockets[address] = _connected(family, address)
+            one = self._sockets[address]
+            refused_before = one.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
+            one.send(line)
+            return one.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) or refused_before
+        except OSError as error:
+            if not isinstance(error, BlockingIOError) and address in self._sockets:
+                # This machine may have got another address: anew for the next line.
+                self._sockets.pop(address).close()
+            return error.errno or errno.EIO
+
+
+def _connected(family: int, address: tuple) -> socket.socket:
+    """A socket for datagrams to one address, which hears of it when they are refused there."""
+    one = socket.socket(family, socket.SOCK_DGRAM)
+    try:
+        one.setblocking(False)
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
+        one.connect(address)
+    except OSError:
+        one.close()
+        raise
+    return one
 
 
 class Clients:
     """A TCP server whose clients all get every line; what they say is not read.
 
-    A client that takes its lines too slowly is dropped: it would get stale ones.
+    It listens on every address of its host:port; `[::]` is all networks, IPv4 included.
+    A client that takes its lines too slowly is dropped: it would get stale ones. One that comes
+    while CLIENTS are there is refused, after those that have left are let go.
+
+    dropped, refused  how many
     """
 
     def __init__(self, name: str, text: str):
-        self.sent = self.dropped = 0
+        self.sent = self.dropped = self.refused = 0
         self._pending: dict[socket.socket, bytearray] = {}
-        self._listener = None
-        for endpoint in endpoints(name, text)[:1]:
-            if len(text.split()) > 1:
-                raise ValueError(f'parameter {name} is {text!r}; it must be one host:port')
-            try:
-                self._listener = socket.create_server(endpoint.address[:2], family=endpoint.family)
-            except OSError as error:
+        self._listeners: list[socket.socket] = []
+        if len(text.split()) > 1:
+            raise ValueError(
+                f'parameter {name} is {one_line(repr(text))}; it must be one host:port'
+            )
+        for endpoint in endpoints(name, text):
+            errors = [
+                error
+                for family, addresses in endpoint.addresses.items()
+                for address in addresses
+                if (error := self._listen(family, address)) is not None
+            ]
+            # An address that this machine lacks may be missing, as IPv6 may; one in use may not.
+            taken = [error for error in errors if error.errno == errno.EADDRINUSE]
+            if taken or not self._listeners:
+                self.close()
                 raise ValueError(
-                    f'parameter {name} is {text!r}: cannot listen there: {error.strerror}'
-                ) from error
-            self._listener.setblocking(False)
+                    f'parameter {name} is {one_line(repr(text))}: cannot listen there: '
+                    f'{(taken or errors)[0].strerror}'
+                )
 
     def __len__(self):
         return len(self._pending)
@@ -105,17 +179,11 @@ class Clients:
 
     def serve(self) -> None:
         """Let new clients in and send what waits, as far as it goes at once."""
-        while self._listener is not None:
-            try:
-                client, _ = self._listener.accept()
-            except OSError:  # nobody is waiting, or one has gone again
-                break
-            if len(self._pending) >= CLIENTS:
-                client.close()
-                continue
-            client.setblocking(False)
-            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            self._pending[client] = bytearray()
+        for listener in self._listeners:
+            with contextlib.suppress(OSError):  # nobody is waiting, or one has gone again
+                while True:
+                    client, _ = listener.accept()
+                    self._let_in(client)
         for client, pending in list(self._pending.items()):
             try:
                 while pending:
@@ -131,9 +199,47 @@ class Clients:
         """Bid all farewell."""
         for client in list(self._pending):
             self._drop(client)
-        if self._listener is not None:
-            self._listener.close()
+        for listener in self._listeners:
+            listener.close()
+        self._listeners.clear()
+
+    def _listen(self, family: int, address: tuple) -> OSError | None:
+        try:
+            listener = socket.create_server(
+                address[:2], family=family, dualstack_ipv6=address[0] == '::'
+            )
+        except OSError as error:
+            return error
+        listener.setblocking(False)
+        self._listeners.append(listener)
+        return None
+
+    def _let_in(self, client: socket.socket) -> None:
+        if len(self._pending) >= CLIENTS:
+            for one in list(self._pending):
+                if _has_left(one):
+                    self._drop(one)
+        if len(self._pending) >= CLIENTS:
+            self.refused += 1
+            client.close()
+            return
+        client.setblocking(False)
+        with contextlib.suppress(OSError):
+            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._pending[client] = bytearray()
 
     def _drop(self, client: socket.socket) -> None:
         del self._pending[client]
         client.close()
+
+
+def _has_left(client: socket.socket) -> bool:
+    """Whether it says no more: it has left, or at least may be spared where there is no room."""
+    try:
+        while client.recv(1 << 16):
+            pass
+    except BlockingIOError:
+        return False
+    except OSError:
+        pass
+    return True

@@ -15,8 +15,9 @@ from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import NavSatFix
 from std_msgs.msg import String
 
-from ..arpa import nmea, signalk
+from ..arpa import nmea, nmea_fields, signalk
 from ..arpa.nmea_targets import nothing_told, word
+from ..files import shown
 from ..geometry import NAUTICAL_MILE, unit_vector
 from ..parameters import NmeaOutputParameters
 from ..tracking import clocks, own_ship
@@ -25,7 +26,7 @@ from . import diagnostics, topics
 from .base_node import RunnableNode
 from .convert import nanoseconds
 from .declare import declare
-from .diagnostics import OK, WARN
+from .diagnostics import ERROR, FAILED, OK, WARN, one_line
 from .faults import HEADER_REASONS, ConversionError
 from .nmea_output_input import (
     BAD_FIX,
@@ -41,7 +42,8 @@ from .nmea_output_links import Clients, Datagrams
 SENTENCES = ('RMC', 'HDT', 'OSD', 'RSD', 'TTM', 'TLL')
 SILENT_S = 10.0  # s of the wall without own ship or targets: they count as missing
 SERVE_S = 0.2  # s between two looks for new TCP clients
-NOT_SENT = 'datagrams not sent'
+NOT_SENT, REFUSED = 'datagrams not sent', 'datagrams refused, for nobody listens there'
+NO_ROOM, TOO_SLOW = 'TCP clients refused for want of room', 'TCP clients dropped as too slow'
 
 
 class NmeaOutputNode(RunnableNode):
@@ -55,10 +57,10 @@ class NmeaOutputNode(RunnableNode):
         for kind in self._wanted:
             if kind not in SENTENCES:
                 raise ValueError(
-                    f'parameter sentences has {kind!r}; it must be of {", ".join(SENTENCES)}'
+                    f'parameter sentences has {shown(kind)}; it must be of {", ".join(SENTENCES)}'
                 )
         for talker in (p.talker, p.own_ship_talker):
-            nmea.sentence(talker, 'HDT', ())  # ValueError for a wrong one
+            nmea_fields.sentence(talker, 'HDT', ())  # ValueError for a wrong one
         self._own = OwnShipInput(
             read_origin(p.origin),
             p.own_ship_velocity,
@@ -80,8 +82,11 @@ class NmeaOutputNode(RunnableNode):
                 FIX_BY_ARRIVAL,
                 TIME_BY_ARRIVAL,
                 NOT_SENT,
+                REFUSED,
+                NO_ROOM,
+                TOO_SLOW,
             ),
-            self._tell,
+            self.tell,
         )
         # Targets of two radars, or of two runs of different nodes, are different vessels.
         self._vessels = uuid.uuid5(uuid.NAMESPACE_OID, self.get_fully_qualified_name())
@@ -97,8 +102,10 @@ class NmeaOutputNode(RunnableNode):
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(1.0, self._on_second, clock=steady)
         if p.tcp:
-            self.create_timer(SERVE_S, self._tcp.serve, clock=steady)
-        self.get_logger().info(f'{p.sentences} to {p.udp or "no"} UDP, {p.tcp or "no"} TCP')
+            self.create_timer(SERVE_S, self._serve, clock=steady)
+        self.get_logger().info(
+            one_line(f'{p.sentences} to {p.udp or "no"} UDP, {p.tcp or "no"} TCP')
+        )
 
     def close(self) -> None:
         """A last word on /diagnostics; the clients are let go."""
@@ -135,7 +142,7 @@ class NmeaOutputNode(RunnableNode):
             return
         self._last_ns = time_ns
         self._heard[topics.TARGETS] = time.monotonic()
-        self._told, now = word(self._told, read_targets(message))
+        self._told, now = word(self._told, read_targets(message), self._settings.target_numbers)
         self._count['targets'] = len(self._told.numbers)
         self._count['targets waiting for a number'] = now.waiting
         p, seconds = self._settings, time_ns * 1e-9
@@ -146,9 +153,8 @@ class NmeaOutputNode(RunnableNode):
             lines.append(nmea.rsd(p.range_scale_nm * NAUTICAL_MILE, talker=p.talker))
         if 'TTM' in self._wanted:
             lines += nmea.ttm(now.targets, seconds, p.talker)
-        latitude, longitude = self._own.place(
-            self._own.position(time_ns)
-            + now.targets.range[:, None] * unit_vector(now.targets.bearing)
+        latitude, longitude = self._own.target_places(
+            time_ns, now.targets.range[:, None] * unit_vector(now.targets.bearing)
         )
         if 'TLL' in self._wanted:
             lines += nmea.tll(now.targets, latitude, longitude, seconds, p.talker)
@@ -197,16 +203,25 @@ class NmeaOutputNode(RunnableNode):
         self._tcp.send(data)
 
     def _send_datagrams(self, link: Datagrams, data: list[bytes]) -> None:
+        refused = link.refused
         failed = link.send(data)
         if failed:
             self._bad.add(NOT_SENT, time.monotonic(), failed, link.error)
+        if link.refused > refused:
+            self._bad.add(
+                REFUSED,
+                time.monotonic(),
+                link.refused - refused,
+                ' '.join(destination.text for destination in link.destinations),
+            )
+
+    def _serve(self) -> None:
+        self._tcp.serve()
+        for reason, count in ((NO_ROOM, self._tcp.refused), (TOO_SLOW, self._tcp.dropped)):
+            if count > self._bad.counts[reason]:
+                self._bad.add(reason, time.monotonic(), count - self._bad.counts[reason])
 
     # -- how it fares --------------------------------------------------------------------------
-
-    def _tell(self, reason: str, detail: str) -> None:
-        self.get_logger().warning(
-            f'{reason}{": " + detail if detail else ""} (told once; counted on /diagnostics)'
-        )
 
     def _on_second(self) -> None:
         wall = time.monotonic()
@@ -230,25 +245,31 @@ class NmeaOutputNode(RunnableNode):
             )
         worries += [f'lately: {reason}' for reason in self._bad.fresh(wall)]
         if self._count['targets waiting for a number']:
-            worries.append('more than 99 targets: some are not told')
+            worries.append(
+                f'more than {self._settings.target_numbers} targets: some are not told '
+                '(parameter target_numbers)'
+            )
         values = {
             **self._count,
             'datagrams': self._udp.sent,
             'Signal K datagrams': self._signalk.sent,
             'TCP clients': len(self._tcp),
-            'TCP clients dropped as too slow': self._tcp.dropped,
             **self._bad.counts,
+            FAILED: sum(self.failures.counts.values()),
+            **self.failures.counts,
         }
-        where = self.get_namespace().strip('/')
-        label = f'{where}/{self.get_name()}' if where else self.get_name()
+        level = WARN if worries else OK
+        failing = self.failures.fresh(wall)
+        if failing:
+            level, worries = ERROR, [f'lately: {", ".join(failing)}']
         self._diagnostics.publish(
             diagnostics.array(
                 self.get_clock().now().nanoseconds,
                 [
                     diagnostics.status(
-                        f'{label}: output',
-                        f'{where}/radar' if where else 'radar',
-                        WARN if worries else OK,
+                        f'{self.label}: output',
+                        self.hardware_id,
+                        level,
                         '; '.join(worries) or f'{self._count["targets"]} targets',
                         values,
                     )

@@ -1,7 +1,7 @@
 """The operator's side of the tracker node: targets, alarms, acquisition, trial manoeuvre.
 
-Commands come as topics and services. What they cannot do is told by the service, or logged and
-counted on /diagnostics, a click in vain as well. They take effect at the next scan. `alarms` is
+Commands come as topics and services. What they cannot do is told by the service, or logged once
+and counted on /diagnostics, a click in vain as well. They take effect at the next scan. `alarms` is
 published on change: every alert that is not normal, and those that have just become so.
 
 Time is that of the plots' stamps. It stands at the end of the last scan, and goes on by the wall
@@ -28,7 +28,7 @@ from ..types import Array, Scan, append, take
 from . import diagnostics, topics
 from .arpa_messages import alarms_message, trial_message
 from .base_node import RunnableNode
-from .diagnostics import Tally, answered, guarded
+from .diagnostics import Tally, answered
 
 REFUSED = 'commands refused'
 OVERDUE = 3  # revolutions without plots: they are missing, not just to come
@@ -42,14 +42,13 @@ class Operator:
     picture  of the last scan; None before the first
     """
 
-    def __init__(self, node: RunnableNode, service: Service, hardware_id: str, failures: Tally):
+    def __init__(self, node: RunnableNode, service: Service, hardware_id: str):
         self._node = node
         self._hardware_id = hardware_id
-        self.failures = failures
         self.service = service
         self.memory = service.start()
         self._trial_since: float | None = None  # s, when the trial manoeuvre was switched on
-        self.refused = Tally((REFUSED,), lambda reason, detail: None)
+        self.refused = Tally((REFUSED,), node.tell)
         # Of the wall, s: when each was last heard, and between the last plots of each radar.
         self._heard_heading = self._heard_position = time.monotonic()
         self._heard_plots = [self._heard_heading] * len(self.arpa.radars)
@@ -158,7 +157,6 @@ class Operator:
 
     # -- commands ------------------------------------------------------------------------------
 
-    @guarded
     def _on_acquire(self, message: PointStamped) -> None:
         try:
             acquired = acquisition.acquire(
@@ -189,7 +187,6 @@ class Operator:
         port = np.array([-ahead[1], ahead[0]])
         return self.picture.own.position + point[0] * ahead + point[1] * port
 
-    @guarded
     def _on_cancel(self, message: UInt32) -> None:
         try:
             acquired, events = acquisition.cancel(self.memory.arpa.acquisition, message.data)
@@ -213,7 +210,6 @@ class Operator:
     def _on_acknowledge(self, _: Trigger.Request) -> str:
         return f'{self._acknowledge()} alerts acknowledged'
 
-    @guarded
     def _on_acknowledge_target(self, message: UInt32) -> None:
         try:
             self._acknowledge(message.data)
@@ -221,7 +217,12 @@ class Operator:
             self._refuse(str(error))
 
     def _acknowledge(self, number: int | None = None) -> int:
-        found, changed = alarms.acknowledge(self.memory.arpa.alerts, self._now(), number=number)
+        found, changed = alarms.acknowledge(
+            self.memory.arpa.alerts,
+            self._now(),
+            number=number,
+            duration=60 * self.arpa.parameters.acknowledge_for_min,
+        )
         self._put(alerts=found)
         self._publish_alarms(changed)
         return len(changed.kind)
@@ -244,8 +245,7 @@ class Operator:
                 )
 
     def _refuse(self, reason: str) -> None:
-        self.refused.add(REFUSED, time.monotonic())
-        self._node.get_logger().warning(f'command refused: {reason}')
+        self.refused.add(REFUSED, time.monotonic(), detail=reason)
 
     # -- out -----------------------------------------------------------------------------------
 

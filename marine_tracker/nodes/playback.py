@@ -23,7 +23,7 @@ from rclpy.duration import Duration
 from rosgraph_msgs.msg import Clock as ClockMessage
 from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
 
-from ..geometry import geodetic_from_local
+from ..geodesy import LocalFrame
 from ..service import heading_of
 from ..types import OwnShip, Scan, Truth, take
 from . import convert, topics
@@ -59,7 +59,7 @@ class Playback:
     make    begins the revolutions, in time order; called again for every loop
     rate    simulated seconds in a second
     loop    begin again at the end, one revolution later
-    origin  latitude and longitude in degrees of the local plane's origin; None: no fix
+    origin  the frame of own ship's positions, where that is on Earth; None: no fix
     begin_at  s, stamp of the first moment; 0: when this begins. Needs rate 1: ValueError
 
     `done` becomes true when the last revolution is out (never in a loop).
@@ -71,7 +71,7 @@ class Playback:
         make: Callable[[], Iterator[Revolution]],
         rate: float,
         loop: bool,
-        origin: tuple[float, float] | None = None,
+        origin: LocalFrame | None = None,
         begin_at: float = 0.0,
     ):
         if begin_at and rate != 1:
@@ -103,6 +103,7 @@ class Playback:
         self._start_ns: int | None = None  # stamp of the time _first
         self._anchor = (0.0, self._first)  # a moment of the wall and the time it stands for
         self._timer = node.create_timer(TICK_S, self._tick, clock=self._steady)
+        node.watch_failures(self._steady)
 
     def close(self) -> None:
         """Stop, and see that what was published arrives."""
@@ -228,8 +229,8 @@ class Playback:
             convert.own_ship_to_odometry(stamp, position, sample.velocity[0], heading_of(sample))
         )
         if self._fix is not None and self.origin is not None:
-            latitude, longitude = geodetic_from_local(position, *self.origin)
-            self._fix.publish(convert.fix_message(stamp, latitude, longitude))
+            place = map(float, self.origin.to_geodetic(position))
+            self._fix.publish(convert.fix_message(stamp, *place))
 
 
 def _repeat(make: Callable[[], Iterator[Revolution]]) -> Iterator[Revolution]:

@@ -16,6 +16,7 @@ from ..simulation import radar, scenario
 from ..types import OwnShip
 from .base_node import RunnableNode
 from .declare import declare
+from .diagnostics import one_line
 from .playback import Playback, Revolution, own_ship_period
 
 
@@ -26,6 +27,8 @@ class RadarSimulatorNode(RunnableNode):
         super().__init__('radar_simulator', **node_arguments)
         (parameters,) = declare(self, RadarSimulatorParameters)
         chosen = scenario.load(parameters.scenario)
+        for remark in chosen.fleet.remarks:
+            self.get_logger().warning(remark)
         step = own_ship_period(parameters.rate)
 
         def revolutions() -> Iterator[Revolution]:
@@ -46,7 +49,8 @@ class RadarSimulatorNode(RunnableNode):
             parameters.begin_at_s,
         )
         self.get_logger().info(
-            f'scenario {parameters.scenario}, seed {parameters.seed}, rate {parameters.rate:g}'
+            f'scenario {one_line(parameters.scenario)}, seed {parameters.seed}, '
+            f'rate {parameters.rate:g}'
         )
 
     @property

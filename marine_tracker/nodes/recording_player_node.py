@@ -12,6 +12,7 @@ from ..recording import csv_folder
 from ..types import take
 from .base_node import RunnableNode
 from .declare import declare
+from .diagnostics import one_line
 from .playback import Playback, Revolution
 
 
@@ -31,13 +32,14 @@ class RecordingPlayerNode(RunnableNode):
 
         self._playback = Playback(self, revolutions, parameters.rate, parameters.loop)
         self.get_logger().info(
-            f'recording {recording.name}, {len(recording.scans)} scans, rate {parameters.rate:g}'
+            f'recording {one_line(recording.name)}, {len(recording.scans)} scans, '
+            f'rate {parameters.rate:g}'
         )
         if recording.tracker_parameters:
             named = ', '.join(
                 f'{name}: {value}' for name, value in recording.tracker_parameters.items()
             )
-            self.get_logger().info(f'its radar.yaml has for the tracker {named}')
+            self.get_logger().info(f'its radar.yaml has for the tracker {one_line(named, 2_000)}')
 
     @property
     def done(self) -> bool:

@@ -3,6 +3,15 @@
 `rclpy.spin` with rclpy's own signal handlers may hang on SIGTERM or exit with 1. Here the
 handlers only set an event; the loop ends within its time-out, and everything is closed in order.
 They stand before anything large is imported: a signal during the start ends the node as well.
+A node that has not closed 10 s after the signal is ended, whatever it is doing (processes.py).
+
+Exit codes, in doc/nodes.md for users:
+
+0   stopped as asked, or nothing left to do; closed in order
+1   could not start, with one line on stderr; or failed, with a traceback or a warning on stderr
+14  not closed in time; stderr shows where each thread stood
+The signal itself (-2, -15; 130, 143 in a shell), or 1 of SIGINT, where it came while Python itself
+was starting, before the first line here.
 """
 
 import importlib
@@ -10,9 +19,9 @@ import os
 import signal
 import sys
 import threading
-import time
 
-from ..processes import keep_freed_memory
+from ..processes import closing, end_in_time, keep_freed_memory
+from . import arguments, log_folder
 
 NODES = {
     'tracker': 'TrackerNode',
@@ -20,33 +29,14 @@ NODES = {
     'recording_player': 'RecordingPlayerNode',
     'nmea_output': 'NmeaOutputNode',
 }
+LONGEST = 600  # characters of why a node cannot start
 ASKED = (signal.SIGINT, signal.SIGTERM)
-GRACE_S = 10.0  # to close in order, after a signal
 
 
-def end_in_time(name: str, stop: threading.Event) -> None:
-    """See to it that the process ends GRACE_S after a signal, whatever the middleware does.
-
-    Once in some hundreds of signals a node was seen to hang in its shutdown. The signal's number
-    comes through a pipe, so this holds even where the main thread never returns to Python.
-    """
-    read, write = os.pipe()
-    os.set_blocking(write, False)
-    signal.set_wakeup_fd(write)
-
-    def watch():
-        while os.read(read, 1)[0] not in ASKED:
-            pass
-        stop.set()
-        time.sleep(GRACE_S)
-        print(
-            f'{name}: not closed within {GRACE_S:g} s of the signal, ended at once',
-            file=sys.stderr,
-            flush=True,
-        )
-        os._exit(0)
-
-    threading.Thread(target=watch, daemon=True).start()
+def on_signals(handler) -> None:
+    """From now on SIGINT and SIGTERM have this handler."""
+    for number in ASKED:
+        signal.signal(number, handler)
 
 
 def run(name: str) -> int:
@@ -54,23 +44,33 @@ def run(name: str) -> int:
 
     The node is the class that NODES names, in the module `NAME_node`.
 
-    The exit code: 0 after a stop that was asked for, 1 with one line on stderr when the node
-    cannot start.
+    Returns the exit code, 0 or 1; see the module.
     """
-    stop = threading.Event()
-    for number in ASKED:
-        signal.signal(number, lambda *_: stop.set())
-    end_in_time(name, stop)
+    code = arguments.answer(name, sys.argv[1:])
+    if code is not None:
+        return code
+    on_signals(lambda *_: os._exit(0))  # nothing is open yet; imports take long on a busy machine
+    end_in_time()
     # ament looks packages up by this; a virtual environment is a prefix like any other.
     os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
+    log_folder.provide()
     import rclpy
     from rclpy.exceptions import NameValidationException, ParameterException
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.impl.implementation_singleton import rclpy_implementation as implementation
     from rclpy.signals import SignalHandlerOptions
 
+    from .diagnostics import one_line
+
     keep_freed_memory()
     make_node = getattr(importlib.import_module(f'.{name}_node', __package__), NODES[name])
+    stop = threading.Event()
+
+    def on_signal(*_):
+        closing()
+        stop.set()
+
+    on_signals(on_signal)
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = make_node()
@@ -83,7 +83,7 @@ def run(name: str) -> int:
         implementation.UnknownROSArgsError,
         implementation.RCLInvalidROSArgsError,
     ) as error:
-        print(f'{name}: {" ".join(str(error).split())}', file=sys.stderr, flush=True)
+        print(f'{name}: {one_line(error, LONGEST)}', file=sys.stderr, flush=True)
         rclpy.try_shutdown()
         return 1
     executor = SingleThreadedExecutor()
@@ -91,12 +91,14 @@ def run(name: str) -> int:
     try:
         while not stop.is_set() and not node.done:
             executor.spin_once(timeout_sec=0.1)
+        closing()
         node.close()
     finally:
         executor.shutdown()
         node.destroy_node()
         rclpy.try_shutdown()
-    return 0
+    on_signals(signal.SIG_IGN)  # none changes the exit code from here on
+    return 1 if node.done and node.failures.counts else 0
 
 
 # The executables. `python -m marine_tracker.nodes.run NAME --ros-args ...` runs the same.

@@ -8,14 +8,19 @@ from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation as implementation
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import PointCloud2
 
+from ..files import shortened
 from ..geometry import KNOT
-from . import topics
+from . import log_folder, topics
+from .base_node import RunnableNode
 from .convert import nanoseconds, odometry_to_own_ship
-from .diagnostics import ERROR, OK
+from .diagnostics import ERROR, OK, one_line
 from .targets_message import degrees
+
+CELL = 40  # characters of a name or a value, which somebody else may have written
 
 
 class Picture(NamedTuple):
@@ -46,8 +51,12 @@ class TargetsListener:
     def __init__(self):
         self.picture = Picture()
         self._context = Context()
-        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        self._node = rclpy.create_node('targets_listener', context=self._context)
+        log_folder.provide()
+        try:
+            rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        except implementation.RCLError as error:
+            raise ValueError(f'ROS does not start: {shortened(error)}') from error
+        self._node = RunnableNode('targets_listener', context=self._context)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
         for kind, topic, callback, quality in (
@@ -72,10 +81,10 @@ class TargetsListener:
     def _on_targets(self, message: DiagnosticArray) -> None:
         targets = tuple(
             {
-                'name': entry.name,
-                'status': entry.message,
+                'name': one_line(entry.name, CELL),
+                'status': one_line(entry.message, CELL),
+                **{pair.key: one_line(pair.value, CELL) for pair in entry.values},
                 'danger': 'DANGER' if entry.level == ERROR else '',
-                **{pair.key: pair.value for pair in entry.values},
             }
             for entry in message.status
         )
@@ -87,12 +96,12 @@ class TargetsListener:
 
     def _on_alarms(self, message: DiagnosticArray) -> None:
         about = [
-            (entry.name, next(pair.value for pair in entry.values if pair.key == 'state'))
+            (entry.name, next((pair.value for pair in entry.values if pair.key == 'state'), ''))
             for entry in message.status
             if entry.level != OK
         ]
         self.picture = self.picture._replace(
-            alarms=tuple(f'{name}, {state}' for name, state in about)
+            alarms=tuple(one_line(f'{name}, {state}') for name, state in about)
         )
 
     def _on_plots(self, message: PointCloud2) -> None:
@@ -109,6 +118,8 @@ class TargetsListener:
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         self.picture = self.picture._replace(
             warnings=tuple(
-                f'{entry.name}: {entry.message}' for entry in message.status if entry.level != OK
+                one_line(f'{entry.name}: {entry.message}')
+                for entry in message.status
+                if entry.level != OK
             )
         )

@@ -62,9 +62,7 @@ class TargetsWriter:
         self._keys: tuple[str, ...] = COLUMNS
         self._entries: list[DiagnosticStatus] = []
 
-    def message(
-        self, seen: View, estimator: str, time: float, time_ns: int
-    ) -> DiagnosticArray:
+    def message(self, seen: View, estimator: str, time: float, time_ns: int) -> DiagnosticArray:
         """The targets of a view at `time` s, stamped time_ns; valid until the next call."""
         rows = table(seen, estimator, time)
         keys = COLUMNS if seen.hulls is None else COLUMNS + hull_columns.COLUMNS

@@ -2,7 +2,7 @@
 
 What comes in is screened (tracking/intake.py): what is bad is rejected, counted by a named reason
 on /diagnostics and logged once; the tracks live on. See there for how jumps of the clock and of
-own ship are taken. No exception leaves a callback.
+own ship are taken.
 
 `tracks` and `extrapolations` show confirmed and coasting tracks, `tracks_cloud` all with their
 status. In `tracks` each is stamped with the time the beam passed it. `targets` and `markers` show
@@ -29,7 +29,7 @@ from ..tracking.radars import radars_of
 from . import convert, diagnostics, topics
 from .base_node import RunnableNode
 from .declare import declare, follow
-from .diagnostics import FAILED, OK, WARN, Durations, Tally, guarded
+from .diagnostics import FAILED, OK, WARN, Durations, Tally
 from .faults import HEADER_REASONS, NO_STAMP, ConversionError, bare, check_frame
 from .operator import Operator
 from .radar_input import Arrival, RadarInput
@@ -54,15 +54,11 @@ class TrackerNode(RunnableNode):
             RadarInput(radar, place, partial(self._tell_of, radar.name))
             for place, radar in enumerate(radars_of(parameters))
         ]
-        self.bad_own_ship = Tally((*own_ship.OWN_REASONS, *HEADER_REASONS), self._tell)
-        self.failures = Tally((), self._tell)
+        self.bad_own_ship = Tally((*own_ship.OWN_REASONS, *HEADER_REASONS), self.tell)
 
-        where = self.get_namespace().strip('/')
-        self._label = f'{where}/{self.get_name()}' if where else self.get_name()
-        self._hardware_id = f'{where}/radar' if where else 'radar'
-        self._operator = Operator(self, service, self._hardware_id, self.failures)
+        self._operator = Operator(self, service, self.hardware_id)
         follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
-        self._output = TrackerOutput(self, self._hardware_id)
+        self._output = TrackerOutput(self, self.hardware_id)
         self._to_diagnostics = self.publisher(
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
@@ -100,7 +96,6 @@ class TrackerNode(RunnableNode):
             self.create_subscription(kind, topic, callback, quality, event_callbacks=events),
         )
 
-    @guarded
     def _on_odometry(self, message: Odometry) -> None:
         self._samples += 1
         wall, came = time.monotonic(), self._arrival()
@@ -134,7 +129,6 @@ class TrackerNode(RunnableNode):
         arrival = now_ns * 1e-9 if simulated else clocks.steady()
         return Arrival(arrival, now_ns, self._seconds, self._own_frame)
 
-    @guarded
     def _on_plots(self, heard: RadarInput, message: PointCloud2) -> None:
         began = time.perf_counter()
         found = heard.scan_of(
@@ -184,15 +178,8 @@ class TrackerNode(RunnableNode):
     # -- how it fares --------------------------------------------------------------------------
 
     def _tell_of(self, radar: str, reason: str, detail: str) -> None:
-        self._tell(f'{radar}: {reason}' if radar else reason, detail)
+        self.tell(f'{radar}: {reason}' if radar else reason, detail)
 
-    def _tell(self, reason: str, detail: str) -> None:
-        """Log the first of its kind; /diagnostics counts the rest."""
-        self.get_logger().warning(
-            f'{reason}{": " + detail if detail else ""} (told once; counted on /diagnostics)'
-        )
-
-    @guarded
     def _on_second(self) -> None:
         for topic in tuple(self._mismatched):
             kind, callback, subscription = self._inputs[topic]
@@ -243,7 +230,7 @@ class TrackerNode(RunnableNode):
             'confirmed': confirmed,
             'coasting': self._status_count[COASTING],
             'tentative': self._status_count[TENTATIVE],
-            **({} if parameters.extent == 'off' else {'clusters of land': memory.extents.shores}),
+            **({} if parameters.extent == 'none' else {'clusters of land': memory.extents.shores}),
             'at max_tracks': len(memory.tracker.tracks.id) >= parameters.max_tracks,
             'processing_p50_ms': f'{1e3 * self._processing.percentile(50):.1f}',
             'processing_p99_ms': f'{1e3 * slow:.1f}',
@@ -283,6 +270,4 @@ class TrackerNode(RunnableNode):
         return self._operator.service.tracker.parameters.own_ship_velocity
 
     def _status(self, task, level, message, values):
-        return diagnostics.status(
-            f'{self._label}: {task}', self._hardware_id, level, message, values
-        )
+        return diagnostics.status(f'{self.label}: {task}', self.hardware_id, level, message, values)

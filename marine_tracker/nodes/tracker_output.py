@@ -64,7 +64,7 @@ class TrackerOutput:
         end_ns = int(stamps(output.scan.end))
         name = service.tracker.parameters.estimator
         arpa = service.arpa
-        seen = view(output.picture, output.report, name, output.shapes)
+        seen = view(output.picture, output.report, service.tracker.estimator, output.shapes)
         self._to_targets.publish(self._targets.message(seen, name, output.scan.end, end_ns))
         if self._to_markers.get_subscription_count():
             self._to_markers.publish(

@@ -6,7 +6,7 @@ names the parameter, the value and the limit.
 """
 
 from .arpa import ArpaParameters
-from .description import from_mapping, from_mappings, read_yaml_mapping
+from .description import from_mapping, from_mappings
 from .sources_and_outputs import (
     NmeaOutputParameters,
     RadarSimulatorParameters,
@@ -33,5 +33,4 @@ __all__ = [
     'TrackerParameters',
     'from_mapping',
     'from_mappings',
-    'read_yaml_mapping',
 ]

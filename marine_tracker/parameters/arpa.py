@@ -25,6 +25,22 @@ class ArpaParameters:
         high=120.0,
         live=True,
     )
+    acknowledge_for_min: float = parameter(
+        0.0,
+        'How long what you acknowledge stays acknowledged while its cause lasts; then it sounds '
+        'again. 0: until the cause has ended.',
+        unit='min',
+        low=0.0,
+        high=120.0,
+        live=True,
+    )
+    own_ship_status: str = parameter(
+        'detected',
+        'Own ship at anchor raises no CPA alarms but for targets that surely come nearer. '
+        'detected: at anchor while she makes no way; anchored, under_way: as you say.',
+        choices=('detected', 'anchored', 'under_way'),
+        live=True,
+    )
     acquisition: str = parameter(
         'everywhere',
         'Where confirmed tracks become targets by themselves: everywhere, in guard '
@@ -64,9 +80,11 @@ class ArpaParameters:
         6.0, 'Length of the vectors on `markers`.', unit='min', low=0.1, high=120.0, live=True
     )
     vectors: str = parameter(
-        'true',
-        'Vectors and past positions on `markers`: true or relative to own ship.',
-        choices=('true', 'relative'),
+        'absolute',
+        'Vectors and past positions on `markers`: as over ground or through the water '
+        '(absolute), or relative to own ship.',
+        choices=('absolute', 'relative'),
+        old={'true': 'absolute', True: 'absolute'},
         live=True,
     )
     current_set_deg: float = parameter(
@@ -150,5 +168,5 @@ class ArpaParameters:
         live=True,
     )
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)

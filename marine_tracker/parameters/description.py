@@ -2,18 +2,31 @@
 
 import dataclasses
 import difflib
+import functools
+import logging
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
-import yaml
+from ..files import shown
 
 
-def parameter(default, text, *, unit='', low=None, high=None, choices=(), live=False):
+def parameter(
+    default: bool | int | float | str,
+    text: str,
+    *,
+    unit: str = '',
+    low: float | None = None,
+    high: float | None = None,
+    choices: tuple[str, ...] = (),
+    live: bool = False,
+    old: Mapping[Any, str] | None = None,
+) -> Any:
     """A dataclass field with its description.
 
     low, high  inclusive limits of a number; choices  the values a string may take;
-    live       may be changed while the node runs.
+    live       may be changed while the node runs
+    old        words of earlier versions, and what stands for each now (YAML 1.1 makes some bools)
     """
     return dataclasses.field(
         default=default,
@@ -24,11 +37,12 @@ def parameter(default, text, *, unit='', low=None, high=None, choices=(), live=F
             'high': high,
             'choices': choices,
             'live': live,
+            'old': old or {},
         },
     )
 
 
-def check(parameters) -> None:
+def check(parameters: Any) -> None:
     """Raise ValueError for the first field with a wrong type, or outside its limits or choices."""
     for field in dataclasses.fields(parameters):
         kind: Any = field.type
@@ -36,12 +50,16 @@ def check(parameters) -> None:
         if kind is float and type(value) is int:
             value = float(value)
             object.__setattr__(parameters, field.name, value)
-        if value is False and 'off' in about['choices']:  # how YAML reads it
-            value = 'off'
+        if isinstance(value, (str, bool)) and value in about['old']:
+            value = about['old'][value]
+            _tell_once(
+                f'parameter {field.name}: {getattr(parameters, field.name)} is a word of earlier '
+                f'versions; write {value}'
+            )
             object.__setattr__(parameters, field.name, value)
         if type(value) is not kind:
             raise ValueError(
-                f'parameter {field.name} is {value!r}, a {type(value).__name__}; '
+                f'parameter {field.name} is {shown(value)}, a {type(value).__name__}; '
                 f'it must be a {kind.__name__}'
             )
         if isinstance(value, float) and not math.isfinite(value):
@@ -54,7 +72,7 @@ def check(parameters) -> None:
             )
         if about['choices'] and value not in about['choices']:
             raise ValueError(
-                f'parameter {field.name} is {value!r}; '
+                f'parameter {field.name} is {shown(value)}; '
                 f'it must be one of {", ".join(about["choices"])}'
             )
 
@@ -64,7 +82,8 @@ P = TypeVar('P')
 
 def from_mapping(kind: type[P], values: Mapping[str, Any]) -> P:
     """A parameter object from a mapping; an unknown key is an error that names its neighbours."""
-    return from_mappings((kind,), values)[0]
+    made: P = from_mappings((kind,), values)[0]
+    return made
 
 
 def from_mappings(kinds: Sequence[type], values: Mapping[str, Any]) -> tuple[Any, ...]:
@@ -72,24 +91,19 @@ def from_mappings(kinds: Sequence[type], values: Mapping[str, Any]) -> tuple[Any
     known = {field.name: kind for kind in kinds for field in dataclasses.fields(kind)}
     for name in values:
         if name not in known:
-            near = difflib.get_close_matches(str(name), known, 1)
+            near = difflib.get_close_matches(_cut(name), known, 1)
             hint = f'; did you mean {near[0]}?' if near else ''
-            raise ValueError(f'unknown parameter {name}{hint}')
+            raise ValueError(f'unknown parameter {_cut(name)}{hint}')
     return tuple(
         kind(**{name: value for name, value in values.items() if known[name] is kind})
         for kind in kinds
     )
 
 
-def read_yaml_mapping(path) -> dict[str, Any]:
-    """A YAML file that holds one mapping (empty counts as none); errors name the file."""
-    with open(path) as file:
-        try:
-            values = yaml.safe_load(file)
-        except yaml.YAMLError as error:
-            raise ValueError(f'{path} is not YAML: {error}') from error
-    if values is None:
-        return {}
-    if not isinstance(values, dict):
-        raise ValueError(f'{path} holds a {type(values).__name__}; it must hold a mapping')
-    return values
+def _cut(name: Any) -> str:
+    return str(name)[:60]
+
+
+@functools.cache
+def _tell_once(message: str) -> None:
+    logging.getLogger(__name__).warning(message)

@@ -29,7 +29,7 @@ class RadarSimulatorParameters:
     )
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)
 
 
@@ -46,7 +46,7 @@ class RecordingPlayerParameters:
     )
     loop: bool = parameter(False, 'Begin again when the recording has ended.')
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)
 
 
@@ -65,12 +65,21 @@ class NmeaOutputParameters:
         'separated by blanks, broadcast addresses too. Empty: nowhere.',
     )
     tcp: str = parameter(
-        '', 'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks. Empty: no server.'
+        '',
+        'host:port to serve TCP clients on; 0.0.0.0:10110 for all networks, [::]:10110 for those '
+        'of IPv6 as well. Empty: no server.',
     )
     signalk_udp: str = parameter(
         '', 'Where Signal K deltas are sent as datagrams, as for udp. Empty: nowhere.'
     )
     talker: str = parameter('RA', 'Talker of OSD, RSD, TTM and TLL.')
+    target_numbers: int = parameter(
+        99,
+        'Greatest target number in TTM and TLL, so most targets at a time: 99 as the standard '
+        'has it (two digits), up to 999 where receivers read three digits, as OpenCPN does.',
+        low=99,
+        high=999,
+    )
     own_ship_talker: str = parameter('II', 'Talker of RMC and HDT.')
     own_ship_period_s: float = parameter(
         1.0,
@@ -84,8 +93,8 @@ class NmeaOutputParameters:
     )
     origin: str = parameter(
         '',
-        'Latitude and longitude in degrees of the origin of `map`, as "54.1 10.9". Empty: own '
-        'ship is where own_ship/fix says.',
+        'Latitude and longitude in degrees of the origin of `map`, as "54.1 -10.9": south and west '
+        'negative, no longitude beyond 180. Empty: own ship is where own_ship/fix says.',
     )
     fix_timeout_s: float = parameter(
         5.0,
@@ -103,5 +112,5 @@ class NmeaOutputParameters:
         choices=('auto', 'twist', 'positions'),
     )
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)

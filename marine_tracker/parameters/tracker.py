@@ -8,7 +8,7 @@ BEARINGS = ('true', 'relative')
 VESSEL_CLASSES = ('ship', 'small_craft')
 # m: how far the point of a target that echoes strays from its middle, each axis, by vessel class.
 GLINT_SIGMA = {'ship': 25.0, 'small_craft': 0.0}
-EXTENTS = ('off', 'random_matrix', 'gp')
+EXTENTS = ('none', 'random_matrix', 'gp')
 
 
 @dataclass(frozen=True)
@@ -84,10 +84,11 @@ class TrackerParameters:
         '`radar/plots`.',
     )
     extent: str = parameter(
-        'off',
-        'Whether echoes that touch are one target with length and heading: off, by an '
+        'none',
+        'Whether echoes that touch are one target with length and heading: none, by an '
         'ellipse (random_matrix), close by also by an outline (gp); see doc/extended_targets.md.',
         choices=EXTENTS,
+        old={'off': 'none', False: 'none'},
         live=True,
     )
     range_resolution_m: float = parameter(
@@ -267,7 +268,7 @@ class TrackerParameters:
         live=True,
     )
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)
         if self.confirm_hits > self.confirm_scans:
             raise ValueError(
@@ -279,9 +280,9 @@ class TrackerParameters:
                 f'parameter min_range_m is {self.min_range_m:g} m; it must be below '
                 f'max_range_m, {self.max_range_m:g} m'
             )
-        if self.extent != 'off' and self.radars:
+        if self.extent != 'none' and self.radars:
             raise ValueError(
-                f'parameter extent is {self.extent}; with several radars it must be off'
+                f'parameter extent is {self.extent}; with several radars it must be none'
             )
 
     @property

@@ -18,6 +18,7 @@ between them, else from its first plot to its last one. A scan whose plots all c
 most recordings have them, has no length.
 """
 
+import contextlib
 import csv
 import json
 from collections.abc import Iterable, Iterator
@@ -27,10 +28,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import tables, yaml_file
+from ..files import written
 from ..geometry import heading_at, own_ship_at, wrap_bearing
-from ..parameters import read_yaml_mapping
 from ..types import Array, OwnShip, PolarPlots, Scan, Truth, take
-from . import tables
 
 PLOTS = ('scan', 'time_s', 'range_m', 'bearing_deg')
 OWN_SHIP = ('scan', 'time_s', 'north_m', 'east_m')
@@ -38,6 +39,7 @@ TRUTH = ('scan', 'time_s', 'target', 'north_m', 'east_m')
 VELOCITY = ('vel_north_mps', 'vel_east_mps')
 RADIAL_SPEED = 'radial_speed_mps'
 HEADING = 'heading_deg'
+MAX_TIME = 1e11  # s, either way: beyond all clocks
 
 
 class Recording(NamedTuple):
@@ -87,8 +89,8 @@ def read(folder) -> Recording:
         folder.resolve().name,
         tuple(scans),
         truths,
-        read_yaml_mapping(radar) if radar.exists() else {},
-        _read_notes(notes) if notes.exists() else {},
+        yaml_file.read_mapping(radar) if radar.exists() else {},
+        yaml_file.read_json(notes) if notes.exists() else {},
         numbers,
         own_ship,
     )
@@ -142,12 +144,19 @@ def write(
             (*plot, '' if np.isnan(speed) else f'{speed:.6f}')
             for plot, speed in zip(plots, told.tolist())
         ]
-    _write_table(folder / 'plots.csv', header, plots)
-    _write_table(folder / 'own_ship.csv', (*OWN_SHIP, *VELOCITY, 'end_s', HEADING), own_ship)
-    _write_table(folder / 'truth.csv', (*TRUTH, *VELOCITY), truth)
-    lines = [f'{key}: {json.dumps(value)}\n' for key, value in tracker_parameters.items()]
-    (folder / 'radar.yaml').write_text(''.join(lines))
-    (folder / 'notes.json').write_text(json.dumps({'name': name, **(notes or {})}) + '\n')
+    # All of them take their places when the last one is whole; own_ship.csv, without which it is
+    # no recording, last of all.
+    with contextlib.ExitStack() as stack:
+
+        def begin(file):
+            return stack.enter_context(written(folder / file, newline=''))
+
+        _write_table(begin('own_ship.csv'), (*OWN_SHIP, *VELOCITY, 'end_s', HEADING), own_ship)
+        _write_table(begin('plots.csv'), header, plots)
+        _write_table(begin('truth.csv'), (*TRUTH, *VELOCITY), truth)
+        lines = [f'{key}: {json.dumps(value)}\n' for key, value in tracker_parameters.items()]
+        begin('radar.yaml').write(''.join(lines))
+        begin('notes.json').write(json.dumps({'name': name, **(notes or {})}) + '\n')
 
 
 def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
@@ -155,7 +164,8 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
     table = tables.read(path, OWN_SHIP)
     if not len(table):
         raise ValueError(f'{path} has no rows; it must have one for every scan')
-    numbers, time = table.integers('scan'), table.numbers('time_s')
+    numbers = table.integers('scan')
+    time = table.numbers('time_s', low=-MAX_TIME, high=MAX_TIME)
     for column, steps in (('scan', np.diff(numbers)), ('time_s', np.diff(time))):
         back = np.flatnonzero(steps <= 0)
         if len(back):
@@ -173,7 +183,7 @@ def _read_own_ship(path) -> tuple[NDArray[np.int64], OwnShip, Array]:
     velocity = np.where(np.isnan(recorded).any(axis=1, keepdims=True), velocity, recorded)
     end = np.full(len(time), np.nan)
     if 'end_s' in table.columns:
-        end = table.numbers('end_s', missing=True)
+        end = table.numbers('end_s', missing=True, low=-MAX_TIME, high=MAX_TIME)
         early = np.flatnonzero(end < time)
         if len(early):
             row = int(early[0])
@@ -213,7 +223,7 @@ def _read_plots(path, numbers) -> tuple[PolarPlots, ...]:
     )
     bearing = wrap_bearing(np.radians(table.numbers('bearing_deg', low=-360.0, high=360.0)))
     plots = PolarPlots(
-        table.numbers('time_s'),
+        table.numbers('time_s', low=-MAX_TIME, high=MAX_TIME),
         table.numbers('range_m', low=0.0),
         bearing,
         np.nan_to_num(amplitude),
@@ -266,20 +276,9 @@ def _no_truth() -> Truth:
     return Truth(np.empty(0), np.empty(0, np.int64), np.empty((0, 2)), np.empty((0, 2)))
 
 
-def _read_notes(path) -> dict[str, Any]:
-    try:
-        notes = json.loads(path.read_text())
-    except ValueError as error:
-        raise ValueError(f'{path} is not JSON: {error}') from error
-    if not isinstance(notes, dict):
-        raise ValueError(f'{path} holds a {type(notes).__name__}; it must hold an object')
-    return notes
-
-
 def _metres(*values) -> list[str]:
     return [f'{value:.6f}' for value in values]
 
 
-def _write_table(path, header, rows) -> None:
-    with open(path, 'w', newline='') as file:
-        csv.writer(file, lineterminator='\n').writerows([header, *rows])
+def _write_table(file, header, rows) -> None:
+    csv.writer(file, lineterminator='\n').writerows([header, *rows])

@@ -5,9 +5,9 @@ from typing import IO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import tables
 from ..geometry import KNOT, own_ship_at, to_range_bearing, wrap_bearing
 from ..types import Array, Extrapolation, OwnShip
-from . import tables
 
 COLUMNS = (
     'time_s',

@@ -1,26 +1,19 @@
-"""Ships driven by AIS reports: a CSV of positions made into smooth ways.
+"""Ships driven by AIS reports: positions made into smooth ways (ais_file.py reads them).
 
-Columns: time_s, vessel, lat_deg, lon_deg; sog_kn, heading_deg, length_m, beam_m and type may be
-there too. Times are whole seconds and sometimes late, so a position is metres off along the way:
-the way is a cubic smoothing spline, not one through every report.
+Times are whole seconds and sometimes late, so a position is metres off along the way: the way is a
+cubic smoothing spline, not one through every report.
 """
 
-import csv
-import math
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import PPoly, make_smoothing_spline
 
-from ..geometry import KNOT, local_from_geodetic
+from ..geodesy import LocalFrame
 from ..types import Array
 from .motion import Piece
 
-COLUMNS = ('time_s', 'vessel', 'lat_deg', 'lon_deg')
 SMOOTHED_PERIOD = 40.0  # s: slower motion is followed, faster motion is taken for jitter
-MAX_SPEED = 100 * KNOT  # m/s, between two reports
-CLOCK_ERROR = 10.0  # s, of a report's time, as seen in recorded traffic
 
 
 class Reports(NamedTuple):
@@ -40,87 +33,9 @@ class Reports(NamedTuple):
     max_gap: float
 
 
-def read(path: Path, start: float, duration: float, max_gap: float) -> dict[str, Reports]:
-    """The vessels that are there from time `start` s of the file on for `duration` s, by name.
-
-    Raises ValueError for a file that is not of this form, naming line, column and value.
-    """
-    rows: dict[str, list[tuple[float, ...]]] = {}
-    try:
-        with open(path, newline='') as file:
-            table = csv.DictReader(file)
-            for column in COLUMNS:
-                if column not in (table.fieldnames or ()):
-                    raise ValueError(f'AIS file {path} has no column {column}')
-            for row in table:
-                place = f'AIS file {path} line {table.line_num}'
-                time, latitude, longitude = (
-                    _number(row, column, place) for column in ('time_s', 'lat_deg', 'lon_deg')
-                )
-                if abs(latitude) > 90 or abs(longitude) > 180:
-                    raise ValueError(
-                        f'{place}: no place on Earth: lat_deg {latitude:g}, lon_deg {longitude:g}'
-                    )
-                rows.setdefault(row['vessel'], []).append(
-                    (time - start, latitude, longitude, _length(row))
-                )
-    except OSError as error:
-        raise ValueError(f'AIS file {path} cannot be read: {error.strerror}') from error
-    vessels = {}
-    for vessel, found in rows.items():
-        reports = _reports(np.array(found), duration, max_gap, f'AIS file {path} vessel {vessel}')
-        if reports is not None:
-            vessels[vessel] = reports
-    if not vessels:
-        raise ValueError(
-            f'AIS file {path} has no vessel between {start:g} s and {start + duration:g} s'
-        )
-    return vessels
-
-
-def _number(row, column, place):
-    try:
-        value = float(row[column])
-    except (TypeError, ValueError):
-        value = math.nan
-    if not math.isfinite(value):
-        raise ValueError(f'{place}: {column} is {row[column]!r}; it must be a number')
-    return value
-
-
-def _length(row):
-    try:
-        return float(row.get('length_m') or 'nan')
-    except ValueError:  # '<NA>' and the like
-        return math.nan
-
-
-def _reports(found, duration, max_gap, place):
-    """Reports in time order with those of one time averaged; None where none is of use."""
-    time, which = np.unique(found[:, 0], return_inverse=True)
-    count = np.bincount(which)
-    latitude, longitude = (np.bincount(which, found[:, k]) / count for k in (1, 2))
-    useful = (time >= -max_gap) & (time <= duration + max_gap)
-    time, latitude, longitude = time[useful], latitude[useful], longitude[useful]
-    if len(time) < 2 or time[-1] <= 0 or time[0] >= duration:
-        return None
-    step = np.hypot(
-        *np.diff(local_from_geodetic(latitude, longitude, latitude[0], longitude[0]), axis=0).T
-    )
-    jump = step > MAX_SPEED * (np.diff(time) + CLOCK_ERROR)
-    if jump.any():
-        k = int(np.argmax(jump))
-        raise ValueError(
-            f'{place} moves {step[k]:.0f} m in {time[k + 1] - time[k]:g} s; that is '
-            'more than 100 kn'
-        )
-    lengths = found[:, 3][np.isfinite(found[:, 3])]
-    return Reports(time, latitude, longitude, lengths[0] if len(lengths) else math.nan, max_gap)
-
-
-def way(reports: Reports, origin: tuple[float, float]) -> list[Piece]:
-    """The vessel's way in the frame of `origin` (degrees): a spline over each run without gaps."""
-    position = local_from_geodetic(reports.latitude, reports.longitude, *origin)
+def way(reports: Reports, frame: LocalFrame) -> list[Piece]:
+    """The vessel's way in the frame: a spline over each run without gaps."""
+    position = frame.to_local(reports.latitude, reports.longitude)
     ends = np.flatnonzero(np.diff(reports.time) > reports.max_gap) + 1
     pieces = [Piece(min(0.0, reports.time[0]) - 1.0, tuple(position[0]), exists=False)]
     for time, place in zip(np.split(reports.time, ends), np.split(position, ends), strict=True):

@@ -1,7 +1,7 @@
-"""When the turning beam meets the ships, and where they are then.
+"""When the rotating beam meets the ships, and where they are then.
 
-The beam starts each revolution at true north and turns evenly, so it meets a target when its angle
-is the bearing of the moving target from the moving own ship.
+The beam starts each revolution at true north and turns evenly. It meets a target when its angle
+equals the bearing of the moving target from the moving own ship.
 """
 
 from collections.abc import Iterator
@@ -15,17 +15,17 @@ from ..types import Array, Truth, take
 from . import motion
 from .scenario import Scenario
 
-NEAR_SEAM = 0.25  # of a revolution: how near to north a passage may be doubled
-SEAM = 1e-9  # s: a passage this little before north belongs to the next revolution
-REVOLUTIONS = 64  # solved at once, as array operations cost the same for few rows and for
-ROWS = 8192  # many; but no more rows than this
+NEAR_SEAM = 0.25  # of a revolution; this near to north a passage may be doubled or missed
+SEAM = 1e-9  # s; a passage less than this before north belongs to the next revolution
+REVOLUTIONS = 64  # solved at once: array operations cost the same for
+ROWS = 8192  # few rows as for many; but at most this many rows
 
 
 class Passages(NamedTuple):
-    """The beam passing targets in one revolution, one row a passage.
+    """The beam's passages of targets in one revolution, one row each.
 
     target    [P]     its number, from 1; a target may be passed 0, 1 or 2 times
-    turn      [P]     0, or 1 where it is the target's second passage
+    turn      [P]     0, or 1 for the target's second passage
     time      [P]     s
     offset    [P, 2]  m, from own ship at that time
     velocity  [P, 2]  m/s, of the target over ground
@@ -41,8 +41,8 @@ class Passages(NamedTuple):
 class Revolution(NamedTuple):
     """One revolution of the antenna: start and end s, the beam's passages, and the truth.
 
-    The truth has a row for every target that exists, at the time when the beam passed it (the
-    first time, if twice; the nearest end of the revolution, if not at all).
+    The truth has a row for every target that exists, at the time when the beam passed it. For two
+    passages it is the first one; for none it is the nearest end of the revolution.
     """
 
     start: float
@@ -68,7 +68,7 @@ def _solve(scenario, numbers):
     start, end = number * period, (number + 1) * period
     offset, _, _ = _from_own_ship(scenario, target, 0.5 * (start + end))
     time = start + to_range_bearing(offset)[1] * (period / (2 * np.pi))
-    # A target drifting over north may be met at both ends of the revolution, or at neither.
+    # A target that moves across north may be met at both ends of the revolution, or at neither.
     late, early = time > end - NEAR_SEAM * period, time < start + NEAR_SEAM * period
     number, target = (np.concatenate([a, a[late], a[early]]) for a in (number, target))
     time = np.concatenate([time, time[late] - period, time[early] + period])
@@ -76,10 +76,10 @@ def _solve(scenario, numbers):
     order = np.lexsort((time, target, number))
     number, target, time = number[order], target[order], time[order]
     start, end = number * period, (number + 1) * period
-    # Two revolutions must agree, to rounding, on whose a passage exactly over north is.
+    # Both revolutions must agree, despite rounding, on the owner of a passage exactly at north.
     inside = (time >= start - SEAM) & (time < end - SEAM)
 
-    # Truth: the first passage inside, else the end of the revolution that is nearest.
+    # Truth: the first passage inside, else the nearest end of the revolution.
     rank = np.where(inside, time - start, period + np.abs(time - 0.5 * (start + end)))
     best = np.lexsort((rank, target, number))
     best = best[_is_first(number[best], target[best])]
@@ -95,18 +95,17 @@ def _solve(scenario, numbers):
         np.searchsorted(number[rows], np.append(numbers, numbers[-1] + 1)) for rows in (met, best)
     ]
     for k, revolution in enumerate(numbers.tolist()):
+        of_passages, of_truth = (slice(edge[k], edge[k + 1]) for edge in edges)
         yield Revolution(
             revolution * period,
             (revolution + 1) * period,
-            *(
-                take(rows, slice(edge[k], edge[k + 1]))
-                for rows, edge in zip((passages, truth), edges, strict=True)
-            ),
+            take(passages, of_passages),
+            take(truth, of_truth),
         )
 
 
 def _is_first(number, target):
-    """Which rows, sorted by revolution and target, are the first of their revolution and target."""
+    """The first rows of each revolution and target; rows are sorted by both."""
     return (np.diff(number, prepend=-1) != 0) | (np.diff(target, prepend=0) != 0)
 
 
@@ -122,7 +121,7 @@ def _meet(scenario, target, time, start):
         rate = (offset[:, 1] * velocity[:, 0] - offset[:, 0] * velocity[:, 1]) / np.maximum(
             distance, 1e-3
         ) ** 2
-        # A bearing that outruns half the beam's turn occurs only within metres of own ship.
+        # A bearing changes faster than half the beam's rate only within metres of own ship.
         rate = np.clip(rate, -0.5 * turn, 0.5 * turn)
         time = time + wrap_angle(bearing - turn * (time - start)) / (turn - rate)
     return time

@@ -1,11 +1,12 @@
-"""False plots: uniform noise, and sea clutter that crowds around own ship."""
+"""False plots: uniform noise, and sea clutter that is dense around own ship."""
 
 import numpy as np
 
 from ..types import Array
 from .scenario import Clutter, ScenarioRadar
 
-# Power over the noise of false plots: they only just pass the threshold, sea spikes by more.
+# Excess power of false plots, in units of noise: noise only just passes the threshold, sea clutter
+# by more.
 UNIFORM_EXCESS = 1.0
 SEA_EXCESS = 5.0
 WAVE_SPEED = 1.0  # m/s, standard deviation of the radial speeds of waves
@@ -16,7 +17,7 @@ def uniform_plots(
 ) -> tuple[Array, Array, Array]:
     """Range m, bearing rad and power above the threshold [M] of one revolution's noise plots.
 
-    They lie evenly over the area between blind and maximum range; M is Poisson.
+    They are uniform over the area between blind and maximum range. M is Poisson.
     """
     count = random.poisson(clutter.uniform)
     near, far = radar.blind_range**2, radar.max_range**2
@@ -31,10 +32,10 @@ def uniform_plots(
 def sea_plots(
     clutter: Clutter, radar: ScenarioRadar, random: np.random.Generator
 ) -> tuple[Array, Array, Array]:
-    """The same of sea clutter: range is exponential from the blind range, cut at the maximum.
+    """The same for sea clutter: range is exponential from the blind range, cut at the maximum.
 
-    A radar resolves cells of equal angle, so an even false-alarm rate a cell is an even number a
-    metre of range; the waves' echo falls off with range on top of it.
+    A radar resolves cells of equal angle. So an even false-alarm rate in cells is an even number
+    per metre of range. The echo of the waves also gets weaker with range.
     """
     count = random.poisson(clutter.sea)
     within = -np.expm1(-(radar.max_range - radar.blind_range) / clutter.sea_scale)
@@ -47,7 +48,7 @@ def radial_speeds(
 ) -> Array:
     """Radial speeds [noise + waves] m/s over ground of noise plots, then of sea clutter.
 
-    Noise lies anywhere in the radar's Doppler band; waves come and go.
+    Noise lies anywhere in the radar's Doppler band. Waves move towards the radar and away.
     """
     return np.concatenate(
         [

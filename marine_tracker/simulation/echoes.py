@@ -1,9 +1,10 @@
-"""Cells over the threshold: what pulse and beam make of many scatterers.
+"""Cells over the threshold: the echoes of many scatterers after pulse and beam.
 
 The radar looks at a grid of cells, one range resolution deep and one beam wide. The echoes of all
-scatterers add up in a cell as waves do, each weighed by how far the cell lies from it: Gaussian in
-range (the pulse) and in bearing (the beam, which is passed twice), half the power at half a cell
-off, a quarter in bearing. So a strong scatterer fills its neighbours too: that is the smear.
+scatterers add up in a cell as waves do. Each has a weight that depends on its distance from the
+cell: Gaussian in range (the pulse) and in bearing (the beam, which is passed twice). The power is a
+half at half a cell away in range, and a quarter in bearing. So a strong scatterer also fills the
+neighbouring cells: this is the smear.
 """
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..types import Array, PolarPlots, take
 from .scenario import ScenarioRadar
 
 THRESHOLD = 20.0  # power over noise at which a plot is declared: 13 dB
-NEAR = np.arange(-2, 3)  # cells; two off, pulse and beam are 48 dB down or more
+NEAR = np.arange(-2, 3)  # cells; two cells away, pulse and beam are down by 48 dB or more
 
 
 def cells(
@@ -27,7 +28,7 @@ def cells(
     """The cells over the threshold in the revolution that begins at `start` s.
 
     distance [S] m, bearing [S] rad of the scatterers when the beam passes them; echo [S] complex,
-    amplitude over that of the receiver's noise. A plot lies in the middle of its cell.
+    amplitude relative to the receiver's noise. A plot lies in the middle of its cell.
     """
     sectors = round(2 * np.pi / radar.beam_width)
     width = 2 * np.pi / sectors

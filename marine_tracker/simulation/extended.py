@@ -1,4 +1,4 @@
-"""What the radar sees as cells in a scenario: hulls of ships, and shores."""
+"""The cells that the radar sees in a scenario: hulls of ships, and shores."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from .scenario import Scenario
 
 SHORE_SPACING = 0.5  # of the range resolution
 EDGE_SPACING = 1.0  # m
-HIDES = 2.0  # range resolutions behind which a shore hides what is farther
+HIDES = 2.0  # range resolutions; a shore hides what is farther behind it
 
 
 class Scene(NamedTuple):
@@ -19,8 +19,8 @@ class Scene(NamedTuple):
 
     hulls  those of ships
     shore  [L, 2]  m, east and north
-    power  [L]     of the shore's, mean, over that of noise
-    edge   [E, 2]  m, points along the shores that hide what is behind them
+    power  [L]     mean power of the shore's, over noise
+    edge   [E, 2]  m, points along the shores; they hide what is behind them
     """
 
     hulls: hull.Scatterers
@@ -30,9 +30,9 @@ class Scene(NamedTuple):
 
 
 def scene(scenario: Scenario, random: np.random.Generator) -> Scene:
-    """Lay the scatterers out, once a run.
+    """Places the scatterers, once a run.
 
-    Rocks differ: the power of those of a shore is exponential about its mean.
+    Rocks differ: the power of a shore's scatterers is exponential about its mean.
     """
     spacing = SHORE_SPACING * scenario.radar.range_resolution
     shore, power, edge = [np.empty((0, 2))], [np.empty(0)], [np.empty((0, 2))]
@@ -57,7 +57,7 @@ def plots(
     offset, power = _hulls(of.hulls, scenario, start, truth, own)
     shore = of.shore - own.position[-1]
     shown = land.lit(shore, of.edge - own.position[-1], HIDES * scenario.radar.range_resolution)
-    # The shore is seen as the beam comes by, own ship meanwhile here and there.
+    # The beam sees the shore as it passes, and own ship moves meanwhile.
     shore = shore[shown]
     shore -= (_passed(scenario, start, shore) - own.time[-1])[:, None] * own.velocity[-1]
     power = np.concatenate([power, of.power[shown]])
@@ -67,15 +67,15 @@ def plots(
 
 
 def _passed(scenario, start, offset):
-    """When [S] s the beam passes offsets [S, 2] m in the revolution that begins at `start`."""
+    """Times [S] s when the beam passes offsets [S, 2] m in the revolution from `start` on."""
     return start + to_range_bearing(offset)[1] * (scenario.radar.scan_period / (2 * np.pi))
 
 
 def _hulls(of, scenario, start, truth, own):
     """Offsets [S, 2] m from own ship, and mean power [S], of the ships' scatterers that are lit.
 
-    Each is where it is when the beam passes it: a ship over north is met in part at the one end
-    of the revolution and in part at the other.
+    Each is at its place at the time when the beam passes it. Part of a ship across north is met at
+    one end of the revolution, and the rest at the other end.
     """
     row = np.full(scenario.fleet.paths.ships, -1)
     row[truth.target] = np.arange(len(truth.target))

@@ -1,7 +1,7 @@
-"""Checked reading of a YAML mapping whose keys carry their unit: `speed_kn`, `radius_m`.
+"""Checked reading of a YAML mapping whose keys end in their unit: `speed_kn`, `radius_m`.
 
 Every error is a ValueError that names the place (`targets[2].legs[0].turn`), the key, its value and
-what it may be.
+the allowed values.
 """
 
 import difflib
@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from ..files import shortened, shown
 from ..geometry import KNOT, NAUTICAL_MILE
 
 LENGTH_UNITS = {'m': 1.0, 'nm': NAUTICAL_MILE}
@@ -17,17 +18,17 @@ ENDINGS = ('deg_per_s', 'mps2', 'mps', 'kn', 'nm', 'm', 'deg', 's', 'rpm')
 
 
 class Section:
-    """One mapping of the file, of which only the stated keys may be there.
+    """One mapping of the file. Only the stated keys are allowed.
 
     values  the mapping; where  its place in the file, '' at the top
-    keys    the keys it may have, in one string; `range_m|range_nm` are two spellings of one value
+    keys    the allowed keys, in one string; `range_m|range_nm` are two spellings of one value
     """
 
     def __init__(self, values: Any, where: str, keys: str):
-        values = {} if values is None else values  # `straight:` with nothing behind it
+        values = {} if values is None else values  # `straight:` without a value
         if not isinstance(values, Mapping):
             raise ValueError(
-                f'{where or "the scenario"} is {values!r}; it must be a mapping with '
+                f'{where or "the scenario"} is {shown(values)}; it must be a mapping with '
                 f'keys like {", ".join(keys.split()[:3])}'
             )
         self.values, self.where, self.keys = values, where, keys.split()
@@ -38,22 +39,23 @@ class Section:
 
     @property
     def owner(self) -> str:
-        """What the mapping describes."""
+        """The name of what the mapping describes."""
         return self.where or 'the scenario'
 
     def place(self, key) -> str:
-        """Where the key stands in the file."""
-        return f'{self.where}.{key}' if self.where else str(key)
+        """The place of the key in the file."""
+        name = shortened(key)
+        return f'{self.where}.{name}' if self.where else name
 
     def __contains__(self, key: str) -> bool:
         return key in self.values
 
     def has(self, stem: str) -> bool:
-        """Whether the length or speed is there, in whatever unit."""
+        """Whether the length or speed is given, in any unit."""
         return any(f'{stem}_{unit}' in self.values for unit in {**LENGTH_UNITS, **SPEED_UNITS})
 
     def number(self, key: str, low: float, high: float, default: float | None = None) -> float:
-        """A finite number within [low, high]; without a default it must be there."""
+        """A finite number within [low, high]. It is required if there is no default."""
         if key not in self.values:
             if default is None:
                 raise ValueError(f'{self.owner} has no {key}')
@@ -61,7 +63,8 @@ class Section:
         value = self.values[key]
         if type(value) not in (int, float):
             raise ValueError(
-                f'{self.place(key)} is {value!r}; it must be a number (the unit stands in the key)'
+                f'{self.place(key)} is {shown(value)}; it must be a number '
+                '(the unit stands in the key)'
             )
         if not math.isfinite(value):
             raise ValueError(f'{self.place(key)} is {value}; it must be finite')
@@ -92,14 +95,14 @@ class Section:
         return factor * self.number(given[0], low / factor, high / factor)
 
     def text(self, key: str, default: str | None = None) -> str:
-        """A text; without a default it must be there."""
+        """A text. It is required if there is no default."""
         if key not in self.values:
             if default is None:
                 raise ValueError(f'{self.owner} has no {key}')
             return default
         value = self.values[key]
         if not isinstance(value, str) or not value.strip():
-            raise ValueError(f'{self.place(key)} is {value!r}; it must be a text')
+            raise ValueError(f'{self.place(key)} is {shown(value)}; it must be a text')
         return value.strip()
 
     def choice(self, key: str, choices: tuple[str, ...], default: str) -> str:
@@ -107,23 +110,23 @@ class Section:
         value = self.values.get(key, default)
         if value not in choices:
             raise ValueError(
-                f'{self.place(key)} is {value!r}; it must be one of {", ".join(choices)}'
+                f'{self.place(key)} is {shown(value)}; it must be one of {", ".join(choices)}'
             )
         return value
 
     def items(self, key: str) -> list[Any]:
-        """A list, empty where it is not there."""
+        """A list; empty if not given."""
         value = self.values.get(key, [])
         if not isinstance(value, list):
-            raise ValueError(f'{self.place(key)} is {value!r}; it must be a list')
+            raise ValueError(f'{self.place(key)} is {shown(value)}; it must be a list')
         return value
 
     def section(self, key: str, keys: str) -> 'Section':
-        """A mapping within this one; not there counts as empty."""
+        """A mapping within this one; empty if not given."""
         return Section(self.values.get(key, {}), self.place(key), keys)
 
     def one_of(self, *alternatives: str) -> str:
-        """The only one of the alternatives that is there, each named by its key or stem."""
+        """The one alternative that is given, each named by its key or stem."""
         given = [a for a in alternatives if a in self.values or self.has(a)]
         if len(given) != 1:
             spelled = {

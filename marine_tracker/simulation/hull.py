@@ -1,9 +1,9 @@
 """Ships as many scatterers: along the hull's outline, and on deck.
 
-Those of the outline are seen from the side they face only, so the near side of a ship is lit; the
-weaker ones on deck are always seen. All fluctuate from scan to scan independently of each other
-(Swerling 1), as a ship moves through many wavelengths meanwhile. Their mean power is the same at
-all ranges: the receiver's sensitivity time control sees to that.
+Scatterers of the outline are seen only from the side they face, so the near side of a ship is lit.
+The weaker ones on deck are always seen. All fluctuate from scan to scan, independently of each
+other (Swerling 1), because a ship moves through many wavelengths between scans. Their mean power is
+the same at all ranges, because of the receiver's sensitivity time control.
 """
 
 from typing import NamedTuple
@@ -17,9 +17,9 @@ from .ships import Fleet
 
 SPACING = 4.0  # m, of scatterers along the outline
 DECK_SPACING = 6.0  # m, along the middle line
-DECK_POWER = 0.3  # of a scatterer's on the outline
-DECK_WIDTH = 0.5  # of the beam, in which they lie
-MIDDLE_LINE = np.array([[0.45, 0.0], [-0.45, 0.0]])  # lengths forward
+DECK_POWER = 0.3  # of the power of a scatterer on the outline
+DECK_WIDTH = 0.5  # of the beam; width of the strip where they lie
+MIDDLE_LINE = np.array([[0.45, 0.0], [-0.45, 0.0]])  # in lengths, forward and to starboard
 # Outline in half lengths forward and half beams to starboard, clockwise from the bow.
 OUTLINE = np.array([[1.0, 0.0], [0.6, 1.0], [-1.0, 1.0], [-1.0, -1.0], [0.6, -1.0], [1.0, 0.0]])
 
@@ -40,7 +40,7 @@ class Scatterers(NamedTuple):
 
 
 def outline(length: float, beam: float) -> Array:
-    """Corners [6, 2] m of a hull, forward and to starboard; the last is the first again."""
+    """Corners [6, 2] m of a hull, forward and to starboard. The last one repeats the first."""
     return OUTLINE * [0.5 * length, 0.5 * beam]
 
 

@@ -1,10 +1,11 @@
-"""Land: shores as scatterers at rest, of which the radar sees the nearest in each direction."""
+"""Land: shores as scatterers at rest. In each direction the radar sees only the nearest shore."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
+from ..files import shown
 from ..geometry import NAUTICAL_MILE, to_range_bearing
 from ..types import Array
 from .fields import Section
@@ -12,7 +13,7 @@ from .fields import Section
 SHORE_KEYS = 'name corners_m|corners_nm closed snr_db'
 SNR_DB = 30.0
 MAX_COORDINATE = 200_000.0  # m
-SECTORS = 1800  # of the horizon, in each of which the nearest shore is looked for
+SECTORS = 1800  # number of sectors of the horizon; the nearest shore is found in each
 
 
 class Shore(NamedTuple):
@@ -44,7 +45,7 @@ def _shore(section, number):
     )
     closed = section.values.get('closed', False)
     if not isinstance(closed, bool):
-        raise ValueError(f'{section.place("closed")} is {closed!r}; it must be true or false')
+        raise ValueError(f'{section.place("closed")} is {shown(closed)}; it must be true or false')
     corners = [
         _corner(corner, section.place(f'{key}[{place}]'), unit)
         for place, corner in enumerate(section.items(key))
@@ -79,7 +80,7 @@ def _corner(corner, where, unit):
         )
     ):
         raise ValueError(
-            f'{where} is {corner!r}; it must be [north, east], numbers within '
+            f'{where} is {shown(corner)}; it must be [north, east], numbers within '
             f'{MAX_COORDINATE / unit:g}'
         )
     north, east = corner
@@ -90,7 +91,7 @@ def lit(offset: Array, edge: Array, depth: float):
     """Which of the scatterers at offsets [S, 2] m from the radar are not hidden by nearer land.
 
     edge   [E, 2]  m, offsets of points along all shores, close to each other
-    depth  m behind an edge from which on it hides what is farther
+    depth  m behind an edge; what is farther is hidden
     """
     nearest = np.full(SECTORS, np.inf)
     distance, sector = _polar(edge)

@@ -1,9 +1,9 @@
-"""Where ships are at any time, exactly: every leg has a closed form, nothing is integrated.
+"""Exact positions of ships at any time: every leg has a closed form, nothing is integrated.
 
-A ship's way is a list of pieces. On each piece the ship follows a circle (or a straight line, the
-circle of curvature 0) with the speed  v + a t + A sin(w t + p),  so its distance run d(t) and with
-it its place are known in closed form; a ship driven by reports follows a cubic instead. All pieces
-of all ships stand in one table, so hundreds of ships are placed by a few array operations.
+A ship's path is a list of pieces. On each piece the ship follows a circle (or a straight line, the
+circle of curvature 0) with the speed  v + a t + A sin(w t + p).  So its distance run d(t) and its
+position have a closed form. A ship driven by reports follows a cubic instead. All pieces of all
+ships are in one table, so hundreds of ships are placed by a few array operations.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ MAX_ACCELERATION = 10.0  # m/s^2
 
 
 class Straight(NamedTuple):
-    """Course and speed held for `duration` s; None: to the end."""
+    """Course and speed kept for `duration` s; None: to the end."""
 
     duration: float | None
 
@@ -29,7 +29,7 @@ class Straight(NamedTuple):
 class Turn(NamedTuple):
     """A turn through `angle` rad (positive to starboard) on a circle of `radius` m.
 
-    With `rate` rad/s instead, the radius is that which gives the rate at the mean speed.
+    If `rate` rad/s is given instead, the radius gives that rate at the mean speed.
     """
 
     angle: float
@@ -38,7 +38,7 @@ class Turn(NamedTuple):
 
 
 class SpeedChange(NamedTuple):
-    """The speed goes evenly to `speed` m/s, in `duration` s or at `acceleration` m/s^2 > 0."""
+    """The speed changes evenly to `speed` m/s, in `duration` s or at `acceleration` m/s^2 > 0."""
 
     speed: float
     duration: float | None = None
@@ -49,19 +49,20 @@ Leg = Straight | Turn | SpeedChange
 
 
 class Wave(NamedTuple):
-    """A sinusoidal part of the speed, all along the way: amplitude m/s, period s."""
+    """A sinusoidal part of the speed, over the whole path: amplitude m/s, period s."""
 
     amplitude: float
     period: float
 
 
 class Piece(NamedTuple):
-    """One piece of one ship's way, from time `start` to the next piece's.
+    """One piece of one ship's path, from time `start` to the start of the next piece.
 
     With t since `start`, the ship runs the distance
     d = speed t + acceleration t^2 / 2 + wave / wave_rate (cos wave_phase - cos(wave_rate t +
-    wave_phase)) on a circle of `curvature` (rad/m, positive to starboard), having left `position`
-    on `course` (rad); `cubic` [3][2] (m/s, m/s^2, m/s^3) adds its powers of t.
+    wave_phase))
+    on a circle of `curvature` (rad/m, positive to starboard). It leaves `position` on `course`
+    (rad). `cubic` [3][2] (m/s, m/s^2, m/s^3) adds its powers of t.
     """
 
     start: float
@@ -78,10 +79,10 @@ class Piece(NamedTuple):
 
 
 class Paths(NamedTuple):
-    """The pieces of S ships in one table, one row a piece, by ship and then by time.
+    """The pieces of S ships in one table, one row a piece, sorted by ship and then by time.
 
-    The columns are those of Piece; `key` [P] orders rows by ship and start, `span` s is the part
-    of the key that belongs to one ship, `ships` is S.
+    The columns are those of Piece. `key` [P] orders rows by ship and start; `span` s is the part of
+    the key that belongs to one ship; `ships` is S.
     """
 
     start: Array
@@ -101,7 +102,7 @@ class Paths(NamedTuple):
 
 
 def table(ways: Sequence[Sequence[Piece]], duration: float) -> Paths:
-    """The table of the ways of S ships, S > 0; the first piece of each starts at 0 s or before."""
+    """The table of the paths of S ships, S > 0. The first piece of each starts at 0 s or before."""
     pieces = [piece for way in ways for piece in way]
     columns: list[Any] = [np.array(column) for column in zip(*pieces, strict=True)]
     ship = np.repeat(np.arange(len(ways)), [len(way) for way in ways])
@@ -144,7 +145,7 @@ def courses(paths: Paths, ship: NDArray[np.int64], time) -> Array:
 
 
 def exist(paths: Paths, ship: NDArray[np.int64], time) -> NDArray[np.bool_]:
-    """Whether the numbered ships [...] are there at times [...]."""
+    """Whether the numbered ships [...] exist at times [...]."""
     return paths.exists[_row(paths, ship, time)]
 
 
@@ -164,14 +165,14 @@ def _row(paths, ship, time):
 def sail(
     position, course: float, speed: float, legs: Sequence[Leg] = (), wave: Wave | None = None
 ) -> list[Piece]:
-    """The pieces of a ship that starts at time 0 and runs its legs, then holds course and speed.
+    """The pieces of a ship that starts at time 0 and runs its legs, then keeps course and speed.
 
-    position [2] m, east and north; course rad; speed m/s, the mean where there is a wave.
-    Raises ValueError for legs that cannot be run, beginning with the leg's place: `legs[2]...`.
+    position [2] m, east and north; course rad; speed m/s, the mean if there is a wave. Raises
+    ValueError for legs that are not possible; it begins with the leg's place: `legs[2]...`.
     """
     way = []
     time = 0.0
-    # The wave runs on through all legs: its phase is that of the time since the start.
+    # The wave continues through all legs: its phase counts from the start.
     amplitude, wave_rate = (wave.amplitude, 2 * np.pi / wave.period) if wave else (0.0, 1.0)
     if speed < amplitude:
         raise ValueError(

@@ -1,8 +1,8 @@
-"""The simulated radar: one scan, and the truth behind it, for each revolution of the antenna.
+"""The simulated radar: one scan and its truth for each revolution of the antenna.
 
-What the beam meets is detected or not, merged within a resolution cell, given its errors, and put
-among false plots; a plot's time is that at which the beam met the target. Ships with a hull, and
-shores, give cells instead (extended.py).
+Echoes of the ships that the beam meets are detected or not, merged within a resolution cell, given
+errors, and mixed with false plots. A plot's time is when the beam met the target. Ships with a
+hull, and shores, give cells instead (extended.py).
 """
 
 from collections.abc import Iterator
@@ -18,17 +18,16 @@ from . import beam, clutter, extended, sensor_errors
 from .echoes import THRESHOLD
 from .scenario import Scenario, ScenarioRadar
 
-STRONGEST = 0.9999  # probability of detection that sets the amplitude of a sure plot
+STRONGEST = 0.9999  # probability of detection that gives the amplitude of a certain plot
 OWN_SHIP_SAMPLES = 4  # a revolution, both ends included
 
 
 def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
-    """The scans of a scenario and the truth behind each, a pair for every whole revolution.
+    """The scans of a scenario and the truth of each, a pair for every whole revolution.
 
-    Plots are in time order. Truth has a row for every target that exists, at the time when the
-    beam passed it (see beam.Revolution).
-    Same scenario and seed give the same plots to the bit. Each kind of chance has its own
-    stream of random numbers: clutter or detection do not change the noise of targets.
+    Plots are in time order. Truth has a row for every target that exists, at the time when the beam
+    passed it (see beam.Revolution). The same scenario and seed give exactly the same plots. Each
+    kind of random draw has its own stream: clutter or detection do not change the noise of targets.
     """
     detection, noise, uniform, sea, errors, reckoning, doppler, false_doppler, cells = (
         np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(9)
@@ -39,8 +38,8 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
     scene = extended.scene(scenario, cells) if scenario.in_cells else None
     point = np.isnan(scenario.fleet.hulls.beam)  # targets that give one plot
     for start, end, passages, truth in beam.revolutions(scenario):
-        # Draws for every ship (own ship's are idle) and both possible passages, seen or not: a
-        # stream's use must not depend on what another stream brought about.
+        # Draws are made for every ship (own ship's are unused) and for both possible passages, seen
+        # or not. So the use of one stream never depends on the results of another.
         shape = (2, scenario.fleet.paths.ships)
         chance = detection.exponential(size=shape)
         white = noise.standard_normal(shape + (2,))
@@ -83,9 +82,9 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
 def _detect(scenario, target, distance, chance):
     """[P] which passages give an echo over the threshold, and its power over noise.
 
-    A slowly fluctuating ship (Swerling 1) of mean power s is seen with probability
-    exp(-threshold / s), and s falls with the fourth power of range: so the probability is
-    pd_near (pd_far / pd_near)^((range / max_range)^4).
+    A slowly fluctuating ship (Swerling 1) of mean power s is seen with probability exp(-threshold /
+    s). s falls with the fourth power of range. So the probability is pd_near (pd_far /
+    pd_near)^((range / max_range)^4).
     """
     radar, fleet = scenario.radar, scenario.fleet
     pd = radar.pd_near * (radar.pd_far / radar.pd_near) ** ((distance / radar.max_range) ** 4)
@@ -106,9 +105,9 @@ def _detect(scenario, target, distance, chance):
 def _resolve(radar: ScenarioRadar, passages, distance, power, start):
     """Plots without noise, one a resolution cell, and for each the row of its strongest echo.
 
-    Echoes closer than a cell in range and in the beam's angle merge, chains of them too; the plot
-    lies at the centre weighted by amplitude. Echoes on either side of north belong to different
-    revolutions and stay apart.
+    Echoes closer than a cell in range and in the beam's angle merge, also in chains. The plot lies
+    at the centre weighted by amplitude. Echoes on different sides of north belong to different
+    revolutions and are not merged.
     """
     turn = 2 * np.pi / radar.scan_period
     time, row = passages.time, np.arange(len(distance))

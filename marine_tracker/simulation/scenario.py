@@ -1,14 +1,14 @@
-"""What happens at sea and what the radar is: scenario files, checked and made computable.
+"""Scenario files: ships, land and radar. They are checked and turned into computable form.
 
-A scenario is a YAML file whose keys carry their unit; a length may be given as `_m` or `_nm`, a
-speed as `_mps` or `_kn`. Only `duration_s` and one target are needed:
+A scenario is a YAML file. Keys end in their unit: a length is `_m` or `_nm`, a speed is `_mps` or
+`_kn`. Only `duration_s` and one target are required:
 
     description: A ferry crosses our bow
     duration_s: 900
     radar: {max_range_nm: 6, range_sigma_m: 15, bearing_sigma_deg: 0.4, pd_near: 0.98, pd_far: 0.8,
             radial_speed_sigma_kn: 0.5}       # only of a radar with Doppler
     clutter: {uniform: 20, sea: 40, sea_scale_nm: 1}      # mean numbers a scan
-    tracker: {max_target_speed_kn: 45}                    # what the tracker is told
+    tracker: {max_target_speed_kn: 45}                    # tracker parameters
     own_ship: {course_deg: 0, speed_kn: 12}
     targets:
       - name: ferry
@@ -22,15 +22,18 @@ speed as `_mps` or `_kn`. Only `duration_s` and one target are needed:
           - turn: {angle_deg: -40, radius_m: 500}     # to port; or rate_deg_per_s
           - speed: {to_kn: 8, duration_s: 60}         # or acceleration_mps2
 
-Ships can be driven by AIS reports instead, or besides (the file is looked for beside the
-scenario's; its form stands in ais.py); own ship is then one of the vessels, or lies at a place:
+Ships can also be driven by AIS reports. The file is relative to the scenario's folder; its form is
+described in ais_file.py. Own ship is then one of the vessels, or lies at a place:
 
     ais: {file: traffic.csv, start_s: 600, vessels: [3, 17]}      # all vessels, if none are named
     own_ship: {vessel: 1}                                         # or {start: {lat_deg:, lon_deg:}}
 
-A ship may have a hull, which the radar then sees as cells in place of one plot, and there may be
-land, whose shore does so too (hull.py, land.py); both take the radar's range resolution and beam
-width as the size of a cell:
+Latitudes are -90 to 90 and longitudes -180 to 180 degrees, south and west negative. Ships may cross
+180. Positions count from `origin: {lat_deg:, lon_deg:}`, else from own ship's start, else from the
+first vessel's (geodesy.LocalFrame). North is true there.
+
+A ship with a hull, and the shore of land, are seen as cells instead of one plot (hull.py, land.py).
+The size of a cell is the radar's range resolution and beam width:
 
     targets:
       - {name: tanker, start: {range_nm: 1, bearing_deg: 30}, course_deg: 250, speed_kn: 11,
@@ -49,9 +52,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import config
+from .. import config, yaml_file
 from ..geometry import NAUTICAL_MILE, heading_from
-from ..parameters import VESSEL_CLASSES, TrackerParameters, read_yaml_mapping
+from ..parameters import VESSEL_CLASSES, TrackerParameters
 from ..types import OwnShip, Truth
 from . import land, motion, sensor_errors, ships
 from .fields import Section
@@ -75,18 +78,16 @@ class ScenarioRadar(NamedTuple):
     """The simulated radar.
 
     rotation            rpm, antenna; the beam passes true north at the start of a revolution
-    max_range           m, and
-    blind_range         m: targets nearer than this or beyond that are not seen
-    range_sigma         m, and
-    bearing_sigma       rad: Gaussian noise of a plot (not used with sensor_errors 'imo')
-    range_bias          m, and
-    bearing_bias        rad: constant errors
+    max_range, blind_range  m; targets beyond the first or nearer than the second are not seen
+    range_sigma         m, Gaussian noise of a plot (not used with sensor_errors 'imo')
+    bearing_sigma       rad, likewise
+    range_bias, bearing_bias  m, rad; constant errors
     range_resolution    m, and
     beam_width          rad: targets closer than both in one revolution give one plot
-    pd_near, pd_far     probability of detection at no range and at the maximum range
+    pd_near, pd_far     probability of detection at range 0 and at the maximum range
     sensor_errors       'none' or 'imo'
-    radial_speed_sigma  m/s: Gaussian noise of a plot's radial speed over ground; None: no Doppler
-    max_radial_speed    m/s: noise gives radial speeds evenly between it and its negative
+    radial_speed_sigma  m/s, Gaussian noise of a plot's radial speed over ground; None: no Doppler
+    max_radial_speed    m/s; noise plots have radial speeds evenly between it and its negative
     """
 
     rotation: float
@@ -111,11 +112,11 @@ class ScenarioRadar(NamedTuple):
 
 
 class Clutter(NamedTuple):
-    """False plots: mean numbers a revolution, and how fast sea clutter falls off.
+    """False plots: mean numbers a revolution, and how fast sea clutter decreases with range.
 
     uniform    evenly over the area between blind and maximum range
     sea        from the waves, evenly in bearing; the number per metre of range falls as
-               exp(-range / sea_scale), so the number per area falls faster still
+               exp(-range / sea_scale), so the number per area falls faster
     sea_scale  m
     """
 
@@ -126,7 +127,7 @@ class Clutter(NamedTuple):
 
 @dataclass(frozen=True)
 class Scenario:
-    """A scenario, ready to be asked where everything is at any time.
+    """A scenario: gives the position of everything at any time.
 
     name, description
     duration  s
@@ -152,7 +153,7 @@ class Scenario:
 
     @property
     def in_cells(self) -> bool:
-        """Whether there are hulls or land, of which the radar sees cells."""
+        """Whether there are hulls or land, which the radar sees as cells."""
         return bool(np.isfinite(self.fleet.hulls.beam).any() or self.shores)
 
     def own_ship_at(self, times) -> OwnShip:
@@ -160,7 +161,9 @@ class Scenario:
         times = np.atleast_1d(np.asarray(times, dtype=float))
         own, paths = np.zeros(len(times), np.int64), self.fleet.paths
         position, velocity = motion.locate_ships(paths, own, times)
-        stated = motion.courses(paths, own, times) if self.fleet.steers else np.nan
+        stated = (
+            motion.courses(paths, own, times) if self.fleet.steers else np.full(len(times), np.nan)
+        )
         return OwnShip(times, position, velocity, heading_from(velocity, stated))
 
     def truth_at(self, time: float) -> Truth:
@@ -171,10 +174,10 @@ class Scenario:
         return Truth(times, target, *motion.locate_ships(self.fleet.paths, target, times))
 
     def tracker_parameters(self) -> dict[str, Any]:
-        """What a tracker is told of this radar and its waters: fields of TrackerParameters.
+        """The tracker parameters for this radar and its waters: fields of TrackerParameters.
 
-        Sigmas and cell are the radar's, but not below the smallest that a tracker takes. Ships echo
-        at their middle, but with the sensor errors of the IMO as real ones do.
+        Sigmas and cell are the radar's, but not below the smallest allowed value. Ships echo at
+        their middle; with the sensor errors of the IMO they echo as real ones do.
         """
         range_sigma, bearing_sigma = self.radar.range_sigma, self.radar.bearing_sigma
         glint, doppler = 0.0, {}
@@ -205,14 +208,14 @@ def detectable(scenario: Scenario, truth: Truth) -> NDArray[np.bool_]:
 
 
 def shipped() -> list[str]:
-    """The names of the scenarios that come with the package: files, and the standard ones."""
+    """The names of the scenarios in the package: files, and the standard ones."""
     return sorted([file.stem for file in config.path('scenarios').glob('*.yaml')] + [*STANDARD])
 
 
 def load(name_or_path) -> Scenario:
     """The shipped scenario of that name, or that of a file (a path with a folder or ending).
 
-    Raises ValueError, naming file, place, value and limit, for anything that is wrong in it.
+    Raises ValueError for any error in it, naming file, place, value and limit.
     """
     path = Path(name_or_path)
     if path.suffix not in ('.yaml', '.yml') and len(path.parts) == 1:
@@ -228,7 +231,7 @@ def load(name_or_path) -> Scenario:
             return build(STANDARD[path.name](), path.name)
         path = config.path('scenarios', f'{path.name}.yaml')
     try:
-        return build(read_yaml_mapping(path), path.stem, path.parent)
+        return build(yaml_file.read_mapping(path), path.stem, path.parent)
     except OSError as error:
         raise ValueError(f'scenario {path} cannot be read: {error.strerror}') from error
     except ValueError as error:
@@ -237,9 +240,9 @@ def load(name_or_path) -> Scenario:
 
 
 def build(values: dict[str, Any], name: str, folder=Path()) -> Scenario:
-    """The scenario of a mapping as a file would hold it; its AIS file is looked for in `folder`.
+    """The scenario of a mapping with the form of a file. Its AIS file is looked for in `folder`.
 
-    Raises ValueError, naming place, value and limit, for anything that is wrong in it.
+    Raises ValueError for any error in it, naming place, value and limit.
     """
     top = Section(values, '', TOP_KEYS)
     duration = top.number('duration_s', 1.0, ships.MAX_DURATION)
@@ -265,7 +268,7 @@ def build(values: dict[str, Any], name: str, folder=Path()) -> Scenario:
 
 
 def _check_cells(radar):
-    """ValueError unless the radar has cells, and no errors but those of cells."""
+    """ValueError unless the radar has cells and no other errors."""
     if radar.sensor_errors != 'none':
         raise ValueError(
             f'radar.sensor_errors is {radar.sensor_errors!r} in a scenario with hulls '

@@ -22,8 +22,8 @@ GYRO = np.radians(0.12)  # sigma
 LOG_BIAS = 0.5 * KNOT  # of either sign, drawn for each run
 LOG = 0.2 * KNOT / 3  # sigma
 
-# What a tracker may be told: the part of range (m) and bearing (rad) that changes from scan to
-# scan, without glint; of rolling the mean over all bearings.
+# What a tracker may be told: the part of the range (m) and bearing (rad) errors that changes from
+# scan to scan, without glint; for rolling the mean over all bearings.
 IMO_SIGMAS = (
     float(np.sqrt(PULSE_SHAPE**2 + RANGE_STEP**2 / 3)),
     float(
@@ -40,7 +40,7 @@ IMO_SIGMAS = (
 
 
 class ImoErrors(NamedTuple):
-    """What one run draws once.
+    """The values that are drawn once for a run.
 
     roll_period s, roll_phase rad; gyro_bias rad; log_bias m/s
     """
@@ -52,7 +52,7 @@ class ImoErrors(NamedTuple):
 
 
 def draw(random: np.random.Generator) -> ImoErrors:
-    """The errors that stay the same during a run."""
+    """Draws the errors that stay the same during a run."""
     return ImoErrors(
         random.uniform(*ROLL_PERIODS),
         random.uniform(0, 2 * np.pi),
@@ -62,9 +62,9 @@ def draw(random: np.random.Generator) -> ImoErrors:
 
 
 def glint(velocity: Array, length: Array, random: np.random.Generator) -> Array:
-    """Offsets [..., 2] m of the point that echoes, for ships of velocity [..., 2] and length [...].
+    """Offsets [..., 2] m of the echoing point, for ships of velocity [..., 2] and length [...].
 
-    The ship lies along its course; at rest it lies north-south.
+    The ship lies along its course. At rest it lies north-south.
     """
     along = unit_vector(np.arctan2(velocity[..., 0], velocity[..., 1]))
     across = np.stack([along[..., 1], -along[..., 0]], -1)
@@ -80,8 +80,8 @@ def measurement_errors(
 ) -> tuple[Array, Array]:
     """Errors of range m and bearing rad [...] of plots at time [...] s.
 
-    relative_bearing [...] rad is counted from own ship's heading: rolling turns the antenna's plane
-    by an amount that is nil ahead, astern and abeam.
+    relative_bearing [...] rad is counted from own ship's heading. Rolling tilts the antenna's
+    plane; its error is zero ahead, astern and abeam.
     """
     shape = relative_bearing.shape
     roll = (
@@ -103,10 +103,10 @@ def measurement_errors(
 def reckon(
     errors: ImoErrors, true: OwnShip, drift: Array, random: np.random.Generator
 ) -> tuple[OwnShip, Array]:
-    """Own ship as gyro and log tell it: its velocity is wrong, and its place is dead-reckoned.
+    """Own ship from gyro and log: its velocity has errors, and its position is dead-reckoned.
 
     true   K samples of the true motion
-    drift  [2] m, how far the reckoned place is off at the first sample
+    drift  [2] m, error of the reckoned position at the first sample
     Returns the reckoned samples and the drift at the last one.
     """
     count = len(true.time)
@@ -118,5 +118,6 @@ def reckon(
     wrong = velocity - true.velocity
     steps = 0.5 * (wrong[1:] + wrong[:-1]) * np.diff(true.time)[:, None]
     drifts = drift + np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
-    heading = heading_from(velocity, true.heading)
+    stated = np.full(count, np.nan) if true.heading is None else true.heading
+    heading = heading_from(velocity, stated)
     return OwnShip(true.time, true.position + drifts, velocity, heading), drifts[-1]

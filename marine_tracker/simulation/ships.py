@@ -6,15 +6,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry import KNOT, NAUTICAL_MILE, local_from_geodetic, unit_vector
+from ..files import shortened, shown
+from ..geodesy import LocalFrame
+from ..geometry import KNOT, NAUTICAL_MILE, unit_vector
 from ..types import Array
-from . import ais, motion
+from . import ais, ais_file, motion
 from .fields import Section
 
-MAX_SPEED = 100 * KNOT  # m/s: the fastest relative speed an ARPA has to know
+MAX_SPEED = 100 * KNOT  # m/s; the highest relative speed that an ARPA must handle
 MAX_LENGTH = 200 * NAUTICAL_MILE  # m
 MAX_DURATION = 7 * 86400.0  # s
-SHIP_LENGTH = 100.0  # m, where it is not stated
+SHIP_LENGTH = 100.0  # m, if not stated
 HULL_SNR_DB = 25.0  # likewise
 NO_HULL = (math.nan,) * 3
 
@@ -34,7 +36,7 @@ class Hulls(NamedTuple):
 
     beam     [T]  m
     heading  [T]  rad; nan: along the course over ground, at rest north
-    snr_db   [T]  mean power over noise of one of a hull's scatterers, dB
+    snr_db   [T]  mean power over noise of one scatterer of the hull, dB
     """
 
     beam: Array
@@ -45,38 +47,41 @@ class Hulls(NamedTuple):
 class Fleet(NamedTuple):
     """Own ship and T targets.
 
-    origin     (latitude, longitude) in degrees of the frame's [0, 0], or None
+    origin     the frame of all positions; None: the place on Earth is unknown
     paths      of own ship, ship 0, and the targets by their numbers, from 1
     names      T texts
-    pd         [T]  probability of detection at every range, nan where the radar's curve holds
+    pd         [T]  probability of detection at every range, nan where the radar's curve is used
     pd_factor  [T]  of the radar's curve
     length     [T]  m
     hulls      T rows
+    remarks    what people should know of the files that were read
     steers     whether own ship's course is stated: then she heads there at rest, too
     """
 
-    origin: tuple[float, float] | None
+    origin: LocalFrame | None
     paths: motion.Paths
     names: tuple[str, ...]
     pd: Array
     pd_factor: Array
     length: Array
     hulls: Hulls
-    steers: bool
+    remarks: tuple[str, ...] = ()
+    steers: bool = False
 
 
 def read(top: Section, folder: Path, duration: float) -> Fleet:
-    """The ships of the file whose mapping is `top`; AIS files are looked for from its `folder`."""
+    """The ships of the file whose mapping is `top`. AIS files are relative to its `folder`."""
     traffic, options = None, top.section('ais', AIS_KEYS)
+    remarks: tuple[str, ...] = ()
     if 'ais' in top:
-        traffic = ais.read(
-            folder / options.text('file'),
-            options.number('start_s', 0.0, 1e9, 0.0),
-            duration,
-            options.number('max_gap_s', 1.0, 3600.0, 120.0),
-        )
+        file = folder / options.text('file')
+        start = options.number('start_s', 0.0, 1e11) if 'start_s' in options else None
+        read = ais_file.read(file, start, duration, options.number('max_gap_s', 1.0, 3600.0, 120.0))
+        traffic, remark = read.vessels, ais_file.told(read.skipped)
+        if remark:
+            remarks = (f'AIS file {shortened(file)}{remark}',)
     own = top.section('own_ship', SHIP_KEYS + ' vessel')
-    own_vessel = str(own.values['vessel']) if 'vessel' in own else None
+    own_vessel = _vessel(own.values['vessel'], traffic) if 'vessel' in own else None
     origin = _origin(top, own, traffic, own_vessel)
     own_way = (
         _way(own, origin, None)
@@ -112,25 +117,28 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
         pd_factor,
         np.array(lengths),
         Hulls(*np.array(hulls).T),
+        remarks,
         'course_deg' in own,
     )
 
 
 def _origin(top, own, traffic, own_vessel):
-    """Where the frame's [0, 0] is: as stated, else where own ship or the first vessel starts."""
+    """The place of the frame's [0, 0]: as stated, else the start of own ship or of the first
+    vessel.
+    """
     if 'origin' in top:
-        return _geodetic(top.section('origin', 'lat_deg lon_deg'))
+        return LocalFrame(*_geodetic(top.section('origin', 'lat_deg lon_deg')))
     start = own.values.get('start')
     if isinstance(start, dict) and 'lat_deg' in start:
-        return _geodetic(own.section('start', START_KEYS['lat_deg']))
+        return LocalFrame(*_geodetic(own.section('start', START_KEYS['lat_deg'])))
     if traffic:
         reports = traffic.get(own_vessel) or next(iter(traffic.values()))
-        return float(reports.latitude[0]), float(reports.longitude[0])
+        return LocalFrame(float(reports.latitude[0]), float(reports.longitude[0]))
     return None
 
 
 def _geodetic(section):
-    return section.number('lat_deg', -85.0, 85.0), section.number('lon_deg', -180.0, 180.0)
+    return section.number('lat_deg', -90.0, 90.0), section.number('lon_deg', -180.0, 180.0)
 
 
 def _driven_own_ship(own, origin, traffic, vessel, duration):
@@ -155,7 +163,7 @@ def _driven_own_ship(own, origin, traffic, vessel, duration):
 
 
 def _chosen_vessels(options, traffic, own_vessel):
-    asked = [str(vessel) for vessel in options.items('vessels')]
+    asked = [_vessel(vessel, traffic) for vessel in options.items('vessels')]
     for vessel in asked:
         if vessel not in traffic:
             raise ValueError(
@@ -165,8 +173,17 @@ def _chosen_vessels(options, traffic, own_vessel):
     return [vessel for vessel in asked or traffic if vessel != own_vessel]
 
 
+def _vessel(value, traffic) -> str:
+    """The vessel's name in the AIS file; a number is also found with noughts before it."""
+    name = shortened(value) if isinstance(value, str) else shown(value)
+    if traffic and name not in traffic and type(value) is int:
+        same = [one for one in traffic if one.isdecimal() and int(one) == value]
+        return same[0] if len(same) == 1 else name
+    return name
+
+
 def _chance(section):
-    """Stated probability of detection (nan: the radar's curve) and the curve's factor."""
+    """Stated probability of detection (nan: use the radar's curve) and the curve's factor."""
     if 'pd' in section and 'pd_factor' in section:
         raise ValueError(f'{section.where} has both pd and pd_factor; give one')
     pd = section.number('pd', 0.0, 1.0) if 'pd' in section else math.nan
@@ -174,7 +191,7 @@ def _chance(section):
 
 
 def _hull(section, length):
-    """Beam, heading and power of a target's hull; nan where it has none."""
+    """Beam, heading and power of a target's hull; nan if it has none."""
     if 'hull' not in section:
         return NO_HULL
     for key in ('pd', 'pd_factor'):
@@ -199,7 +216,7 @@ def _hull(section, length):
 
 
 def _way(section, origin, own_start):
-    """The way of a target, or of own ship itself, which has no `own_start` and may lie at rest."""
+    """The path of a target, or of own ship, which has no `own_start` and may be at rest."""
     if own_start is not None and 'start' not in section:
         raise ValueError(f'{section.where} has no start')
     position = _start(section, origin, own_start) if 'start' in section else np.zeros(2)
@@ -245,7 +262,7 @@ def _start(ship, origin, own_start):
         raise ValueError(
             f'{section.where} gives lat_deg and lon_deg, but the scenario has no origin'
         )
-    return local_from_geodetic(*_geodetic(section), *origin)
+    return origin.to_local(*_geodetic(section))
 
 
 def _leg(item, where):

@@ -1,7 +1,7 @@
-"""Scenarios made by rule: the IMO's test conditions and Imazu's encounters, which are defined
-elsewhere, and one scene as two radars see it.
+"""Scenarios made by rule: the IMO's test conditions, Imazu's encounters, and one scene for two
+radars.
 
-Each function gives what a scenario file would hold (see scenario.py).
+Each function returns what a scenario file would hold (see scenario.py).
 """
 
 import math
@@ -17,7 +17,7 @@ ROTATION = 22.0  # rpm
 REVOLUTION = 60 / ROTATION  # s
 
 # Resolution A.823(19), appendix 2: own course deg, speed kn; the target's range NM, bearing deg,
-# relative course deg, relative speed kn, where its data are to be judged.
+# relative course deg and relative speed kn at the time when its data are judged.
 A823 = {
     1: (0, 10, 8, 0, 180, 20),
     2: (0, 10, 1, 0, 90, 10),
@@ -32,10 +32,10 @@ A823_RADAR = {
     'sensor_errors': 'imo',
 }
 A823_LENGTH = 200  # m, of the target
-OWN_TURN = 60.0  # s: own ship's turn of 45 degrees takes a minute
+OWN_TURN = 60.0  # s; own ship's turn of 45 degrees takes a minute
 
-# The encounters of H. Imazu: the targets' courses, deg; own ship's is 0. All ships reach the
-# origin together, at one speed but those marked 's', at 0.7 of it.
+# The encounters of H. Imazu: the targets' courses, deg; own ship's is 0. All ships reach the origin
+# together. They have one speed, but those marked 's' have 0.7 of it.
 IMAZU_SPEED, IMAZU_SLOW = 25.0, 0.7  # kn
 IMAZU_DISTANCE = 6.0  # NM, from the origin at the start
 IMAZU_RADAR = {
@@ -75,11 +75,11 @@ IMAZU: tuple[tuple[int | str, ...], ...] = (
 def a823(
     number: int, judged_after: float = 180.0, own_turn_deg: float = 0.0, duration: float = 1800.0
 ) -> dict[str, Any]:
-    """Scenario 1 to 4 of the IMO's: its target is where it should be when it is to be judged.
+    """Scenario 1 to 4 of the IMO. Its target is at the required place when it is judged.
 
     judged_after  s from the first plot to the last one before that moment, or, with
     own_turn_deg  (to starboard) from the end of own ship's turn, which follows 3 minutes on the
-                  course before it and lasts one
+                  course before it and lasts one minute
     duration      s
     The moment is the end of a revolution: see `judged_at`.
     """
@@ -123,7 +123,7 @@ def judged_at(judged_after: float, own_turn_deg: float = 0.0) -> float:
 
 
 def imazu(number: int) -> dict[str, Any]:
-    """Encounter 1 to 22: without an evasion all ships meet at the origin when it ends."""
+    """Encounter 1 to 22. Without an evasion all ships meet at the origin at the end."""
     ships = []
     for text in IMAZU[number - 1]:
         slow = str(text).endswith('s')
@@ -151,8 +151,8 @@ def imazu(number: int) -> dict[str, Any]:
     }
 
 
-# One ship has two radars; ships by range NM, bearing deg, course deg, speed kn, turn deg (by 1
-# deg/s after 5 minutes, back after 10). The last is a boat that the second radar hardly sees.
+# Two radars on one ship. Ships by range NM, bearing deg, course deg, speed kn, turn deg (1 deg/s
+# after 5 minutes, back after 10). The last is a boat that the second radar hardly sees.
 TWO_RADARS = {
     'x': {
         'rotation_rpm': 24,

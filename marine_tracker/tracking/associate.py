@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ..types import Array
+from ..types import Array, IntArray
 from .gate import Pairs
 
 FEW = 32  # tracks; a matrix of so few is solved sooner than it is taken apart
@@ -14,10 +14,11 @@ def gain(pairs: Pairs, size: float) -> Array:
 
     size  of the gate, squared Mahalanobis distance
     """
-    return size - pairs.nis + (pairs.log_det.max(initial=0.0) - pairs.log_det) + 1e-9
+    found: Array = size - pairs.nis + (pairs.log_det.max(initial=0.0) - pairs.log_det) + 1e-9
+    return found
 
 
-def associate(track, plot, gain, tracks: int, plots: int):
+def associate(track: IntArray, plot: IntArray, gain: Array, tracks: int, plots: int) -> IntArray:
     """The assignment with the largest total gain; every track and plot is used at most once.
 
     track, plot  int [P], the admissible pairs
@@ -49,7 +50,7 @@ def associate(track, plot, gain, tracks: int, plots: int):
     return plot_of
 
 
-def _best_of_each(group, gain, pairs):
+def _best_of_each(group: IntArray, gain: Array, pairs: IntArray) -> IntArray:
     """Of the given pairs, the one with the largest gain in each group."""
     pairs = pairs[np.lexsort((-gain[pairs], group[pairs]))]
     first = np.ones(len(pairs), bool)
@@ -57,7 +58,7 @@ def _best_of_each(group, gain, pairs):
     return pairs[first]
 
 
-def _solve(track, plot, gain):
+def _solve(track: IntArray, plot: IntArray, gain: Array) -> IntArray:
     """The pairs of the optimal assignment; many are solved one connected component at a time."""
     tracks, row = np.unique(track, return_inverse=True)
     plots, column = np.unique(plot, return_inverse=True)
@@ -77,16 +78,21 @@ def _solve(track, plot, gain):
     )
 
 
-def _assign(row, column, gain, pairs, height: int, width: int):
+def _assign(
+    row: IntArray, column: IntArray, gain: Array, pairs: IntArray, height: int, width: int
+) -> IntArray:
     """Of the pairs of one small problem, those of the optimal assignment (Jonker-Volgenant)."""
     worth = np.zeros((height, width))
     which = np.full((height, width), -1)
     worth[row, column], which[row, column] = gain, pairs
     taken = which[linear_sum_assignment(worth, maximize=True)]
-    return taken[taken >= 0]
+    found: IntArray = taken[taken >= 0]
+    return found
 
 
-def _components(row, column, rows: int, columns: int):
+def _components(
+    row: IntArray, column: IntArray, rows: int, columns: int
+) -> tuple[IntArray, IntArray]:
     """Connected components of a bipartite graph with the edges (row [P], column [P]).
 
     Returns the smallest row of its component for each row and each column, by passing it on
@@ -104,7 +110,7 @@ def _components(row, column, rows: int, columns: int):
         of_row = lower
 
 
-def _places(part, parts: int):
+def _places(part: IntArray, parts: int) -> tuple[IntArray, IntArray]:
     """Members of each part [parts], and each member's place within its part."""
     size = np.bincount(part, minlength=parts)
     place = np.empty(len(part), np.int64)

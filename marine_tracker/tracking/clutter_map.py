@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import Array
+from ..types import Array, IntArray
 
 NEAREST = 50.0  # m, the first ring's inner edge; what is nearer belongs to it
 RINGS_AN_OCTAVE = 4
@@ -35,14 +35,14 @@ def empty() -> ClutterMap:
     return ClutterMap(np.zeros(RINGS * SECTORS), 0)
 
 
-def _cell(range_, bearing):
+def _cell(range_: Array, bearing: Array) -> IntArray:
     octaves = np.log2(np.maximum(range_, NEAREST) / NEAREST)
     ring = np.minimum((octaves * RINGS_AN_OCTAVE).astype(np.int64), RINGS - 1)
     sector = (bearing * (SECTORS / (2 * np.pi))).astype(np.int64) % SECTORS
     return ring * SECTORS + sector
 
 
-def learn(before: ClutterMap, range_, bearing) -> ClutterMap:
+def learn(before: ClutterMap, range_: Array, bearing: Array) -> ClutterMap:
     """The map after one more scan with the plots [M] (m, rad) that led to nothing.
 
     They belonged to no track and began none in the next scan: a new target's first plots do not
@@ -52,7 +52,7 @@ def learn(before: ClutterMap, range_, bearing) -> ClutterMap:
     return ClutterMap(before.plots + (found - before.plots) / MEMORY, before.scans + 1)
 
 
-def density(clutter: ClutterMap, range_, bearing):
+def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
     """False plots a scan and m^2 [N] at the places [N] (m, rad).
 
     The cell's own count or its ring's mean, whichever is more: a cell has seen too few plots to
@@ -63,4 +63,5 @@ def density(clutter: ClutterMap, range_, bearing):
     known = 1 - (1 - 1 / MEMORY) ** max(clutter.scans, 1)
     ring = np.maximum(count.sum(1) / known, LEAST_IN_RING)
     here = np.maximum(count * SECTORS, ring[:, None]) / _RING_AREA[:, None]
-    return here.ravel()[_cell(range_, bearing)]
+    found: Array = here.ravel()[_cell(range_, bearing)]
+    return found

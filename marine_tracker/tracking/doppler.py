@@ -1,4 +1,4 @@
-"""Which plots have the radial speed of the track they lie near, where the radar tells it."""
+"""Which plots have the radial speed of the track they lie near, if the radar measures it."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ class Limits(NamedTuple):
 
     sigma      m/s, of a measured radial speed
     max_speed  m/s, of the targets
-    reach      deviations that are taken for chance
+    reach      number of deviations that count as chance
     """
 
     sigma: float
@@ -25,7 +25,7 @@ class Limits(NamedTuple):
 
 
 def limits(radar: TrackerParameters) -> Limits:
-    """The limits by a radar's parameters; none at all where `doppler_gate` is off."""
+    """The limits from a radar's parameters; infinite if `doppler_gate` is off."""
     reach = float(ndtri(0.5 + 0.5 * radar.gate_probability)) if radar.doppler_gate else np.inf
     return Limits(radar.radial_speed_sigma_mps, radar.max_target_speed_mps, reach)
 
@@ -33,11 +33,11 @@ def limits(radar: TrackerParameters) -> Limits:
 def agreeing(
     pairs: Pairs, ahead: Extrapolation, lone: Plots, plots: Plots, limits: Limits
 ) -> Pairs:
-    """The pairs of the gate that radial speeds do not rule out.
+    """The pairs of the gate that radial speeds do not exclude.
 
-    The rows of `pairs.track` are those of `ahead`, the N tracks, and beyond them those of `lone`,
-    the lone plots of the last scan, of which only the radial speed is known. A plot that tells
-    no radial speed agrees with every track.
+    The rows of `pairs.track` are first those of `ahead`, the N tracks, then those of `lone`, the
+    lone plots of the last scan. Of these only the radial speed is known. A plot without radial
+    speed agrees with every track.
     """
     if plots.radial_speed is None:
         return pairs
@@ -54,13 +54,13 @@ def _agree(
     radial_speed: Array,
     limits: Limits,
 ) -> BoolArray:
-    """Mask [P] of the pairs, where the plots' radial speeds [M] m/s are known."""
+    """Mask [P] of the pairs, for plots with known radial speeds [M] m/s."""
     sigma, max_speed, reach = limits
     count = len(ahead.time)
     seam = track.searchsorted(count)
     told = radial_speed[plot]
 
-    # Tracks: on the line of sight to where they are expected, for a plot's bearing is coarser.
+    # Tracks: on the line of sight to the expected position, because a plot's bearing is coarser.
     row = track[:seam]
     _, bearing = to_range_bearing(ahead.position[row] - plots.origin[plot[:seam]])
     along = unit_vector(bearing)
@@ -68,8 +68,8 @@ def _agree(
     variance = np.einsum('pi,pij,pj->p', along, ahead.covariance[row, 2:, 2:], along)
     off = np.abs(told[:seam] - expected) - reach * np.sqrt(variance + sigma**2)
 
-    # Lone plots: a target that crosses at max_speed changes its radial speed by that squared
-    # over range in a second.
+    # Lone plots: for a target that crosses at max_speed, the radial speed changes in a second by
+    # that squared over range.
     row = track[seam:] - count
     if lone.radial_speed is None:
         return np.append(~(off > 0), np.ones(len(row), bool))

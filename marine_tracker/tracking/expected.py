@@ -1,4 +1,4 @@
-"""Where a scan's plots are looked for: at the tracks, and about the lone plots of the last scan."""
+"""Where a scan's plots are expected: at the tracks, and around the lone plots of the last scan."""
 
 from typing import NamedTuple
 
@@ -26,7 +26,7 @@ class Expected(NamedTuple):
 
 
 def expect(ahead: Extrapolation, lone: Plots, scan: Scan, max_speed: float) -> Expected:
-    """First the tracks, then the targets of the lone plots, which may be anywhere near.
+    """First the tracks, then the targets of the lone plots, which may be anywhere near them.
 
     ahead      the tracks, each at the time the beam passes it
     lone       plots of the radar's last scan that belong to no track
@@ -44,7 +44,7 @@ def expect(ahead: Extrapolation, lone: Plots, scan: Scan, max_speed: float) -> E
 
 
 def reach(lone: Plots, now: float, max_speed: float) -> Array:
-    """Covariance [L, 2, 2] m^2 of where the targets of lone plots may be at the time now, s."""
+    """Covariance [L, 2, 2] m^2 of the places of lone plots' targets at the time now, s."""
     away = max_speed * (now - lone.time)
     covariance = lone.covariance.copy()
     covariance[:, [0, 1], [0, 1]] += (away * away)[:, None]

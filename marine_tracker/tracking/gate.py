@@ -46,10 +46,18 @@ def split(pairs: Pairs, count: int) -> tuple[Pairs, Pairs]:
 
 def gate_size(probability: float) -> float:
     """Chi-square quantile with two degrees of freedom: the gate holds a plot so often."""
-    return -2.0 * np.log1p(-probability)
+    found: float = -2.0 * np.log1p(-probability)
+    return found
 
 
-def window_pairs(low, high, bearing, half_width, plot_range, plot_bearing):
+def window_pairs(
+    low: Array,
+    high: Array,
+    bearing: Array,
+    half_width: Array,
+    plot_range: Array,
+    plot_bearing: Array,
+) -> tuple[IntArray, IntArray]:
     """All pairs (track [P], plot [P]) with the plot inside the track's window.
 
     low, high [N] m: ranges of the window; bearing, half_width [N] rad: its bearings, periodic.
@@ -144,13 +152,15 @@ def _windows(
     return distance - along, np.hypot(distance + along, across), bearing, half_width
 
 
-def _half_width(distance, along, across):
+def _half_width(distance: Array, along: Array, across: Array) -> Array:
     """Bearings [N] rad either side within which offsets along and across [N] m lie."""
     nearest = distance - along
     return np.where(nearest > 0, np.arctan2(across, np.maximum(nearest, 1e-9)), np.pi)
 
 
-def _distance(expected: Expected, plots: Plots, track: IntArray, plot: IntArray):
+def _distance(
+    expected: Expected, plots: Plots, track: IntArray, plot: IntArray
+) -> tuple[Array, Array]:
     """Squared Mahalanobis distance [P] of the pairs and the determinant [P] m^4 it goes by."""
     later = (plots.time[plot] - expected.time[track])[:, None]
     drifted = later * expected.velocity.take(track, 0)

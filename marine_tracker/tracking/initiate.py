@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..types import BoolArray, IntArray, Plots, Tracks
+from ..types import Array, BoolArray, IntArray, Plots, Tracks
 from .gate import Pairs, gate_size
 from .lifecycle import TENTATIVE
 
@@ -20,7 +20,15 @@ def unexplained(plots: Plots, pairs: Pairs, plot_of: IntArray, tracks: Tracks) -
     return free
 
 
-def pair_up(before: Plots, now: Plots, first, second, free, max_speed: float, room: int):
+def pair_up(
+    before: Plots,
+    now: Plots,
+    first: IntArray,
+    second: IntArray,
+    free: BoolArray,
+    max_speed: float,
+    room: int,
+) -> tuple[IntArray, IntArray]:
     """Of the pairs (first [P] in before, second [P] in now), those that may be new targets.
 
     free  [M] mask of the plots in now that no track explains
@@ -46,7 +54,7 @@ def pair_up(before: Plots, now: Plots, first, second, free, max_speed: float, ro
     return _greedy(first[fits], second[fits], (length / sigma)[fits], room)
 
 
-def _greedy(first, second, cost, room: int):
+def _greedy(first: IntArray, second: IntArray, cost: Array, room: int) -> tuple[IntArray, IntArray]:
     """One-to-one pairs, at most `room`, cheapest first."""
     order = np.argsort(cost, kind='stable')
     pairs = list(zip(first[order].tolist(), second[order].tolist(), strict=True))

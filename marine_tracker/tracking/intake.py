@@ -186,7 +186,9 @@ def admit_scan(
     return order._replace(waiting=waiting), False, reason
 
 
-def _silence(order: TimeOrder, after, ahead, slack, arrival, own) -> bool:
+def _silence(
+    order: TimeOrder, after: float, ahead: float, slack: float, arrival: float, own: float
+) -> bool:
     """Whether the clocks that there are tell of `after` s without scans."""
     waited = order.beat.waited(arrival)
     if math.isnan(waited):

@@ -1,11 +1,10 @@
-"""Plots of several radars taken in the order of their times.
+"""Takes plots of several radars in the order of their times.
 
-A scan is known when its revolution ends; by then another radar's later plots may have been taken
-already. So each track remembers its last few updates. A plot that is late is put in its place:
-later updates are undone, it is taken, and they are taken again. Estimators see time go forward
-only, nothing waits, and the outcome is that of all plots sorted by time (for association it is
-not: what was decided stands). A plot older than all that is remembered meets an estimator that
-must step back in time, as its contract allows.
+A scan arrives when its revolution ends. Later plots of another radar may have been taken before. So
+each track keeps its last few updates. A late plot is put in its place: later updates are undone,
+the plot is taken, and they are repeated. Estimators only step forward in time, nothing waits, and
+the state is that of all plots sorted by time. The association is not repeated. For a plot older
+than all kept updates, the estimator must step back in time, as its contract allows.
 """
 
 from typing import Any, NamedTuple
@@ -13,24 +12,26 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..estimators import Estimator
-from ..types import Plots, Tracks, put, take, where
+from ..estimators.contract import State
+from ..types import Array, IntArray, Plots, Tracks, put, take, where
 
 
 class Update(NamedTuple):
-    """One update of each track, N rows: the state before it and the plot; its time is -inf where
-    there was none yet."""
+    """One update of each track, N rows: the state before it, and the plot. The plot's time is -inf
+    if there was no update yet.
+    """
 
     state: Any
     plots: Plots
 
 
-def nothing_yet(state, plots: Plots, updates: int) -> tuple[Update, ...]:
-    """What N tracks remember: so many updates, none of which has been; any N plots."""
+def nothing_yet(state: State, plots: Plots, updates: int) -> tuple[Update, ...]:
+    """The memory of N new tracks: `updates` empty updates; any N plots."""
     none = plots._replace(time=np.full(len(plots.time), -np.inf), radial_speed=None)
     return (Update(state, none),) * updates
 
 
-def as_of(tracks: Tracks, time):
+def as_of(tracks: Tracks, time: Array) -> State:
     """The state as it was at the times [N] s: later updates are undone."""
     state = tracks.state
     for update in tracks.past:  # the last comes first
@@ -38,11 +39,13 @@ def as_of(tracks: Tracks, time):
     return state
 
 
-def update(estimator: Estimator, tracks: Tracks, plots: Plots, rows, radar: int) -> Tracks:
-    """The tracks after one plot of the radar for each of the rows [K], wherever it belongs.
+def update(
+    estimator: Estimator, tracks: Tracks, plots: Plots, rows: IntArray, radar: int
+) -> Tracks:
+    """The tracks after one plot of the radar for each of the rows [K], in the order of their times.
 
-    A radial speed counts when the plot comes in, not when it is taken again: not all radars
-    tell one.
+    A radial speed counts when the plot comes in, not when it is repeated, because not all radars
+    measure one.
     """
     last_time = tracks.last_time.copy()
     last_time[rows] = np.maximum(last_time[rows], plots.time)
@@ -53,7 +56,7 @@ def update(estimator: Estimator, tracks: Tracks, plots: Plots, rows, radar: int)
     every = np.arange(len(rows))
     before = as_of(here, plots.time)
     after, past = estimator.update(before, plots, every), list(here.past)
-    for k in reversed(range(len(past))):  # again what was undone, oldest first
+    for k in reversed(range(len(past))):  # repeat what was undone, oldest first
         later = (past[k].plots.time > plots.time).nonzero()[0]
         past[k] = past[k]._replace(state=put(past[k].state, later, take(after, later)))
         after = estimator.update(after, take(past[k].plots, later), later)

@@ -1,9 +1,9 @@
-"""From the first plots to the loss of a target."""
+"""The life of a track, from its first plots to its loss."""
 
 import numpy as np
 
 from ..parameters import TrackerParameters
-from ..types import HISTORY, Array, BoolArray, CodeArray, Tracks
+from ..types import HISTORY, Array, BoolArray, CodeArray, IntArray, Tracks
 from .look import Look
 
 TENTATIVE, CONFIRMED, COASTING, LOST = range(4)
@@ -20,24 +20,28 @@ _COUNT = _BITS.sum(1)
 _SINCE = np.where(_BITS.any(1), _BITS.argmax(1), _HALF)
 
 
-def hits(history, scans: int):
+def hits(history: IntArray, scans: int) -> IntArray:
     """Plots [N] of each history [N] in its last `scans` scans (at most types.HISTORY)."""
     recent = history & ((1 << scans) - 1)
     count = _COUNT[recent & (len(_COUNT) - 1)]
-    return count if scans <= _HALF else count + _COUNT[recent >> _HALF]
+    found: IntArray = count if scans <= _HALF else count + _COUNT[recent >> _HALF]
+    return found
 
 
-def misses_in_a_row(history):
+def misses_in_a_row(history: IntArray) -> IntArray:
     """Scans [N] since the last plot of each history [N], at most types.HISTORY."""
     since = _SINCE[history & (len(_SINCE) - 1)]
-    return np.where(since < _HALF, since, _HALF + _SINCE[history >> _HALF])
+    found: IntArray = np.where(since < _HALF, since, _HALF + _SINCE[history >> _HALF])
+    return found
 
 
-def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters) -> Tracks:
-    """Enter one scan: the tracks `rows` [K] had a plot; visible [N] lay where the radar can see.
+def record(
+    tracks: Tracks, rows: IntArray, gained: Array, visible: BoolArray, parameters: TrackerParameters
+) -> Tracks:
+    """Records one scan: the tracks `rows` [K] had a plot; visible [N] were where the radar can see.
 
-    gained [K]: what those plots add to the scores (see score.py). A scan in which a track
-    could not be seen and was not is left out of its account.
+    gained [K]: what those plots add to the scores (see score.py). A scan in which a track could not
+    be seen, and had no plot, is not recorded for it.
     """
     hit = np.zeros(len(visible), bool)
     hit[rows] = True
@@ -52,45 +56,56 @@ def record(tracks: Tracks, rows, gained, visible, parameters: TrackerParameters)
     )
 
 
-def held_by_another(tracks: Tracks, radar: int, time, track, held):
+def held_by_another(
+    tracks: Tracks, radar: int, time: Array, track: IntArray, held: Array
+) -> BoolArray:
     """Mask [N] of the tracks that another radar sees, while this one has no plot in their gate.
 
-    time [N] s of this look; track: tracks that have a plot in the gate; held [R] s, how long a
-    plot of each radar shows that its target is there. Such a look is no miss: what is in the lee
-    of a mast, or too faint for one radar, is not lost. Beside a plot that another track took it
-    is one, so two tracks on one target are still found out; and of a tentative track every miss
-    counts, or each radar's clutter would live on what the other is blind to.
+    time [N] s of this scan at the track; track: tracks that have a plot in the gate; held [R] s,
+    how long a plot of each radar shows that its target is there. Such a scan is not a miss: a
+    target hidden by a mast, or too weak for one radar, is not lost. If another track took the plot
+    in the gate, it is a miss, so two tracks on one target are still found. For a tentative track
+    every miss counts. Otherwise tracks on one radar's clutter would live where the other radar is
+    blind.
     """
     if len(held) == 1:
         return np.zeros(len(time), bool)
     empty = np.ones(len(time), bool)
     empty[track] = False
-    return (
+    found: BoolArray = (
         empty
         & (tracks.status != TENTATIVE)
         & (tracks.radar != radar)
         & (time - tracks.last_time < held[tracks.radar])
     )
+    return found
 
 
-def judge(tracks: Tracks, parameters: TrackerParameters, hit, beyond, drift, now: float):
+def judge(
+    tracks: Tracks,
+    parameters: TrackerParameters,
+    hit: BoolArray,
+    beyond: BoolArray,
+    drift: Array,
+    now: float,
+) -> tuple[CodeArray, CodeArray]:
     """Status [N] and reason [N] of a loss, by the named rules.
 
-    hit [N] had a plot in this scan, or of another radar lately; beyond [N] lies outside the range
-    of every radar; drift [N] is the deviation of the extrapolated position over that of a plot;
-    now s.
+    hit [N] had a plot in this scan, or of another radar recently; beyond [N] is outside the range
+    of every radar; drift [N] is the deviation of the extrapolated position over that of a plot; now
+    s.
 
-    M of N: a tentative track is confirmed by `confirm_hits` plots in `confirm_scans` scans, if
-    its score too reaches `confirm_score`, and lost once its plots cannot get there. A confirmed
-    track is lost when its score falls below 0, when its last 10 scans held fewer plots than
-    `hold_hits`, or when it coasts and `drift` exceeds `max_drift`: where the search would be
-    so wide, the next plot found is not the target's.
+    M of N: a tentative track is confirmed by `confirm_hits` plots in `confirm_scans` scans, if its
+    score also reaches `confirm_score`. It is lost when its plots can no longer reach that. A
+    confirmed track is lost when its score falls below 0, when its last 10 scans had fewer plots
+    than `hold_hits`, or when it coasts and `drift` exceeds `max_drift`: in such a wide search the
+    next plot found would not be the target's.
     """
     needed, window = parameters.confirm_hits, parameters.confirm_scans
     tentative = tracks.status == TENTATIVE
     recent = hits(tracks.history, window)
     confirmed = ~tentative | ((recent >= needed) & (tracks.score >= parameters.confirm_score))
-    # Of the window's scans still to come none may be missing more than it can.
+    # Give up when even plots in all remaining scans of the window would be too few.
     remaining = np.maximum(window - tracks.age, 0)
     gone = np.where(
         tentative,
@@ -119,10 +134,10 @@ def step(
 ) -> tuple[Tracks, CodeArray]:
     """The tracks after one scan, recorded and judged, and the reason [N] of each loss.
 
-    gained     [K]  what the plots add to the scores of those that had one (see score.py)
+    gained     [K]  what the plots add to the scores of the tracks that had one (see score.py)
     elsewhere  [N]  held by another radar (see `held_by_another`)
     radar      parameters of the one that scanned
-    farthest   m, the greatest range of all radars
+    farthest   m, the largest range of all radars
     now        s, end of the scan
     """
     in_range = (seen.distance >= radar.min_range_m) & (seen.distance <= radar.max_range_m)
@@ -135,7 +150,7 @@ def step(
 
 
 def merge(tracks: Tracks, reason: CodeArray, double: BoolArray) -> tuple[Tracks, CodeArray]:
-    """The tracks and reasons where those of the mask [N] are lost to another on their target."""
+    """The tracks and reasons; those of the mask [N] are lost to another track on their target."""
     status, reason = tracks.status.copy(), reason.copy()
     status[double] = LOST
     reason[double] = MERGED
@@ -143,7 +158,7 @@ def merge(tracks: Tracks, reason: CodeArray, double: BoolArray) -> tuple[Tracks,
 
 
 def number(tracks: Tracks, next_number: int) -> tuple[Tracks, int]:
-    """Every confirmed track has its target number; and the next number there is."""
+    """Gives every confirmed track its target number; also returns the next free number."""
     newly = ((tracks.number == 0) & (tracks.status == CONFIRMED)).nonzero()[0]
     numbers = tracks.number.copy()
     numbers[newly] = next_number + np.arange(len(newly))

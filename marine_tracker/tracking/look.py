@@ -1,4 +1,4 @@
-"""What one scan shows of every track, whether it had a plot or not."""
+"""What one scan shows of every track, with or without a plot."""
 
 from typing import NamedTuple
 
@@ -38,12 +38,11 @@ def look(
     expected: Expected,
     noise: Noise,
 ) -> Look:
-    """What the scan showed: of the tracks `rows` [K] their K plots, of the others where they
-    should have been.
+    """What the scan showed: for the tracks `rows` [K] their K plots, for the others the
+    expectation.
 
-    tracks           N, their `last_time` up to date; those that `ahead` lacks are new: they have
-                     a plot
-    ahead, expected  the tracks before the update; beyond them `expected` may have more rows
+    tracks           N, with their new `last_time`; those that `ahead` lacks are new and have a plot
+    ahead, expected  the tracks before the update; `expected` may have more rows after them
     """
     count, before = len(tracks.id), len(ahead.time)
     hit = np.zeros(count, bool)

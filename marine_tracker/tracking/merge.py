@@ -1,4 +1,4 @@
-"""Two tracks on one target."""
+"""Finds two tracks on one target."""
 
 import numpy as np
 
@@ -7,8 +7,8 @@ from .gate import Pairs
 from .lifecycle import LOST, TENTATIVE, hits, misses_in_a_row
 
 SAME = 9.49  # chi-square with 4 degrees of freedom, 95 %
-RECENT = 10  # scans over which two tracks are seen to share the plots of one target
-STARVED = 4  # misses in a row, each beside the other's plot, that tell as much
+RECENT = 10  # scans in which two tracks must share the plots of one target
+STARVED = 4  # misses in a row, each next to the other's plot, that prove the same
 
 
 def duplicates(pairs: Pairs, plot_of: IntArray, ahead: Extrapolation, tracks: Tracks) -> BoolArray:
@@ -18,10 +18,10 @@ def duplicates(pairs: Pairs, plot_of: IntArray, ahead: Extrapolation, tracks: Tr
     ahead    the tracks before the update
     tracks   after it, as this scan has judged them
 
-    A track is one too many when it had no plot because another track took one in its gate, both
-    agree in position and velocity, and together they had no more plots lately than one target
-    gives (or this one none for long). Two ships in company both get plots, ships that cross
-    differ in velocity.
+    A track is superfluous if it had no plot because another track took one in its gate, both agree
+    in position and velocity, and together they recently had no more plots than one target gives (or
+    this one had none for long). Two ships in company both get plots. Ships that cross differ in
+    velocity.
     """
     track, plot, status = pairs.track, pairs.plot, tracks.status
     double = np.zeros(len(status), bool)

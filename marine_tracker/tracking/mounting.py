@@ -22,22 +22,26 @@ def mounted(scan: Scan, radar: TrackerParameters, heading: float) -> Scan:
     radar    the parameters of its radar
     heading  rad, own ship's where a sample does not tell hers; nan: not known
 
-    A radar whose bearings count from the bow takes the bow for north as long as no heading is known.
+    A radar whose bearings count from the bow takes the bow for north while no heading is known.
     """
     gps = radar.gps_ahead_m, radar.gps_starboard_m
     antenna = radar.antenna_ahead_m, radar.antenna_starboard_m
     relative = radar.bearings == 'relative'
     if not (any(gps) or any(antenna) or radar.bearing_offset_deg or relative):
         return scan
-    own = _with_heading(scan.own_ship, heading)
+    own, headings = scan.own_ship, _headings(scan.own_ship, heading)
     bearing = scan.plots.bearing + np.radians(radar.bearing_offset_deg)
     if relative:
-        bearing = bearing + np.nan_to_num(heading_at(own, scan.plots.time))
+        bearing = bearing + np.nan_to_num(
+            heading_at(own._replace(heading=headings), scan.plots.time)
+        )
     scan = scan._replace(plots=scan.plots._replace(bearing=wrap_bearing(bearing)))
-    if np.isnan(own.heading).any():
+    if np.isnan(headings).any():
         return scan
-    own = _moved(own, *(-distance for distance in gps))
-    return scan._replace(own_ship=own, antenna=_moved(own, *antenna) if any(antenna) else None)
+    own = _moved(own, -gps[0], -gps[1], headings)
+    return scan._replace(
+        own_ship=own, antenna=_moved(own, *antenna, headings) if any(antenna) else None
+    )
 
 
 def needs_heading(radars: Iterable[TrackerParameters]) -> bool:
@@ -52,20 +56,20 @@ def needs_heading(radars: Iterable[TrackerParameters]) -> bool:
     )
 
 
-def _with_heading(own: OwnShip, heading: float) -> OwnShip:
-    """The samples, those without a heading with this one."""
+def _headings(own: OwnShip, heading: float) -> Array:
+    """The headings [K] rad of the samples; `heading` for those that do not tell theirs."""
     told = np.full(len(own.time), np.nan) if own.heading is None else own.heading
-    return own._replace(heading=np.where(np.isnan(told), heading, told))
+    return np.where(np.isnan(told), heading, told)
 
 
-def _moved(own: OwnShip, ahead: float, starboard: float) -> OwnShip:
+def _moved(own: OwnShip, ahead: float, starboard: float, headings: Array) -> OwnShip:
     """The samples of a place so many m ahead and to starboard; a turn moves it, too."""
-    step = on_deck(ahead, starboard, own.heading)
+    step = on_deck(ahead, starboard, headings)
     return own._replace(position=own.position + step, velocity=own.velocity + _rate(own.time, step))
 
 
 def _rate(time: Array, step: Array) -> Array:
     """m/s [2], how the step [K, 2] m changes: of a straight line in time through all samples."""
     centred = time - time.mean()
-    square = centred @ centred
-    return centred @ step / square if square else np.zeros(2)
+    rate: Array = centred @ step / max(float(centred @ centred), 1e-9)
+    return rate

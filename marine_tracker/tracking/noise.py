@@ -1,4 +1,4 @@
-"""How far the plots of a radar stray from the targets they belong to."""
+"""The deviation of a radar's plots from the targets they belong to."""
 
 from typing import NamedTuple, TypeVar
 
@@ -13,12 +13,12 @@ Spread = TypeVar('Spread', Plots, Expected)  # what has a covariance [..., 2, 2]
 
 
 class Noise(NamedTuple):
-    """The noise of the plots of one scan; the only place that knows of glint.
+    """The noise of the plots of one scan. Only this module knows of glint.
 
     range_sigma    m
     bearing_sigma  rad
-    glint_sigma    m, each axis: the point of a target that echoes, about the target's middle
-    widest         m, deviation of the least certain plot where plots tell their own; else 0
+    glint_sigma    m, each axis: the echoing point of a target, about the target's middle
+    widest         m, deviation of the least certain plot if plots have their own covariance; else 0
     """
 
     range_sigma: float
@@ -27,21 +27,20 @@ class Noise(NamedTuple):
     widest: float
 
     def locate(self, scan: Scan) -> Plots:
-        """The scan's plots as the radar measured them: where the echoes are."""
+        """The scan's plots as measured: where the echoes are."""
         return locate(scan.plots, scan.measured_from, self.range_sigma, self.bearing_sigma)
 
     def with_glint(self, spread: Spread) -> Spread:
-        """The same with the covariance that glint adds.
+        """The same with the covariance of glint added.
 
-        Of plots: they tell where the middle of the target is. Of expected targets: where they
-        echo.
+        Plots then show where the middle of the target is; expected targets show where they echo.
         """
         if not self.glint_sigma:
             return spread
         return spread._replace(covariance=spread.covariance + self.glint_sigma**2 * np.eye(2))
 
     def variance(self, distance: Array) -> Array:
-        """m^2 [N], both axes together, of a plot's place at the distances [N] m, with glint."""
+        """m^2 [N], sum of both axes, of a plot's position at the distances [N] m, with glint."""
         across = distance * self.bearing_sigma
         return self.range_sigma**2 + across**2 + 2 * self.glint_sigma**2
 

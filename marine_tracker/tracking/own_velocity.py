@@ -90,13 +90,13 @@ def _recent(samples: Samples) -> Samples | None:
     return take(samples, rows)
 
 
-def _speed(time, steps) -> tuple[float, float]:
+def _speed(time: Array, steps: Array) -> tuple[float, float]:
     """m/s of a path of steps [K - 1, 2] between the times [K], and its deviation."""
     slope, sigma = _line(time, np.concatenate([np.zeros((1, 2)), steps.cumsum(0)]))
     return float(np.hypot(*slope)), sigma
 
 
-def _line(time, position) -> tuple[Array, float]:
+def _line(time: Array, position: Array) -> tuple[Array, float]:
     """Slope [2] of a straight line in time, and its deviation."""
     centred = time - time.mean()
     square = centred @ centred
@@ -105,7 +105,7 @@ def _line(time, position) -> tuple[Array, float]:
     return slope, float(np.sqrt((rest**2).sum() / (2 * (len(time) - 2)) / square))
 
 
-def _slope_now(time, position) -> Array:
+def _slope_now(time: Array, position: Array) -> Array:
     """Velocity [2] at the last time: of a straight line, or a parabola where she surely turns."""
     design = np.stack([np.ones_like(time), time, time * time], 1)
     inverse = np.linalg.inv(design.T @ design)

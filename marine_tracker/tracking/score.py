@@ -47,11 +47,12 @@ def evidence(nis: Array, log_det: Array, density: Array, detection_probability: 
 def first_score(
     before: Plots, now: Plots, density: Array, max_speed: float, detection_probability: float
 ) -> Array:
-    """Score [P] of tracks begun by two plots each, where the density [P] of false plots is known.
+    """Score [P] of tracks begun by two plots each, for known densities [P] of false plots.
 
-    A target's second plot may lie anywhere that max_speed, m/s, and the noise allow.
+    A target's second plot may be anywhere that max_speed, m/s, and the noise allow.
     """
     away = max_speed * (now.time - before.time)
     noise = np.sqrt(np.linalg.det(before.covariance + now.covariance))
     area = np.pi * away**2 + 2 * np.pi * noise
-    return np.log(detection_probability / (density * area))
+    found: Array = np.log(detection_probability / (density * area))
+    return found

@@ -4,22 +4,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import Scan
+from ..types import Array, Scan
 
 
 class Sweep(NamedTuple):
     """One antenna revolution, clockwise at constant rate.
 
     start     s
-    period    s; 0 where all plots carry one time
-    bearing0  rad, where the beam stood at `start`
+    period    s; 0 if all plots have the same time
+    bearing0  rad, direction of the beam at `start`
     """
 
     start: float
     period: float
     bearing0: float
 
-    def time_at(self, bearing):
+    def time_at(self, bearing: Array) -> Array:
         """s, when the beam passes the bearings [...] rad."""
         if self.period == 0:
             return np.full(np.shape(bearing), self.start)
@@ -28,10 +28,10 @@ class Sweep(NamedTuple):
 
 
 def sweep_of(scan: Scan) -> Sweep:
-    """The sweep of a scan; where the beam started is read off its plots.
+    """The sweep of a scan. The start direction of the beam is derived from its plots.
 
-    If their times do not follow the bearing clockwise (no plots, or another antenna), every
-    bearing counts as swept in the middle of the scan.
+    If their times do not follow the bearing clockwise (no plots, or another kind of antenna), every
+    bearing is taken as swept in the middle of the scan.
     """
     period = scan.end - scan.start
     time, bearing = scan.plots.time, scan.plots.bearing

@@ -19,6 +19,7 @@ from .look import look
 from .merge import duplicates
 from .noise import noise_of
 from .radars import HELD_REVOLUTIONS, held_updates, radars_of
+from .silence import unmistakable
 from .sweep import sweep_of
 
 
@@ -87,7 +88,7 @@ class Tracker:
     def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
         # Clusters tell what their middle strays.
         self.parameters = (
-            parameters if parameters.extent == 'off' else replace(parameters, glint_sigma_m=0.0)
+            parameters if parameters.extent == 'none' else replace(parameters, glint_sigma_m=0.0)
         )
         self.estimator = estimator or ESTIMATORS[parameters.estimator](parameters)
         radars = radars_of(self.parameters)
@@ -107,7 +108,7 @@ class Tracker:
             self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1
         )
 
-    def extrapolate(self, tracks: Tracks, time) -> Extrapolation:
+    def extrapolate(self, tracks: Tracks, time: float | Array) -> Extrapolation:
         """The tracks at the times [N] s (or one time for all)."""
         return self.estimator.extrapolate(
             tracks.state, np.broadcast_to(time, tracks.id.shape).astype(float)
@@ -131,6 +132,7 @@ class Tracker:
         expected = expect(ahead, lone, scan, speed)
         pairs = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
         pairs = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
+        pairs = unmistakable(pairs, ahead, plots, tracks.last_time, scan.start, p.scan_period_s)
         pairs, starts = split(pairs, count)
 
         # associate

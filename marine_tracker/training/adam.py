@@ -10,7 +10,7 @@ FIRST, SECOND, TINY = 0.9, 0.999, 1e-9
 
 
 class Moments(NamedTuple):
-    """Running means of the gradients and of their squares, like the parameters; steps taken."""
+    """Running means of the gradients and of their squares, shaped as the parameters; steps."""
 
     mean: list[Array]
     square: list[Array]
@@ -18,7 +18,7 @@ class Moments(NamedTuple):
 
 
 def start(parameters) -> Moments:
-    """Nothing seen yet."""
+    """The start: no gradients yet."""
     return Moments(
         [np.zeros_like(p) for p in parameters], [np.zeros_like(p) for p in parameters], 0
     )
@@ -37,5 +37,5 @@ def step(parameters, gradients, moments: Moments, rate: float) -> Moments:
 
 
 def cosine(step_: int, steps: int, peak: float, warm_up: int) -> float:
-    """A rate that rises over `warm_up` steps and falls as a cosine to nothing."""
+    """A rate that rises over `warm_up` steps and then falls as a cosine to zero."""
     return peak * min(1.0, (step_ + 1) / warm_up) * (0.5 + 0.5 * np.cos(np.pi * step_ / steps))

@@ -1,23 +1,24 @@
-"""Waters of a user's own for the training of `gwnn`: kinds of vessels from a file, a scenario.
+"""A user's own traffic for the training of `gwnn`: kinds of vessels from a file, or a scenario.
 
-A file of kinds is YAML; a pair is least and most, and every key but the first two may be left out:
+A file of kinds is YAML. A pair is minimum and maximum. Every key except the first two is optional:
 
     pilot boat:
       speed_mps: [3, 15]
-      manoeuvres_per_scan: 0.03         # chance that one begins
+      manoeuvres_per_scan: 0.03         # probability that one begins
       turns_share: 0.75                 # of the manoeuvres; the others change speed
       turn_radius_m: [30, 400]
-      turn_acceleration_mps2: 2.5       # most, across the course
-      turn_angle_deg: 150               # most
+      turn_acceleration_mps2: 2.5       # maximum, across the course
+      turn_angle_deg: 150               # maximum
       speed_change_mps2: [0.05, 0.6]
-      weave_period_s: [15, 80]          # where the course swings all the time
+      weave_period_s: [15, 80]          # for a course that swings all the time
       drift_share: 0.5                  # of the vessels: speed and course wander slowly
 """
 
 from pathlib import Path
 from typing import Any
 
-from ..parameters import read_yaml_mapping
+from .. import yaml_file
+from ..files import shown
 from ..simulation.fields import Section
 from ..simulation.scenario import Scenario
 from .ship_tracks import Kind
@@ -27,19 +28,19 @@ KEYS = (
     'speed_mps manoeuvres_per_scan turns_share turn_radius_m turn_acceleration_mps2 '
     'turn_angle_deg speed_change_mps2 weave_period_s drift_share'
 )
-SIGMA_SPREAD = 1.2  # sigmas are drawn from the scenario's over to times this
-RATE_SPREAD = 1.05  # likewise the antenna's rate under hard conditions
-HARD = 0.25  # part of the tracks seen under hard conditions
+SIGMA_SPREAD = 1.2  # sigmas are drawn from the scenario's value up to this multiple of it
+RATE_SPREAD = 1.05  # likewise the antenna's rate, under hard conditions
+HARD = 0.25  # share of the tracks seen under hard conditions
 NEAREST, LEAST_BEGIN = 20.0, 50.0  # m
 
 
 def read_kinds(path: Path) -> dict[str, Kind]:
     """The kinds of vessels of a file.
 
-    Raises ValueError, naming file, place, value and limit, for anything that is wrong in it.
+    Raises ValueError for any error in it, naming file, place, value and limit.
     """
     try:
-        values = read_yaml_mapping(path)
+        values = yaml_file.read_mapping(path)
         if not values:
             raise ValueError('there is no kind of vessel in it')
         return {str(name): _kind(Section(item, str(name), KEYS)) for name, item in values.items()}
@@ -67,7 +68,7 @@ def _kind(section: Section) -> Kind:
 
 
 def _pair(section, key, low, high, default=None) -> tuple[float, float]:
-    """Least and most, both within [low, high]."""
+    """Minimum and maximum, both within [low, high]."""
     if key not in section:
         if default is None:
             raise ValueError(f'{section.owner} has no {key}')
@@ -75,18 +76,20 @@ def _pair(section, key, low, high, default=None) -> tuple[float, float]:
     value = section.values[key]
     place = section.place(key)
     if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f'{place} is {value!r}; it must be a pair [least, most]')
+        raise ValueError(f'{place} is {shown(value)}; it must be a pair [least, most]')
     ends = [
         Section({'value': end}, f'{place}[{i}]', 'value').number('value', low, high)
         for i, end in enumerate(value)
     ]
     if ends[0] > ends[1]:
-        raise ValueError(f'{place} is {value}; the least must not be above the most')
+        raise ValueError(f'{place} is {shown(value)}; the least must not be above the most')
     return ends[0], ends[1]
 
 
 def from_scenario(waters: Waters, scenario: Scenario) -> Waters:
-    """The waters with the scenario's radar instead of theirs, and its targets' tracks besides."""
+    """The waters with the scenario's radar instead of their own, and with its targets' tracks
+    added.
+    """
     told: dict[str, Any] = scenario.tracker_parameters()
     radar = scenario.radar
     nearest = max(radar.blind_range, NEAREST)

@@ -1,11 +1,11 @@
-"""The best settings of a filter that a search finds: rivals of `gwnn` as strong as can be.
+"""Searches for the best settings of a filter, to give `gwnn` the strongest possible rivals.
 
-Tracks are those that the weights of `gwnn` are trained on, drawn with a seed apart, but of the
-first sort of radars only (for ships: none at close range): the comparison has no others, and a
-filter tuned for them too were a weaker rival.
-Every candidate sees the same plots (common random numbers), one scan ahead, with the gate of the
-comparison. What counts is the geometric mean, over kinds of motion and phases, of the RMS
-position error in the plots' true deviations: each kind and phase counts alike.
+The tracks are drawn as for the training of `gwnn`, with a different seed. Only the first sort of
+radars is used (for ships: none at close range), because the comparison has no other sort. Tuning
+for other sorts as well would make the rival weaker. All candidates see the same plots (common
+random numbers), one scan ahead, with the gate of the comparison. The score is the geometric mean of
+the RMS position error, in the plots' true deviations. Each kind of motion and each phase counts
+alike.
 """
 
 from collections.abc import Callable
@@ -15,101 +15,24 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from ..estimators import cs_kalman, imm
-from ..estimators.contract import Estimator
 from ..evaluation.report import Figure
 from ..types import take
 from . import gwnn_samples, ship_tracks, track_trials, training_tracks
+from .filter_families import IMM, Family, Settings, filter_of
 
-# Weight of a cell where ships keep course and speed, by what the filter is tuned for.
+# Weight of a cell where ships keep course and speed, by the target of the tuning.
 STRAIGHT_WEIGHT = {'training': 1.0, 'manoeuvre': 0.0}
-PERIOD = 60 / 22  # s, to which the settings refer
 LEAST_TRACKS = 10 * len(ship_tracks.KINDS)  # every vessel class has as many kinds
 DRAWN = 2  # times as many tracks are drawn: close ones are left out
 GLOBAL_SHARE = 2 / 3  # of the evaluations, all over the bounds; the rest go downhill
 POPULATION = 4  # times the number of settings searched, rounded up to 2^n
 SIMPLEX = 0.12  # of the bounds' width, first step of the way down; then smaller
 
-# Least and most of what is searched, by its logarithm. Noises are deviations, m/s^2, of the
-# acceleration over a scan; a mode is left with the chance stated in a scan.
-BOUNDS = {
-    'quiet_noise': (1e-4, 0.1),
-    'loud_noise': (0.03, 5.0),
-    'noise': (1e-3, 5.0),  # of the only mode
-    'turn_noise': (1e-4, 1.0),
-    'turn_rate': (0.003, 0.45),  # rad/s
-    'leave_quiet': (1e-4, 0.3),
-    'leave_loud': (0.01, 0.45),
-    'leave_turn': (0.01, 0.45),
-    'max_acceleration': (0.05, 5.0),  # m/s^2, of CS-Kalman
-    'frequency': (1 / 300, 20.0),  # 1/s, likewise
-}
-
-Settings = imm.Modes | cs_kalman.Manoeuvre
 Progress = Callable[[int, int], None]
 
 
-class Family(NamedTuple):
-    """Filters of one form: what is searched, names of BOUNDS, and the settings of such values."""
-
-    searched: tuple[str, ...]
-    settings: Callable[..., Settings]
-
-    def at(self, point) -> Settings:
-        """The settings at a point of the search, each coordinate 0 to 1 over its bounds."""
-        low, high = np.log(np.array([BOUNDS[name] for name in self.searched])).T
-        return self.settings(*map(float, np.exp(low + np.clip(point, 0, 1) * (high - low))))
-
-
-def _four_modes(quiet, loud, turn, rate, leave_quiet, leave_loud, leave_turn) -> imm.Modes:
-    return _modes(
-        (quiet, loud, turn, turn),
-        (0.0, 0.0, rate, -rate),
-        (leave_quiet, leave_loud, leave_turn, leave_turn),
-    )
-
-
-def _modes(acceleration, turn_rate, leave) -> imm.Modes:
-    return imm.Modes(
-        tuple(PERIOD * one**2 for one in acceleration),
-        turn_rate,
-        tuple(1 - one for one in leave),
-        PERIOD,
-    )
-
-
-FAMILIES = {
-    'imm': Family(
-        (
-            'quiet_noise',
-            'loud_noise',
-            'turn_noise',
-            'turn_rate',
-            'leave_quiet',
-            'leave_loud',
-            'leave_turn',
-        ),
-        _four_modes,
-    ),
-    'cv_cv': Family(
-        ('quiet_noise', 'loud_noise', 'leave_quiet', 'leave_loud'),
-        lambda quiet, loud, *leave: _modes((quiet, loud), (0.0, 0.0), leave),
-    ),
-    'cv': Family(('noise',), lambda noise: _modes((noise,), (0.0,), (0.0,))),
-    'cs': Family(('max_acceleration', 'frequency'), cs_kalman.Manoeuvre),
-}
-IMM = FAMILIES['imm']
-
-
-def filter_of(settings: Settings) -> Estimator:
-    """The filter with these settings."""
-    if isinstance(settings, cs_kalman.Manoeuvre):
-        return cs_kalman.cs_kalman(settings, training_tracks.SPEED)
-    return imm.imm(settings, training_tracks.SPEED)
-
-
 class Course(NamedTuple):
-    """Tracks to judge on, with which scans count for which cell.
+    """Tracks to judge on, and which scans count for which cell.
 
     trial; cells: names; counts [C, B, K]: a cell's scans; kind [B] number of each track's kind;
     straight [C].
@@ -123,7 +46,7 @@ class Course(NamedTuple):
 
 
 class TuningResult(NamedTuple):
-    """What a search came to: the settings, their loss, and the best loss after each evaluation."""
+    """Result of a search: the settings, their loss, and the best loss after each evaluation."""
 
     settings: Settings
     loss: float
@@ -131,7 +54,7 @@ class TuningResult(NamedTuple):
 
 
 def course(tracks: int, rng, vessel_class: str = 'ship') -> Course:
-    """About so many tracks, as many of each kind."""
+    """About `tracks` tracks, the same number of each kind."""
     waters = training_tracks.WATERS[vessel_class]
     names = list(waters.kinds)
     each = tracks // len(names)
@@ -167,7 +90,7 @@ def loss(error, on: Course, target: str) -> float:
 
 
 def _levels(square, count):
-    """Log RMS an axis of sums of squares."""
+    """Log RMS per axis from sums of squares."""
     return 0.5 * np.log(square / count / 2)
 
 
@@ -177,12 +100,12 @@ def _weights(on: Course, target: str):
 
 
 def cell_ratios(error, against, on: Course) -> dict[str, float]:
-    """RMS of errors [C, B] over that of others, by cell."""
+    """Ratio of the RMS of errors [C, B] to that of other errors, by cell."""
     return dict(zip(on.cells, np.sqrt(error.sum(1) / against.sum(1)).tolist()))
 
 
 def compare(error, against, on: Course, target: str, rng, resamples=1000) -> track_trials.Ratio:
-    """Geometric mean of the cells' ratios; its interval by tracks resampled within each kind."""
+    """Geometric mean of the cells' ratios. Its interval resamples tracks within each kind."""
     weight = _weights(on, target)
     pick = np.concatenate(
         [
@@ -192,7 +115,7 @@ def compare(error, against, on: Course, target: str, rng, resamples=1000) -> tra
         1,
     )
     times = np.stack([np.bincount(one, minlength=len(on.kind)) for one in pick])
-    # A resample may leave a cell of few tracks without any scan: it then has no say.
+    # A resample may leave a small cell without any scan. It is then ignored.
     one, other = error @ times.T, against @ times.T
     known = (one > 0) & (other > 0)
     level = 0.5 * np.log(np.where(known, one, 1.0) / np.where(known, other, 1.0))
@@ -209,16 +132,16 @@ def search(
     progress: Progress = lambda done, whole: None,
     family: Family = IMM,
 ) -> TuningResult:
-    """The settings of the least loss found with so many evaluations; repeatable.
+    """The settings with the least loss found in a number of evaluations. Repeatable.
 
-    Two thirds of them by differential evolution over the bounds (there are several valleys), the
-    others downhill from its best by bounded Nelder-Mead, again with a smaller simplex when that
-    comes to rest.
+    Two thirds of the evaluations are differential evolution over the bounds, because there are
+    several minima. The others are bounded Nelder-Mead from the best point. It restarts with a
+    smaller simplex when it stops.
 
-    judge  gives the loss
-    start  [.] within 0 to 1, where the search begins; the middle of the bounds by default
+    judge  returns the loss
+    start  [.] within 0 to 1, where the search begins; by default the middle of the bounds
     family of the filters searched
-    Raises FloatingPointError where a loss is not a finite number.
+    Raises FloatingPointError if a loss is not a finite number.
     """
     count = len(family.searched)
     tried: list[tuple[float, tuple[float, ...]]] = []
@@ -291,7 +214,7 @@ def tune(
     vessel_class: str = 'ship',
     family: Family = IMM,
 ) -> tuple[TuningResult, Course]:
-    """The settings found for a target of STRAIGHT_WEIGHT, and the tracks they were found on."""
+    """The settings found for a target of STRAIGHT_WEIGHT, and the tracks of the search."""
     on = course(tracks, _tracks_rng(seed, 0), vessel_class)
     return search(
         lambda settings: loss(errors(settings, on), on, target),
@@ -308,12 +231,12 @@ def fresh(tracks: int, seed: int, vessel_class: str = 'ship') -> Course:
 
 
 def _tracks_rng(seed: int, part: int):
-    """Apart from every seed of a training and of the comparison."""
+    """Differs from every seed of a training and of the comparison."""
     return np.random.default_rng([seed, 11, 11, part])
 
 
 class Verdict(NamedTuple):
-    """The figures of settings beside others'; ratio: to one of them, on fresh tracks."""
+    """The figures of settings beside those of others; ratio: to one of them, on new tracks."""
 
     figures: list[Figure]
     ratio: track_trials.Ratio
@@ -328,7 +251,7 @@ def judge(
     unseen: Course,
     seed: int,
 ) -> Verdict:
-    """How settings do beside the shipped ones, on tracks they were found on and on others.
+    """Compares settings with the shipped ones, on the tracks of the search and on new ones.
 
     rival  the one of `shipped` that is for the same target
     """
@@ -359,15 +282,3 @@ def judge(
         Figure(f'fresh tracks, {cell}: found over {rival}', value) for cell, value in cells.items()
     ]
     return Verdict(figures, to_rival)
-
-
-def as_text(settings: Settings) -> str:
-    """The settings as Python, to paste."""
-
-    def value_text(value):
-        if isinstance(value, tuple):
-            return f'({", ".join(f"{one:.5g}" for one in value)}{"," * (len(value) == 1)})'
-        return '60 / 22' if value == PERIOD else f'{value:.5g}'
-
-    values = ', '.join(f'{name}={value_text(value)}' for name, value in settings._asdict().items())
-    return f'{type(settings).__name__}({values})'

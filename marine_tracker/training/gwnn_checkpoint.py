@@ -1,13 +1,14 @@
 """Checkpoints of the training of `gwnn`: one file, replaced as a whole."""
 
 import json
-import zipfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..networks import gwnn_weights
+from .. import yaml_file
+from ..files import written
+from ..networks import array_file, gwnn_weights
 from ..networks import wavelet_network as net
 from ..types import Array
 from . import adam
@@ -29,33 +30,30 @@ def _arrays(training: Training) -> dict[str, Array]:
 
 def save(path: Path, settings: dict[str, Any], training: Training) -> None:
     """Write a checkpoint; whoever stops the process meanwhile leaves the last one whole."""
-    fresh = path.with_name(path.name + '.new')
-    with open(fresh, 'wb') as file:
+    with written(path, 'wb') as file:
         np.savez(
             file,
             settings=np.array(json.dumps(settings)),
             steps=np.array(training.moments.steps),
             **_arrays(training),  # type: ignore[arg-type]
         )
-    fresh.replace(path)
 
 
 def resume(path: Path, settings: dict[str, Any], layout: net.Layout) -> Training | None:
-    """The training that a checkpoint holds; None where there is no such file.
+    """The training in a checkpoint; None if there is no such file.
 
-    Raises ValueError where it is of another training, naming what differs, or is damaged.
+    Raises ValueError if it is damaged, or if it belongs to another training, naming the difference.
     """
     if not path.exists():
         return None
     try:
-        with np.load(path, allow_pickle=False) as file:
-            found = {name: file[name] for name in file.files}
-        theirs = json.loads(str(found['settings']))
+        found = array_file.read(path)
+        theirs = yaml_file.parse_json(str(found['settings']), 'settings')
         network = net.Network._make([*(found[name] for name in gwnn_weights.ARRAYS), layout])
         mean, square = ([found[f'{kind}{i}'] for i in range(3)] for kind in ('mean', 'square'))
         moments = adam.Moments(mean, square, int(found['steps']))
         training = Training(network, moments, found['emphasis'], found['size'], found['against'])
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except (ValueError, KeyError) as error:
         raise ValueError(f'checkpoint {path} is damaged: remove it') from error
     ours = json.loads(json.dumps(settings))
     differing = [

@@ -1,8 +1,8 @@
-"""Training of the network of `gwnn` that weighs the filters: Adam on the fused states' errors.
+"""Trains the network of `gwnn` that weights the filters: Adam on the errors of the fused states.
 
-Each cell of samples (`gwnn_samples.Cell`) counts by its error relative to that of the better of
-the bank's two four-mode IMMs, and the cells in which the network gains least on that one gain
-weight as the training goes on: so it learns to be as good as each of them where that one is best.
+Each cell of samples (`gwnn_samples.Cell`) counts by its error relative to that of the better of the
+bank's two four-mode IMMs. During the training, cells gain weight if the network gains little on
+that IMM there. So the network learns to be as good as each IMM where that one is best.
 """
 
 from typing import NamedTuple
@@ -18,20 +18,20 @@ from .gwnn_samples import Samples, cell_count
 from .gwnn_symmetry import apply, standardise, symmetries
 
 HUBER = 10.0
-MOST = 6.0  # times the mean: weight of a sample for its noise
+MOST = 6.0  # times the mean; largest weight of a sample for its noise
 BATCH, PEAK, WARM_UP = 1024, 4e-3, 200
-REWEIGH_EVERY, REWEIGH_BY = 250, 0.5  # steps between looks at the worst cells
-MOST_ERROR = 40.0  # true sigma^2: squared errors count as no more in cells' means
-LARGE = 100.0  # sigma^2: likewise in the running errors
-MOST_EMPHASIS = 2.0  # log weight of a cell
+REWEIGH_EVERY, REWEIGH_BY = 250, 0.5  # steps between checks of the worst cells; weight change
+MOST_ERROR = 40.0  # true sigma^2; limit of squared errors in cells' means
+LARGE = 100.0  # sigma^2; likewise in the running errors
+MOST_EMPHASIS = 2.0  # largest log weight of a cell
 LAYOUT = net.Layout(levels=2, translations=5, q=1.2, outputs=gwnn.OUTPUTS)
 
 
 class Balance(NamedTuple):
-    """What the training cares for.
+    """Priorities of the training.
 
-    velocity  what an error of the velocity counts, that of the position being 1
-    least     log weight to which a cell may sink where the network gains most
+    velocity  weight of a velocity error; that of the position is 1
+    least     lowest log weight of a cell, where the network gains most
     """
 
     velocity: float = 0.7
@@ -42,7 +42,7 @@ USUAL = Balance()
 
 
 def fuse(output, batch: Samples):
-    """Corrections [n, 4] as `gwnn.fuse` makes them, with the experts' weights [n, 13]."""
+    """Corrections [n, 4] as `gwnn.fuse` computes them, and the experts' weights [n, 13]."""
     log_weight = np.full((len(output), filters.EXPERTS), gwnn.OTHERS, np.float32)
     log_weight[:, :4] = batch.base
     log_weight += output[:, gwnn.LOGITS]
@@ -55,7 +55,7 @@ def fuse(output, batch: Samples):
 
 
 def fuse_backward(gradient, out, weight, batch: Samples):
-    """Gradient [n, 19] by the network's outputs, from that by the corrections [n, 4]."""
+    """Gradient [n, 19] by the network's outputs, from the gradient by the corrections [n, 4]."""
     back = np.zeros((len(gradient), gwnn.OUTPUTS), np.float32)
     mixed = np.matmul(weight[:, None], batch.apart)[:, 0]
     toward = np.matmul(batch.apart, gradient[:, :, None])[..., 0]
@@ -69,8 +69,8 @@ def fuse_backward(gradient, out, weight, batch: Samples):
 def cell_weights(samples: Samples):
     """[n, 2] for position and velocity: each cell counts by its error relative to an IMM's.
 
-    Velocity errors are to be small in m/s, not in sigma: within its cell a sample of noisy plots
-    counts more.
+    Velocity errors count in m/s, not in sigma. So within its cell a sample of noisy plots counts
+    more.
     """
     size = np.minimum(rivals(samples) / samples.truly[:, None, None] ** 2, MOST_ERROR)
     share = np.ones(size.shape[:2])
@@ -89,17 +89,17 @@ def rivals(samples: Samples):
 
 
 def _mean_by_cell(values, cell):
-    """The mean [n] of the values [n] over each one's cell."""
+    """The mean [n] of the values [n] over each value's cell."""
     count = np.maximum(np.bincount(cell, minlength=cell.max() + 1), 1)
     return (np.bincount(cell, values) / count)[cell]
 
 
 class Training(NamedTuple):
-    """All that the training of the fusion network goes on from.
+    """The state from which the training of the fusion network continues.
 
     network; moments of Adam; emphasis [cells, 2]: log weights of the cells for position and
-    velocity; size [cells, 2] and against [cells, 2, 2]: running squared errors, the network's
-    and those of the two IMMs.
+    velocity; size [cells, 2] and against [cells, 2, 2]: running squared errors, the network's and
+    those of the two IMMs.
     """
 
     network: net.Network
@@ -110,7 +110,7 @@ class Training(NamedTuple):
 
 
 def begin(samples: Samples, kinds: int, seed: int, layout: net.Layout = LAYOUT) -> Training:
-    """An untrained network for these samples of so many kinds of motion."""
+    """An untrained network for these samples, which have `kinds` kinds of motion."""
     rng = np.random.default_rng([seed, 1 << 20])
     centre, scale = standardise(samples.seen)
     network = net.start(layout, centre, scale, rng)
@@ -132,9 +132,9 @@ def train(
     until: int,
     balance: Balance = USUAL,
 ) -> Training:
-    """Steps of Adam from where the training stands up to step `until` of `steps`.
+    """Steps of Adam from the present state up to step `until` of `steps`.
 
-    The network's and the moments' arrays are changed in place.
+    The arrays of the network and of the moments are changed in place.
     """
     network, moments, emphasis, size, against = training
     parameters = [network.inner, network.outer, network.bias]
@@ -178,7 +178,7 @@ def _by_cell(cell, values, count):
 
 
 def emphasize(emphasis, size, against, least):
-    """More weight for the cells where the network gains least on the better IMM."""
+    """Increases the weight of cells where the network gains least on the better IMM."""
     against = against.min(2)
     known = against[:, 0] > 1e-3
     ratio = np.sqrt(size / np.maximum(against, 1e-9))

@@ -1,8 +1,8 @@
-"""What the network of `gwnn` learns from: what it sees of simulated tracks, and what is true.
+"""Training samples of `gwnn`: the inputs of the network on simulated tracks, and the truth.
 
-Samples are taken from the same functions that the estimator runs (`gwnn.advance`,
-`inputs.inputs`, `gwnn.look`), so that training and use cannot drift apart. A sample is what
-the network saw after a plot and where the target was at that moment or at a later scan.
+Samples come from the same functions that the estimator runs (`gwnn.advance`, `inputs.inputs`,
+`gwnn.look`), so training and use always agree. A sample holds the inputs after a plot, and the
+target's place at that moment or at a later scan.
 """
 
 from typing import NamedTuple
@@ -11,28 +11,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..estimators.gwnn import bank as filters
-from ..estimators.gwnn import gwnn, inputs
+from ..estimators.gwnn import gwnn, inputs, monitor
 from ..gaussian import linear_modes
 from ..types import Array, put, take
 from . import ship_tracks, training_tracks
 
 SCANS = 110
-CHUNK = 588  # tracks made at once, as many of each kind
-EXPECTED, KNOWN = 0.22, 0.10  # part of the rows sampled a scan: before the plot, after it
-CLIP = 30.0  # sigma: of the truth from the base
+CHUNK = 588  # tracks made at once, the same number of each kind
+EXPECTED, KNOWN = 0.22, 0.10  # share of the rows sampled in a scan: before the plot, after it
+CLIP = 30.0  # sigma: largest distance of the truth from the base
 
 
 class Samples(NamedTuple):
     """n samples, float32.
 
     seen      [n, I]      the network's inputs
-    apart     [n, 13, 4]  experts from the base at the time asked for
+    apart     [n, 13, 4]  experts relative to the base at the sample's time
     base      [n, 4]      log weights of the base's modes at that time
     scans     [n]         from the last plot to that time
-    truth     [n, 4]      from the base
+    truth     [n, 4]      relative to the base
     spread    [n, 4]      log variances of the base
-    area      [n]         m^2, mean variance of the plots' coordinates as stated
-    cell      [n]         kind, phase, after or before a plot, sort of radar: `Cell` in one number
+    area      [n]         m^2, mean stated variance of the plots' coordinates
+    cell      [n]         kind, phase, after or before a plot, sort of radar: `Cell` as one number
     truly     [n]         true deviation of the plots over the stated one
     """
 
@@ -48,9 +48,9 @@ class Samples(NamedTuple):
 
 
 class Cell(NamedTuple):
-    """What a sample is of, [n] each; its number in `Samples.cell` counts all combinations.
+    """The class of a sample, [n] each. Its number in `Samples.cell` counts all combinations.
 
-    kind of motion; phase 1 in a manoeuvre; after 1 where the plot was known; sort of radar.
+    kind of motion; phase 1 in a manoeuvre; after 1 if the plot was known; sort of radar.
     """
 
     kind: NDArray[np.int64]
@@ -70,12 +70,12 @@ def cell_of(number) -> Cell:
 
 
 def cell_count(kinds: int) -> int:
-    """How many cells there are of so many kinds of motion."""
+    """Number of cells for `kinds` kinds of motion."""
     return 8 * kinds
 
 
 def make(bank: filters.Filters, waters: training_tracks.Waters, seed: int, chunk: int) -> Samples:
-    """The samples of one chunk of tracks: the same for the same seed and number."""
+    """The samples of one chunk of tracks. The same seed and number give the same samples."""
     rng = np.random.default_rng([seed, chunk])
     traffic = training_tracks.draw(waters, np.arange(CHUNK) % len(waters.names), SCANS, rng)
     ships, radar = traffic.ships, traffic.radar
@@ -86,7 +86,7 @@ def make(bank: filters.Filters, waters: training_tracks.Waters, seed: int, chunk
     memory = inputs.begin(plots[0])
     parts = []
     for k in range(1, SCANS):
-        warm = np.flatnonzero(memory.plots >= gwnn.WARM)
+        warm = np.flatnonzero(memory.plots >= monitor.WARM)
         for after, share in ((0, EXPECTED), (1, KNOWN)):
             rows = warm[rng.random(len(warm)) < share]
             if after:
@@ -115,7 +115,7 @@ def make(bank: filters.Filters, waters: training_tracks.Waters, seed: int, chunk
 
 
 def _sample(bank, state, memory, ships, k, radar, cell) -> Samples:
-    """Samples that ask for scan k."""
+    """Samples with the truth at scan k."""
     time, frame = ships.time[:, k], memory.frame
     ahead = filters.look(bank, state, time - state.time)
     at = gwnn.look(state, frame, ahead, time)

@@ -1,6 +1,7 @@
-"""Training of the network of `gwnn` that says how far off the fused states are.
+"""Trains the network of `gwnn` that predicts the variances of the fused states.
 
-It gives the log ratios of their variances to the base IMM's, by Gaussian likelihood.
+Its outputs are the log ratios of these variances to the base IMM's. The loss is the Gaussian
+likelihood.
 """
 
 import numpy as np
@@ -15,7 +16,7 @@ from .gwnn_symmetry import apply, symmetries
 
 LAYOUT = net.Layout(levels=2, translations=2, q=1.2, outputs=gwnn.SPREADS)
 STEPS = 4000
-LEVEL = (-8.0, 6.0)  # log of the least and the largest variance, sigma^2
+LEVEL = (-8.0, 6.0)  # log of the smallest and the largest variance, sigma^2
 SAMPLES = 300000  # at most
 PEAK = 3e-3
 
@@ -27,7 +28,7 @@ def train(
     steps: int = STEPS,
     layout: net.Layout = LAYOUT,
 ) -> net.Network:
-    """The network that says how far the fusion network is off."""
+    """The network that predicts the error of the fusion network."""
     rng = np.random.default_rng([seed, 1 << 21])
     pick = np.sort(rng.permutation(len(samples.cell))[:SAMPLES])
     samples = take(samples, pick)

@@ -1,7 +1,8 @@
-"""The eight ways to turn or mirror the picture that the network of `gwnn` sees.
+"""The eight ways to turn or mirror what the network of `gwnn` sees.
 
-Along and across the line of sight may change places and signs; which way is starboard goes with
-them. A batch of samples seen in another way teaches the network that the sea has no corners.
+The axes along and across the line of sight can be exchanged, and each can change sign. The side
+that is starboard changes with them. Training on turned samples teaches the network that no
+direction is special.
 """
 
 from typing import NamedTuple
@@ -16,7 +17,7 @@ from .gwnn_samples import Samples
 
 
 class Symmetry(NamedTuple):
-    """One way to turn or mirror the picture: what changes places, and signs.
+    """One way to turn or mirror: exchanged places, and signs.
 
     order, sign of the inputs; of a state of four; experts' order.
     """
@@ -66,7 +67,7 @@ def _symmetry(signs, swap) -> Symmetry:
 
 
 def apply(symmetry: Symmetry, batch: Samples) -> Samples:
-    """The samples seen in another way."""
+    """The samples after turning or mirroring."""
     state, sign = symmetry.state, symmetry.state_sign
     modes = symmetry.experts[:4]
     return batch._replace(
@@ -81,7 +82,7 @@ def apply(symmetry: Symmetry, batch: Samples) -> Samples:
 def standardise(seen):
     """Centre and scale [I] of the inputs.
 
-    Pairs share them and what changes sign is centred on 0, so the symmetries stay exact.
+    Pairs share them. Inputs that change sign are centred on 0. So the symmetries stay exact.
     """
     centre, scale = np.zeros(seen.shape[1], np.float32), np.ones(seen.shape[1], np.float32)
     i = 0

@@ -1,6 +1,6 @@
-"""How the weights of `gwnn` come about: samples, two networks trained one by one, a judgement.
+"""Trains the weights of `gwnn`: samples, two networks one after the other, and a final check.
 
-A training may be stopped at any time: it goes on from its checkpoint.
+A training may be stopped at any time. It continues from its checkpoint.
 """
 
 from collections.abc import Callable
@@ -19,24 +19,24 @@ from .training_tracks import WATERS, Waters
 
 CHUNKS, STEPS = 40, 14000  # of the shipped training
 UNSEEN = 1 << 16  # number of a chunk that is never trained on
-# Ships keep course for long: what that asks for must not be given up for their turns.
+# Ships keep their course for long times. Accuracy there must not be given up for the turns.
 BALANCE = {'ship': fusion.Balance(velocity=1.0, least=-0.4), 'small_craft': fusion.USUAL}
-FEW = 100  # samples of a cell that say too little
+FEW = 100  # a cell with fewer samples is not judged
 SAVE_EVERY = 500  # steps
 
 Progress = Callable[[str, int, int], None]
 
 
 class Plan(NamedTuple):
-    """What is trained, and on what.
+    """A training and its data.
 
-    vessel_class  whose filters are weighed
-    waters        what the tracks and radars are like
-    seed          of all that is drawn
-    chunks        lots of `gwnn_samples.CHUNK` tracks
-    steps         of the network that weighs the filters; the other takes no more
+    vessel_class  the class of the filters
+    waters        the tracks and radars
+    seed          of all random draws
+    chunks        number of chunks of `gwnn_samples.CHUNK` tracks
+    steps         of the network that weights the filters; the other takes no more
     layout        of that network
-    balance       what it cares for
+    balance       priorities of that network
     """
 
     vessel_class: str
@@ -54,14 +54,14 @@ class Plan(NamedTuple):
 
 
 def plan(vessel_class: str, seed: int, **other) -> Plan:
-    """The plan by which the shipped weights of a vessel class are trained; and what differs."""
+    """The plan of the shipped weights of a vessel class, with changes."""
     return Plan(vessel_class, WATERS[vessel_class], seed, balance=BALANCE[vessel_class])._replace(
         **other
     )
 
 
 def settings(plan: Plan) -> dict[str, Any]:
-    """All that makes two trainings differ, for a checkpoint."""
+    """All settings that distinguish two trainings, for a checkpoint."""
     return {
         'vessel_class': plan.vessel_class,
         'filters': plan.bank.mark,
@@ -78,7 +78,7 @@ def settings(plan: Plan) -> dict[str, Any]:
 
 
 def judge(weights: gwnn_weights.Weights, plan: Plan) -> dict[str, float]:
-    """RMS position error over the base IMM's, by kind and phase, on tracks not trained on."""
+    """Ratio of the RMS position error to the base IMM's, by kind and phase, on new tracks."""
     samples = gwnn_samples.make(plan.bank, plan.waters, plan.seed, UNSEEN)
     out, _ = fusion.fuse(net.forward(weights.fusion, samples.seen), samples)
     size, against = (
@@ -99,9 +99,9 @@ def judge(weights: gwnn_weights.Weights, plan: Plan) -> dict[str, float]:
 def run(
     plan: Plan, checkpoint: Path, progress: Progress = lambda stage, done, whole: None
 ) -> gwnn_weights.Weights:
-    """The whole training; goes on from the checkpoint file where there is one.
+    """Runs the whole training. Continues from the checkpoint file if there is one.
 
-    Raises ValueError where the checkpoint is of another training, or is damaged.
+    Raises ValueError if the checkpoint belongs to another training, or is damaged.
     """
     training = gwnn_checkpoint.resume(checkpoint, settings(plan), plan.layout)
     parts = []

@@ -1,13 +1,13 @@
-"""How the weights of `cs_rough_nn` and `cs_bp_nn` come about (paper 001, section 4).
+"""Trains the weights of `cs_rough_nn` and `cs_bp_nn` (paper 001, section 4).
 
-The paper says by what rule its samples were chosen, not which they were: all inputs low, no
-manoeuvre, O near 0; all high, a hard one, O near 1; some high, already much. Here the samples are
-a grid of 5^3 places v between quiet (0) and hard (1), with
+The paper gives the rule for its samples, but not the samples: all inputs low, no manoeuvre, O near
+0; all high, a hard one, O near 1; some high, O already large. Here the samples are a grid of 5^3
+places v between quiet (0) and hard (1), with
 
     O = .02 + .96 (1 - prod(1 - .72 v_i^1.5)) / (1 - .28^3),
 
-and a sixth level below, no difference at all, for a network goes astray where it has no samples.
-The rough network sees each of them through the intervals that noise of several radars makes.
+and a sixth level below: no difference at all. Without it the network fails there, where it has no
+samples. The rough network sees each sample through the intervals that several radars' noise makes.
 """
 
 from collections.abc import Callable
@@ -27,11 +27,11 @@ NARROW = 0.02  # O of F2 while a target keeps its course
 LOG_GAMMA = np.log(10.0) * np.arange(-3, 1.01, 0.5)
 LOG_Y = np.log([0.01, 0.03, 0.1, 0.3])
 LEVELS = np.linspace(0, 1, 5)
-SAMPLED = [(3, 0), (3, 2), (5, 1), (7, 0), (7, 2)]  # places of the table, for the intervals
-STARTS, DECAY, ROUNDS = 12, 1e-3, 200  # beginnings; of the weights; evaluations each
+SAMPLED = [(3, 0), (3, 2), (5, 1), (7, 0), (7, 2)]  # places of the intervals
+STARTS, DECAY, ROUNDS = 12, 1e-3, 200  # starts; weight decay; evaluations each
 EXACT, LAST_ROUNDS = 1e-15, 3000  # of the last fit: tolerance; evaluations
-ALIKE = 1.02  # costs of fits that are as good
-DIGITS = 4  # of the weights kept
+ALIKE = 1.02  # ratio of costs up to which fits count as equally good
+DIGITS = 4  # digits of the weights that are kept
 
 
 class Samples(NamedTuple):
@@ -42,11 +42,12 @@ class Samples(NamedTuple):
 
 
 def quiet(gamma: float, y: float):
-    """Of a target at rest in noise, plots without gaps: c [3], and (sqrt p1 + sqrt p2) / sqrt(c s).
+    """For a target at rest in noise, without missed plots: c [3], and (sqrt p1 + sqrt p2) / sqrt(c
+    s).
 
-    In units of T and sigma_plot; y = alpha T. The filters have settled (their Riccati equations
-    solved), F2 with the share NARROW; their errors are one linear system driven by the plot noise,
-    whose covariance solves a Lyapunov equation.
+    In units of T and sigma_plot; y = alpha T. The filters have settled (their Riccati equations are
+    solved), F2 with the share NARROW. Their errors are one linear system driven by the plot noise.
+    Its covariance solves a Lyapunov equation.
     """
     phi, q = (part[:, 0] for part in model(y, np.ones(1)))
     decaying = np.array([[1, 1, phi[2]], [0, 1, phi[1]], [0, 0, phi[0]]])
@@ -70,18 +71,20 @@ def quiet(gamma: float, y: float):
 
 @cache
 def normalisation() -> tuple[Quiet, np.ndarray]:
-    """The table of c, and the deviations [G, Y, 3] beside it."""
+    """The table of c, and the deviations [G, Y, 3] that belong to it."""
     found = np.array([[quiet(np.exp(g), np.exp(y)) for y in LOG_Y] for g in LOG_GAMMA])
     return Quiet(LOG_GAMMA, LOG_Y, found[:, :, 0]), found[:, :, 1]
 
 
 def label(v):
-    """O [...] wanted for places v [..., 3] between quiet (0) and hard (1)."""
+    """Wanted O [...] for places v [..., 3] between quiet (0) and hard (1)."""
     return 0.02 + 0.96 * (1 - np.prod(1 - 0.72 * v**1.5, -1)) / (1 - 0.28**3)
 
 
 def samples(deviations, neurons: int) -> Samples:
-    """The grid as networks with so many neurons to a node see it; deviations of `normalisation`."""
+    """The grid as seen by networks with `neurons` neurons to a node; deviations from
+    `normalisation`.
+    """
     square = np.concatenate([[0], LOW + LEVELS * (HIGH - LOW)])
     square = np.stack(np.meshgrid(*[square] * INPUTS, indexing='ij'), -1).reshape(-1, INPUTS)
     v, apart = np.maximum(square - LOW, 0) / (HIGH - LOW), np.sqrt(square)
@@ -94,7 +97,7 @@ def samples(deviations, neurons: int) -> Samples:
 def train(
     kind: str, seed: int, progress: Callable[[int, int], None] = lambda done, whole: None
 ) -> Weights:
-    """One of the best of STARTS networks of a kind, fitted by Levenberg and Marquardt's method."""
+    """One of the best of STARTS networks of a kind, fitted by the Levenberg-Marquardt method."""
     neurons = NEURONS[kind]
     table, deviations = normalisation()
     given = samples(deviations, neurons)
@@ -122,7 +125,8 @@ def train(
                 error, net.to_vector(net.draw(form, rng)), slope, method='lm', max_nfev=ROUNDS
             )
         )
-    # The first of the good ones, to its very end: how a processor rounds must make no difference.
+    # Fit the first good one to full convergence, so that the rounding of the processor makes no
+    # difference.
     least = min(fit.cost for fit in fits)
     good = next(fit for fit in fits if fit.cost <= ALIKE * least)
     best = least_squares(

@@ -1,7 +1,7 @@
-"""True tracks of ships by kind of motion, and the plots a radar has of them: to train and judge.
+"""True tracks of ships by kind of motion, and a radar's plots of them, for training and judging.
 
-The radar is at rest at [0, 0]; B tracks of K scans are made at once. Each scan's rotation takes
-SUB_STEPS steps of straight motion, fine beside any turn here.
+The radar is at rest at [0, 0]. B tracks of K scans are made at once. Each rotation of the antenna
+takes SUB_STEPS steps of straight motion, which is fine enough for every turn here.
 """
 
 from typing import NamedTuple
@@ -13,10 +13,10 @@ from ..geometry import polar_to_position, to_range_bearing, unit_vector
 from ..types import Array, Plots
 
 SUB_STEPS = 4
-LONGEST_PHASE = 8  # scans: a manoeuvre's phase ends so many scans after it
-# Where on a hull the plot lies: a slow wander, and jumps to another part or what lies beside it.
-WANDER, WANDER_KEEP = 0.7, 0.85  # deviation, of the hull's; part kept a scan
-JUMP, FAR, BACK = 0.07, 2.5, 0.6  # chance a scan; deviation, of the hull's; chance to be home
+LONGEST_PHASE = 8  # scans; a manoeuvre's phase lasts this long after its end
+# Where on a hull the plot lies: a slow wander, and jumps to another part or to something beside it.
+WANDER, WANDER_KEEP = 0.7, 0.85  # deviation, in hull sizes; share kept from scan to scan
+JUMP, FAR, BACK = 0.07, 2.5, 0.6  # probability; deviation, in hull sizes; probability of return
 
 
 class Ships(NamedTuple):
@@ -35,17 +35,17 @@ class Ships(NamedTuple):
 
 
 class Kind(NamedTuple):
-    """How ships of a kind move; pairs are least and most.
+    """How ships of a kind move. Pairs are minimum and maximum.
 
-    begin    chance a scan that a manoeuvre begins
-    turns    part of the manoeuvres that are turns; the others change speed
+    begin    probability in a scan that a manoeuvre begins
+    turns    share of the manoeuvres that are turns; the others change speed
     speed    m/s
     radius   m, of a turn
-    lateral  m/s^2, most in a turn
-    angle    deg, most, of a turn
+    lateral  m/s^2, maximum in a turn
+    angle    deg, maximum of a turn
     thrust   m/s^2, of a change of speed
     weave    s, periods in which the course swings all the time; None: it does not
-    drift    part of the ships whose speed and course wander slowly
+    drift    share of the ships whose speed and course wander slowly
     """
 
     begin: float
@@ -101,10 +101,10 @@ SMALL_CRAFT = {
 
 
 def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
-    """Ships of kinds [B] (their names) that begin at the ranges [B] m.
+    """Ships of the kinds [B] (names) that begin at the ranges [B] m.
 
-    steps [B, K] s: time from the scan before; fastest m/s, of all or of each [B]; kinds: what
-    the names mean.
+    steps [B, K] s: time since the previous scan; fastest m/s, of all or of each [B]; kinds: the
+    kinds by name.
     """
     count, scans = steps.shape
     every = [kinds[name] for name in names]
@@ -136,7 +136,7 @@ def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
     phases = rng.uniform(0, 2 * np.pi, (3, count))
     stop = np.minimum(low, 0.3)
 
-    rate, left = np.zeros(count), np.zeros(count)  # of turns: rad/s, rad to go
+    rate, left = np.zeros(count), np.zeros(count)  # of turns: rad/s, rad left
     push, goal = np.zeros(count), speed.copy()  # m/s^2 and m/s
     positions, velocities = np.empty((2, scans, count, 2))
     manoeuvre = np.empty((scans, count), bool)
@@ -174,7 +174,9 @@ def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
 
 
 def phase(manoeuvre):
-    """Whether each scan [B, K] lies in a manoeuvre or so shortly after that it is still felt."""
+    """Whether each scan [B, K] lies in a manoeuvre, or so shortly after it that it still has an
+    effect.
+    """
     out = manoeuvre.copy()
     for after in range(1, LONGEST_PHASE + 1):
         out[:, after:] |= manoeuvre[:, :-after]
@@ -182,11 +184,11 @@ def phase(manoeuvre):
 
 
 class RunRadar(NamedTuple):
-    """What a radar is like, [B] each: every track may have one of its own.
+    """The radar of each track, [B] each.
 
     range_sigma m, bearing_sigma rad: as stated to the tracker
-    detection   chance of a plot a scan
-    outliers    part of the plots with noise of five times the deviation on top
+    detection   probability of a plot in a scan
+    outliers    share of the plots with additional noise of five times the deviation
     truly       true deviation over the stated one
     period      s, as stated to the tracker
     """
@@ -202,8 +204,8 @@ class RunRadar(NamedTuple):
 def observe(ships: Ships, radar: RunRadar, rng, hull=None) -> tuple[list[Plots], NDArray[np.bool_]]:
     """Plots of every ship, a list over the scans, and which were detected [B, K].
 
-    The first two scans always are. hull [B] m: how far the plots wander and jump over the ship,
-    along and across the line of sight; not at all by default.
+    The first two scans are always detected. hull [B] m: how far the plots wander and jump over the
+    ship, along and across the line of sight; by default not at all.
     """
     shape = ships.time.shape
     distance, bearing = to_range_bearing(ships.position)

@@ -1,6 +1,6 @@
-"""Estimators over many tracks at once, each plot given to its own track: no association.
+"""Runs estimators on many tracks at once. Each plot is given to its own track: no association.
 
-Errors are those of the expectation one scan ahead, along and across the line of sight, positions
+Errors are those of the expectation one scan ahead, along and across the line of sight: positions
 in deviations sigma of the plots, velocities in m/s.
 """
 
@@ -15,15 +15,15 @@ from ..geometry import unit_vector
 from ..types import Array, take
 from .ship_tracks import RunRadar, Ships, observe, phase
 
-SETTLED = 20  # scans that do not count
-GATE, REFUSALS = 16.0, 2  # squared distance; plots refused in a row, at most
+SETTLED = 20  # first scans, left out
+GATE, REFUSALS = 16.0, 2  # squared distance; largest number of plots refused in a row
 
 
 class TrackTrial(NamedTuple):
     """B tracks of K scans and their plots.
 
-    ships, radar; plots: K of B rows; seen [B, K]; counts [B, K]: scans that count;
-    phase [B, K]: in a manoeuvre, or just after.
+    ships, radar; plots: K of B rows; seen [B, K]; counts [B, K]: scans that count; phase [B, K]: in
+    a manoeuvre, or just after it.
     """
 
     ships: Ships
@@ -35,8 +35,9 @@ class TrackTrial(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """position [B, K] squared errors, sigma^2, of both axes together; velocity likewise,
-    m^2/s^2; nis [B, K] of the plots; state: the estimator's after the last scan."""
+    """position [B, K] squared errors, sigma^2, sum of both axes; velocity likewise, m^2/s^2; nis
+    [B, K] of the plots; state: the estimator's after the last scan.
+    """
 
     position: Array
     velocity: Array
@@ -53,10 +54,10 @@ def trial(ships: Ships, radar: RunRadar, rng) -> TrackTrial:
 
 
 def run(estimator: Estimator, on: TrackTrial, gated: bool, watch=None) -> Outcome:
-    """One estimator over the trial.
+    """Runs one estimator over the trial.
 
-    gated  refuse plots far off, as the bank of `gwnn` does by itself
-    watch  called after each scan k with (k, state); may return another estimator to go on with
+    gated  refuse plots far off, as the bank of `gwnn` always does
+    watch  called after each scan k with (k, state); may return another estimator to continue with
     """
     ships, plots = on.ships, on.plots
     count, scans = ships.time.shape
@@ -84,7 +85,7 @@ def run(estimator: Estimator, on: TrackTrial, gated: bool, watch=None) -> Outcom
 
 
 def _in_sigma(off, place, radar):
-    """Squared length [B] of offsets [B, 2] m in the plots' deviations at the places [B, 2] m."""
+    """Squared length [B] of offsets [B, 2] m, in the plots' deviations at the places [B, 2] m."""
     distance = np.hypot(*place.T)
     line = unit_vector(np.arctan2(*place.T))
     along = (off * line).sum(1) / radar.range_sigma
@@ -101,12 +102,14 @@ class Ratio(NamedTuple):
 
 
 def rms(square, chosen) -> float:
-    """Root mean square an axis of squared errors [B, K] where chosen [B, K]."""
+    """Root mean square per axis of squared errors [B, K] where chosen [B, K]."""
     return float(np.sqrt(square[chosen].mean() / 2))
 
 
 def ratio(square, against, chosen, rng, resamples: int = 500) -> Ratio:
-    """RMS of `square` over that of `against` [B, K], where chosen [B, K]; tracks resampled."""
+    """RMS of `square` over that of `against` [B, K], where chosen [B, K]. The interval resamples
+    tracks.
+    """
     has = chosen.any(1)
     one, other = (np.where(chosen, s, 0.0).sum(1)[has] for s in (square, against))
     pick = rng.integers(0, len(one), (resamples, len(one)))

@@ -1,6 +1,6 @@
-"""The simulated traffic and radars that filters are tuned and networks are trained on.
+"""The simulated traffic and radars for tuning filters and training networks.
 
-What they are like is data, by vessel class (`WATERS`).
+They are described by data, for each vessel class (`WATERS`).
 """
 
 from typing import NamedTuple
@@ -14,30 +14,31 @@ from ..types import Array, put, take
 from . import ship_tracks
 from .ship_tracks import Kind, RunRadar, Ships
 
-SPEED = 25.0  # m/s, the fastest target the tracker is told of
-# Radars under hard conditions: least and most of what is drawn evenly, and in what part of them.
+SPEED = 25.0  # m/s, maximum target speed given to the tracker
+# Radars under hard conditions: limits of uniform draws, and the share of such radars to which they
+# apply.
 DETECTION = (0.7, 1.0)
 OUTLIERS, WITH_OUTLIERS = (0.0, 0.06), 0.5
-TRULY, WRONGLY_STATED = (0.5, 2.2), 0.4  # by its logarithm
-JITTER = (0.0, 0.06)  # deviation of a scan's time over the time
-TRIES = 50  # moments at which stretches of a scenario begin
-TURNING = 0.04  # m/s^2, acceleration that counts as manoeuvre
+TRULY, WRONGLY_STATED = (0.5, 2.2), 0.4  # drawn by its logarithm
+JITTER = (0.0, 0.06)  # deviation of a scan's time, relative to the time
+TRIES = 50  # start times that are tried for stretches of a scenario
+TURNING = 0.04  # m/s^2, acceleration that counts as a manoeuvre
 
 
 class Radars(NamedTuple):
-    """Radars of one sort; pairs are least and most of what is drawn evenly.
+    """Radars of one sort. Pairs are minimum and maximum of uniform draws.
 
-    share          part of the tracks that they see
+    share          share of the tracks that they see
     range_sigma    m
     bearing_sigma  deg
-    ranges         m, at which tracks begin; drawn by its logarithm
+    ranges         m, at which tracks begin; drawn by the logarithm
     nearest        m; tracks that come nearer are left out
     rpm            antenna rate
-    hard           part of them under hard conditions
+    hard           share of them under hard conditions
     hard_rpm       antenna rate of those
-    fastest        m/s, of the ships at most
+    fastest        m/s, maximum speed of the ships
     hull           m, how far the plots wander and jump over the ship
-    detection      chance of a plot a scan, but under hard conditions
+    detection      probability of a plot in a scan, except under hard conditions
     """
 
     share: float
@@ -54,9 +55,9 @@ class Radars(NamedTuple):
 
 
 class Waters(NamedTuple):
-    """Where to learn: kinds of ships by name, all as often; sorts of radars, at most two.
+    """Where to learn: kinds of ships by name, equally often; sorts of radars, at most two.
 
-    scenario  whose targets' tracks are one kind more
+    scenario  its targets' tracks are one more kind
     """
 
     kinds: dict[str, Kind]
@@ -65,7 +66,7 @@ class Waters(NamedTuple):
 
     @property
     def names(self) -> list[str]:
-        """Of all kinds, in the order of their numbers."""
+        """Names of all kinds, in the order of their numbers."""
         return [*self.kinds, *([] if self.scenario is None else [f'scenario {self.scenario.name}'])]
 
 
@@ -132,7 +133,7 @@ class Traffic(NamedTuple):
 
 
 def draw(waters: Waters, kind, scans: int, rng) -> Traffic:
-    """Tracks of the kinds [B] (numbers), but for those that come too near their radar."""
+    """Tracks of the kinds [B] (numbers), without those that come too near their radar."""
     count = len(kind)
     share = np.array([one.share for one in waters.radars])
     sort = np.searchsorted(np.cumsum(share / share.sum())[:-1], rng.random(count), 'right')
@@ -179,9 +180,9 @@ def draw(waters: Waters, kind, scans: int, rng) -> Traffic:
 
 
 def _targets(scenario: Scenario, steps, rng) -> Ships:
-    """Stretches of the tracks of a scenario's targets, seen from where own ship was half-way.
+    """Stretches of the tracks of a scenario's targets, seen from own ship's place half-way.
 
-    Raises ValueError where no target is there for long enough.
+    Raises ValueError if no target exists for long enough.
     """
     time = np.cumsum(steps, 1) - steps[:, :1]
     paths, longest = scenario.fleet.paths, time[:, -1].max()

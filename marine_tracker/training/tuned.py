@@ -1,4 +1,4 @@
-"""Settings of simpler filters that `marine_tracker tune` found."""
+"""Settings of simpler filters, found by `marine_tracker tune`."""
 
 from typing import NamedTuple
 
@@ -10,8 +10,8 @@ from ..estimators.imm import Modes
 class Tuned(NamedTuple):
     """Simpler rivals: two modes CV/CV, one mode CV, CS-Kalman.
 
-    Tuned like the IMM, for every kind of motion and phase alike (`marine_tracker tune cv_cv`, `cv`
-    and `cs`).
+    Tuned as the IMM, with equal weight for every kind of motion and phase (`marine_tracker tune
+    cv_cv`, `cv` and `cs`).
     """
 
     cv_cv: Modes

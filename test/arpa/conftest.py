@@ -28,7 +28,7 @@ def situate():
         own_position=(0.0, 0.0),
         own_velocity=(0.0, 0.0),
         heading=0.0,
-        at_rest=False,
+        harmless=False,
         limits=None,
         sigma=(10.0, 0.05),
     ):
@@ -72,7 +72,7 @@ def situate():
             np.broadcast_to(np.asarray(reason, np.int8), count),
             position,
             approach(motion, own, limits.cpa, limits.tcpa),
-            np.broadcast_to(at_rest, count),
+            np.broadcast_to(harmless, count),
             zones,
             own,
             limits,

@@ -176,7 +176,7 @@ def test_at_anchor_among_anchored_ships_no_alarm_nags(bridge):
     rng, one = np.random.default_rng(3), bridge()
     position = rng.uniform(-500, 500, (20, 2))
     for _ in range(100):
-        assert one.scan(position, rng.normal(0, 0.3, (20, 2)), at_rest=True) == []
+        assert one.scan(position, rng.normal(0, 0.3, (20, 2)), harmless=True) == []
 
 
 def test_when_own_ship_comes_to_rest_its_dangers_end(bridge):
@@ -184,7 +184,7 @@ def test_when_own_ship_comes_to_rest_its_dangers_end(bridge):
     for _ in range(4):
         one.scan([[0.0, 900.0]], own_velocity=[0.0, 5.0])
     assert one.acknowledge() == [('danger', 1, ACKNOWLEDGED)]
-    told = [one.scan([[0.0, 900.0]], at_rest=True) for _ in range(6)]
+    told = [one.scan([[0.0, 900.0]], harmless=True) for _ in range(6)]
     assert sum(told, []) == [('danger', 1, NORMAL)]
 
 
@@ -432,6 +432,8 @@ def test_every_kind_has_words_a_priority_and_a_rule():
         0.0 * kinds,
         np.zeros((count, 2)),
         np.full((count, alerts.VALUES), 1.0),
+        np.full(count, np.nan),
+        np.full((count, 2), np.nan),
     )
     assert len(set(text(every, zones.parse('')))) == count
     unknown = every._replace(values=np.full((count, alerts.VALUES), np.inf))

@@ -89,7 +89,7 @@ def test_what_is_told_of_the_targets_is_true(sea):
     )
     assert picture.danger[meets] == DANGEROUS
     assert approach.relative_speed[rows[BESIDE]] < 0.3
-    assert picture.motion.stationary[rows[ANCHORED]] and not picture.at_rest.any()
+    assert picture.motion.stationary[rows[ANCHORED]] and not picture.harmless.any()
     assert not picture.motion.velocity[rows[ANCHORED]].any()
     assert (picture.overlap > 1).all()
 
@@ -211,7 +211,7 @@ def test_ships_at_anchor_raise_no_danger_in_an_own_ship_at_anchor():
         ]
         for _, _, picture in run(simulate(ships, 180, own_speed=0, seed=seed, pd=0.9)):
             raised += (picture.changed.kind == alarms.DANGER).sum()
-        resting += picture.at_rest.sum()
+        resting += picture.harmless.sum()
     assert raised == 0 and resting == 48
 
 
@@ -263,5 +263,5 @@ def test_tracks_whose_first_plots_went_by_unseen_are_taken_up(sea):
 
 
 def test_wrong_zones_are_refused(sea):
-    with pytest.raises(ValueError, match='zones are not YAML'):
+    with pytest.raises(ValueError, match='zones, line 1 is not YAML'):
         Arpa(ArpaParameters(zones='{'), sea[2])

@@ -113,14 +113,7 @@ def watch():
             now,
         )
         past = past_positions.step(
-            past,
-            report.tracks.id,
-            report.tracks.first_time,
-            shown.position,
-            shown.velocity,
-            own.position,
-            own.velocity,
-            now,
+            past, report.tracks.id, report.tracks.first_time, shown, own, now
         )
         log += [(now, EVENTS[kind], '', place) for kind, place in zip(events.kind, events.position)]
         log += [

@@ -114,8 +114,8 @@ def test_a_range_of_nothing_is_not_written_as_the_zero_that_means_switched_off()
 @pytest.mark.parametrize(
     ('columns', 'named'),
     [
-        ({'number': 0}, 'number of a target is 0; it must be 1 to 99'),
-        ({'number': 100}, 'number of a target is 100'),
+        ({'number': 0}, 'number of a target is 0; it must be 1 to 999'),
+        ({'number': 1000}, 'number of a target is 1000'),
         ({'status': 'X'}, "status of a target is 'X'; it must be L, Q, T"),
         ({'acquired': 'auto'}, "acquired of a target is 'auto'; it must be A, M, R"),
     ],
@@ -251,6 +251,25 @@ def test_tll_gives_the_place_to_a_few_decimetres():
     parsed = pynmea2.parse(text, check=True)
     assert parsed.latitude == pytest.approx(54.123456, abs=1e-6)
     assert parsed.longitude == pytest.approx(-10.987654, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ('longitude', 'said'),
+    [
+        (179.9999991, '17959.9999,E'),
+        (179.99999999, '18000.0000,E'),
+        (180.0, '18000.0000,W'),
+        (-180.0, '18000.0000,W'),
+        (180.0257, '17958.4580,W'),
+        (-179.5, '17930.0000,W'),
+    ],
+)
+def test_a_longitude_beyond_180_is_told_as_the_same_one_west(longitude, said):
+    assert f',{said},' in nmea.tll(targets(), [-17.0], [longitude], NOON)[0]
+    assert f',{said},' in nmea.rmc(nmea.OwnShipData(-17.0, longitude), NOON)
+    told = delta((-17.0, longitude))[1]['navigation.position']['longitude']
+    assert -180 <= told < 180
+    assert (told - longitude) % 360 == pytest.approx(0, abs=1e-9)
 
 
 def test_own_ship_sentences():

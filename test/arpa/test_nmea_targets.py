@@ -103,6 +103,18 @@ def test_numbers_up_to_99_are_kept_and_larger_ones_take_the_lowest_free_for_life
     assert slots(held, [101, 102, 3]) == {101: 3, 102: 1, 3: 2}  # a tracker begun anew
 
 
+def test_three_digits_tell_more_targets_each_by_its_own_number():
+    told, now = word(nothing_told(), targets(7, 107, 640, -45), greatest=750)
+    assert {n: name for n, (name, _, _) in said(now).items()} == {
+        7: 'TT07',
+        107: 'TT107',
+        640: 'TT640',
+        750: 'TT-45',  # being acquired: out of the way
+    }
+    _, now = word(told, targets(*range(1, 761)), greatest=750)
+    assert len(said(now)) == 750 and now.waiting == 11
+
+
 def test_more_targets_than_numbers_wait_until_one_is_free():
     held = slots({}, range(1, 151))
     assert held == {n: n for n in range(1, 100)}

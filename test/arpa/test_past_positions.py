@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
 
+from marine_tracker.arpa.cpa import OwnMotion
+from marine_tracker.arpa.motion import Motion
 from marine_tracker.arpa.past_positions import begin, relative, step
 
 PERIOD = 60 / 22
@@ -23,14 +25,15 @@ def follow(past, ids, now, first_time=0.0):
         if ids
         else (np.zeros((0, 2)), np.zeros((0, 2)))
     )
+    none = np.zeros(len(ids), np.int64)
     return step(
         past,
         np.array(ids, np.int64),
         np.broadcast_to(first_time, len(ids)),
-        position,
-        velocity,
-        own_at(now),
-        OWN_VELOCITY,
+        Motion(
+            position, velocity, np.zeros((len(ids), 4, 4)), none, 0.0 * none, none > 0, none > 0
+        ),
+        OwnMotion(own_at(now), OWN_VELOCITY, 0.0, np.zeros((4, 4))),
         now,
     )
 

@@ -45,7 +45,7 @@ def test_an_uncertain_miss_is_nearly_dangerous(situate):
 def test_ships_at_rest_are_no_danger_to_each_other(situate):
     position, velocity = [[300.0, 100.0]], [[-0.8, -0.3]]  # noise, as of an anchored ship
     assert situate(position, velocity, limits=LIMITS).danger.item() == DANGEROUS
-    assert situate(position, velocity, at_rest=True, limits=LIMITS).danger.item() == SAFE
+    assert situate(position, velocity, harmless=True, limits=LIMITS).danger.item() == SAFE
 
 
 def test_without_relative_motion_there_is_no_danger(situate):

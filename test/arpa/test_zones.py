@@ -199,11 +199,15 @@ def test_the_key_tells_whether_a_zone_is_still_the_same():
 @pytest.mark.parametrize(
     ('text', 'told'),
     [
-        ('[', 'zones are not YAML'),
+        ('[', 'zones, line 1 is not YAML'),
         ('ring', "zones are 'ring'; they must be a list"),
         ('{name: ring}', 'they must be a list'),
         ('[ring]', "zone 1 is 'ring'; it must be a mapping"),
         ('[{kind: guard, range_m: [0, 1]}]', 'zone 1 has no name'),
+        (
+            '[{name: ' + 'z' * 70_000 + ', kind: guard, range_m: [0, 1]}]',
+            'zone 1 has a name of 70000 characters; it must have at most 80',
+        ),
         (
             '[{name: a, kind: guard, range_m: [0, 1]}, {name: a, kind: guard, range_m: [0, 1]}]',
             'two zones have the name a',

@@ -14,7 +14,7 @@ def test_where_the_core_works_the_exit_code_is_0(command):
         'numpy',
         'scipy',
         'PyWavelets',
-        'PyYAML',
+        'ruamel.yaml',
         'rich',
         'matplotlib',
         'configuration',
@@ -46,7 +46,7 @@ def test_a_required_package_that_cannot_be_imported_is_exit_code_1(
     command, tmp_path, module, package
 ):
     # A broken installation, found before the real one.
-    (tmp_path / f'{module}.py').write_text('raise RuntimeError("half installed")')
+    (tmp_path / f'{module.split(".")[0]}.py').write_text('raise RuntimeError("half installed")')
     source = doctor.config.path().parent
     done = command('doctor', '--listen', '0', PYTHONPATH=f'{tmp_path}:{source}')
     assert done.returncode == 1 and done.stderr == ''

@@ -144,7 +144,7 @@ def test_a_nodes_parameter_file_is_taken_too(monkeypatch, folder):
         (['--set', 'range_sigma_m=-3'], 'parameter range_sigma_m is -3'),
         (['--set', 'range_sigma_m=far'], "parameter range_sigma_m is 'far'"),
         (['--set', 'range_sigma_m'], '--set range_sigma_m: it must be NAME=VALUE'),
-        (['--set', 'range_sigma_m=['], '--set range_sigma_m=[: its value is not YAML'),
+        (['--set', 'range_sigma_m=['], '--set range_sigma_m, line 1 is not YAML'),
         (['--seed', '-1'], '--seed is -1; it must not be negative'),
         (['--parameters', 'none.yaml'], 'none.yaml: no such file or directory'),
     ],

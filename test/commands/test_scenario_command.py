@@ -1,4 +1,8 @@
+import json
+
+import numpy as np
 import pytest
+from pyproj import Geod
 
 from marine_tracker.cli import main
 from marine_tracker.recording import csv_folder
@@ -55,6 +59,34 @@ def test_write_makes_a_recording_that_repeats_to_the_byte(tmp_path, capsys):
     assert recording.tracker_parameters == pytest.approx(
         scenario.load('clean').tracker_parameters()
     )
+
+
+@pytest.mark.parametrize('start', [(-16.8, 179.99), (79.5, -179.98)])
+def test_ships_by_ais_over_the_date_line_are_written_tracked_and_scored(tmp_path, start):
+    """From AIS file to score: own ship goes over the line, the other comes towards her."""
+    earth, lines = Geod(ellps='WGS84'), ['time_s,vessel,lat_deg,lon_deg']
+    towards = 90.0 if start[1] > 0 else 270.0
+    for time in np.arange(0.0, 310, 10):
+        for vessel, along in (('own', 9 * time), ('other', 3000 - 6 * time)):
+            lon, lat, _ = earth.fwd(*start[::-1], towards, along)
+            lines.append(f'{time:g},{vessel},{lat:.9f},{lon:.9f}')
+    (tmp_path / 'ais.csv').write_text('\n'.join(lines) + '\n')
+    (tmp_path / 'line.yaml').write_text(
+        'duration_s: 180\nais: {file: ais.csv}\nown_ship: {vessel: own}\n'
+    )
+    scene, made, tracks = (str(tmp_path / name) for name in ('line.yaml', 'made', 'tracks.csv'))
+    assert main(['scenario', 'write', scene, made]) == 0
+    assert json.loads((tmp_path / 'made' / 'notes.json').read_text())['origin'] == list(start)
+    assert main(['replay', made, '--out', tracks]) == 0
+    figures = str(tmp_path / 'figures.json')
+    given = ['--ais', str(tmp_path / 'ais.csv'), '--json', figures]
+    assert main(['score', made, tracks, *given]) == 0
+    found = {
+        one['name']: one['value']
+        for one in json.loads((tmp_path / 'figures.json').read_text())['figures']
+    }
+    assert found['vessels'] == 1 and found['held'] > 0.9 and found['strangers'] == 0
+    assert abs(found['range_error_mean_m']) < 10 and abs(found['bearing_error_mean_deg']) < 0.3
 
 
 def test_unknown_scenario_ends_with_one_line(capsys):

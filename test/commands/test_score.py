@@ -1,11 +1,10 @@
 import json
 
-import numpy as np
 import pytest
 
 from marine_tracker import cli
 from marine_tracker.evaluation import ais_score, metrics
-from marine_tracker.geometry import EARTH_RADIUS
+from marine_tracker.geodesy import LocalFrame
 
 COLUMNS = 'time_s,track,status,north_m,east_m,vel_north_mps,vel_east_mps\n'
 
@@ -89,8 +88,8 @@ def test_a_recording_without_truth_and_a_bad_track_file_are_one_line_errors(caps
 @pytest.fixture
 def ais(folder):
     """The target's own reports, every 4 s, of a frame whose zero lies at 55 N 7 E."""
-    degree = np.degrees(1 / EARTH_RADIUS)
-    lines = [f'{t},boat,{55 + (500 + 4 * t) * degree:.9f},7' for t in range(-8, 28, 4)]
+    frame = LocalFrame(55, 7)
+    lines = [f'{t},boat,{frame.to_geodetic([0, 500 + 4 * t])[0]:.9f},7' for t in range(-8, 28, 4)]
     (folder / 'ais.csv').write_text('time_s,vessel,lat_deg,lon_deg\n' + '\n'.join(lines) + '\n')
     return folder / 'ais.csv'
 
@@ -118,7 +117,7 @@ def test_what_ais_lacks_is_a_one_line_error(capsys, folder, ais):
     for arguments, message in (
         ([tracks, '--ais', str(ais)], 'does not tell where on Earth it is'),
         ([tracks, tracks], '2 track files are given; without --ais it must be one'),
-        ([tracks, '--ais', 'none.csv', '--origin-deg', '55', '7'], 'none.csv cannot be read'),
+        ([tracks, '--ais', 'none.csv', '--origin-deg', '55', '7'], 'none.csv does not exist'),
         (
             [tracks, '--ais', str(ais), '--origin-deg', '55', '7', '--cutoff', '-1'],
             'cutoff_m is -1.0; it must be a number, above 0',

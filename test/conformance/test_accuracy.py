@@ -81,8 +81,7 @@ def test_limits_of_msc_192_are_shares_of_great_speeds():
 def test_runs_do_not_depend_on_the_number_of_processes():
     trials = [imo.a823_trial(4, 60.0)]
     (one,), (two,) = (
-        imo.run(trials, ('cs_kalman',), imo.CHUNK + 2, 5, processes=processes)
-        for processes in (1, 2)
+        imo.run(trials, ('cs_kalman',), imo.CHUNK + 2, 5, workers=processes) for processes in (1, 2)
     )
     assert one.found.shape == (imo.CHUNK + 2, 2, 6)
     np.testing.assert_array_equal(one.found, two.found)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators import cs_kalman, imm
-from marine_tracker.estimators.gwnn import bank, gwnn, inputs
+from marine_tracker.estimators.gwnn import bank, gwnn, inputs, monitor
 from marine_tracker.gaussian import linear_modes
 from marine_tracker.geometry import polar_to_position, to_range_bearing
 from marine_tracker.networks import gwnn_weights
@@ -180,7 +180,9 @@ class TestInputs:
 class TestFusion:
     def test_a_silent_network_is_roughly_the_imm(self, weights):
         on = make_trial('mix', count=100)
-        own = track_trials.run(gwnn.gwnn(silent(weights), SPEED, PERIOD, fall=np.inf), on, False)
+        own = track_trials.run(
+            gwnn.gwnn(silent(weights), SPEED, PERIOD, trust=monitor.Trust(fall=np.inf)), on, False
+        )
         base = track_trials.run(imm.imm(bank.TUNED_ON_ALL, SPEED), on, True)
         assert track_trials.rms(own.position, on.counts) == pytest.approx(
             track_trials.rms(base.position, on.counts), rel=0.05
@@ -191,13 +193,13 @@ class TestFusion:
         [('ship', bank.TUNED_ON_ALL), ('small_craft', imm.PRESETS['small_craft'])],
     )
     def test_warming_up_a_track_is_the_imm(self, vessel_class, modes):
-        on = make_trial('mix', scans=gwnn.WARM - 1)
+        on = make_trial('mix', scans=monitor.WARM - 1)
         network = gwnn.gwnn(
             gwnn.weights('', vessel_class), SPEED, PERIOD, vessel_class=vessel_class
         )
         base = imm.imm(modes, SPEED)
         ours, theirs = drive(network, on), drive(base, on)
-        assert (gwnn.account(ours).status == gwnn.WARMUP).all()
+        assert (gwnn.account(ours).state == monitor.WARMUP).all()
         time = on.plots[-1].time + 2.0
         for one, other in zip(network.extrapolate(ours, time), base.extrapolate(theirs, time)):
             np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-6)
@@ -298,14 +300,14 @@ class TestMonitor:
         sound = gwnn.gwnn(weights, SPEED, PERIOD)
         broken = gwnn.gwnn(off_by(weights, 3.0), SPEED, PERIOD)
         state = drive(sound, on, scans=range(40))
-        assert (state.monitor.status == gwnn.GWNN).mean() > 0.9
+        assert (state.monitor.status == monitor.GWNN).mean() > 0.9
         state = drive(broken, on, state, range(40, 60))
         account = gwnn.account(state)
-        assert (account.status == gwnn.FALLBACK).mean() > 0.9
-        assert gwnn.REASONS[account.reason[account.status == 2][0]].startswith('expectations')
-        assert (account.rho[account.status == 2] > 1).mean() > 0.9
+        assert (account.state == monitor.FALLBACK).mean() > 0.9
+        assert monitor.REASONS[account.reason[account.state == 2][0]].startswith('expectations')
+        assert (account.rho[account.state == 2] > 1).mean() > 0.9
         state = drive(sound, on, state, range(60, 120))
-        assert (state.monitor.status == gwnn.GWNN).mean() > 0.8
+        assert (state.monitor.status == monitor.GWNN).mean() > 0.8
 
     def test_fallen_back_a_track_is_that_of_cs_kalman(self, weights):
         on = make_trial('steady', scans=50)
@@ -314,7 +316,7 @@ class TestMonitor:
         alone = cs_kalman.cs_kalman(SHIP.settings.manoeuvre, SPEED)
         theirs = drive(alone, on)
         fallen = np.flatnonzero(
-            (state.monitor.status == gwnn.FALLBACK) & (state.bank.time == on.plots[-1].time)
+            (state.monitor.status == monitor.FALLBACK) & (state.bank.time == on.plots[-1].time)
         )
         assert len(fallen) > 0.9 * SHARE
         time = on.plots[-1].time + PERIOD
@@ -337,8 +339,8 @@ class TestMonitor:
             state = drive(network, on)
             ahead = network.extrapolate(state, on.plots[-1].time + PERIOD)
         account = gwnn.account(state)
-        assert (account.status == gwnn.FALLBACK).all()
-        assert {gwnn.REASONS[i] for i in account.reason} == {'network output is not a number'}
+        assert (account.state == monitor.FALLBACK).all()
+        assert {monitor.REASONS[i] for i in account.reason} == {'network output is not a number'}
         for array in ahead:
             assert np.isfinite(array).all()
         assert np.isfinite(state.output).all()
@@ -346,7 +348,7 @@ class TestMonitor:
         sound = gwnn.gwnn(weights, SPEED, PERIOD)
         later = make_trial('mix', scans=100)
         state = drive(sound, later, state, range(60, 100))
-        assert (state.monitor.status == gwnn.GWNN).mean() > 0.8
+        assert (state.monitor.status == monitor.GWNN).mean() > 0.8
 
     def test_missed_plots_are_no_failure(self, weights):
         on = make_trial('steady', scans=60, detection=0.7)
@@ -355,7 +357,7 @@ class TestMonitor:
             gwnn.gwnn(weights, SPEED, PERIOD),
             on,
             False,
-            lambda k, state: fallen.append(state.monitor.status == gwnn.FALLBACK),
+            lambda k, state: fallen.append(state.monitor.status == monitor.FALLBACK),
         )
         assert np.mean(fallen) < 0.02
 
@@ -420,6 +422,9 @@ class TestWeights:
             ({'fusion_bias': lambda a: a + 1}, 'checksum does not match'),
             ({'fusion_bias': None}, 'right arrays: fusion_bias'),
             ({'manifest': {'format': 99}}, 'format 99'),
+            ({'manifest': {'layouts': None}}, 'the layout of fusion is None'),
+            ({'manifest': {'layouts': {'fusion': [2, 3]}}}, r'the layout of fusion is \[2, 3\]'),
+            ({'manifest': {'layouts': {'fusion': ['x'] * 4}}}, 'the layout of fusion is'),
         ],
     )
     def test_tampering_is_noticed(self, weights, tmp_path, change, message):
@@ -484,7 +489,10 @@ def test_states_begin_and_end_at_any_time(weights):
     plots = take(on.plots[-1], np.array([3, 3]))
     plots = plots._replace(time=plots.time + PERIOD)
     after = network.update(both, plots, rows)
-    assert after.monitor.status[3] == gwnn.GWNN and after.monitor.status[SHARE + 3] == gwnn.WARMUP
+    assert (
+        after.monitor.status[3] == monitor.GWNN
+        and after.monitor.status[SHARE + 3] == monitor.WARMUP
+    )
     again = put(after, rows, take(both, rows))
     for one, other in zip(again.bank, both.bank):
         np.testing.assert_array_equal(one, other)
@@ -499,7 +507,11 @@ class TestLearning:
         on = make_trial('mix', seed=80, count=60, scans=90)
         plain, learned = (
             track_trials.run(
-                gwnn.gwnn(biased, SPEED, PERIOD, fall=np.inf, learning=learning), on, False
+                gwnn.gwnn(
+                    biased, SPEED, PERIOD, trust=monitor.Trust(fall=np.inf), learning=learning
+                ),
+                on,
+                False,
             )
             for learning in (False, True)
         )

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from pyproj import Geod
 
 from marine_tracker.evaluation import ais_score
 from marine_tracker.evaluation.replay import write_tracks
-from marine_tracker.geometry import geodetic_from_local
+from marine_tracker.geodesy import LocalFrame
 from marine_tracker.recording import csv_folder, track_file
 from marine_tracker.recording.csv_folder import Recording
 from marine_tracker.recording.track_file import TrackRows
@@ -31,7 +32,7 @@ def ais_file(tmp_path):
     def make(vessels, name='ais.csv'):
         lines = ['time_s,vessel,lat_deg,lon_deg']
         for vessel, (time, east, north) in vessels.items():
-            latitude, longitude = geodetic_from_local(np.stack([east, north], -1), *ORIGIN)
+            latitude, longitude = LocalFrame(*ORIGIN).to_geodetic(np.stack([east, north], -1))
             lines += [
                 f'{t:.3f},{vessel},{a:.9f},{o:.9f}'
                 for t, a, o in zip(time, latitude, longitude, strict=True)
@@ -111,6 +112,25 @@ def test_a_known_offset_is_found_in_range_bearing_and_radial_speed(recording, ai
     assert found['bearing_error_max_deg'] == pytest.approx(0, abs=1e-3)
     assert found['ahead_s'] == pytest.approx(25 / SPEED, abs=0.02)
     assert list(found) == list(ais_score.FIGURES)
+
+
+@pytest.mark.parametrize('origin', [(-17.0, 179.9999), (81.0, -179.9999), (84.5, 20.0)])
+def test_scores_are_the_same_across_the_date_line_and_far_north(recording, tmp_path, origin):
+    """Reports along the geodesic that leaves the origin at 3 deg; tracks are 25 m too far."""
+    bearing, lines = 3.0, ['time_s,vessel,lat_deg,lon_deg']
+    for time in np.arange(-16.0, SCANS * PERIOD + 40, 8.0):
+        lon, lat, _ = Geod(ellps='WGS84').fwd(*origin[::-1], bearing, north(time))
+        lines.append(f'{time},ship,{lat:.9f},{lon:.9f}')
+    (tmp_path / 'ais.csv').write_text('\n'.join(lines) + '\n')
+    rows = tracks(('a', range(SCANS), (0.0, 25.0), 0.0))
+    sin, cos = np.sin(np.radians(bearing)), np.cos(np.radians(bearing))
+    turned = rows._replace(
+        position=rows.position @ [[cos, -sin], [sin, cos]],
+        velocity=rows.velocity @ [[cos, -sin], [sin, cos]],
+    )
+    found = ais_score.score(recording, [turned], tmp_path / 'ais.csv', origin)
+    assert found['range_error_mean_m'] == pytest.approx(25, abs=0.1)
+    assert found['bearing_error_max_deg'] == pytest.approx(0, abs=1e-3)
 
 
 def test_bearings_count_clockwise(recording, ais_file):
@@ -245,7 +265,7 @@ def scene(tmp_path_factory):
         lines = ['time_s,vessel,lat_deg,lon_deg']
         for vessel, way in ways.items():
             place = np.stack(way, -1) + rng.normal(0, noise, (len(time), 2))
-            latitude, longitude = geodetic_from_local(place, *ORIGIN)
+            latitude, longitude = LocalFrame(*ORIGIN).to_geodetic(place)
             lines += [
                 f'{t + late:.3f},{vessel},{a:.9f},{o:.9f}'
                 for t, a, o in zip(time, latitude, longitude)

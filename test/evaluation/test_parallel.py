@@ -2,6 +2,8 @@
 
 import operator
 import os
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -33,3 +35,19 @@ def test_processes_use_one_thread_each_and_the_setting_is_put_back(monkeypatch):
 def test_what_a_part_raises_is_raised():
     with pytest.raises(ZeroDivisionError):
         parallel.run([Job(operator.truediv, (1, 0)), Job(pow, (2, 3))], 1, lambda *_: None)
+
+
+def test_any_executor_runs_the_parts_and_stays_open():
+    told = []
+    with ThreadPoolExecutor(3) as executor:
+        found = parallel.run(
+            [Job(divmod, (k, 4)) for k in range(9)] + [Job(threading.get_ident, ())],
+            executor,
+            lambda done, whole: told.append((done, whole)),
+        )
+        with pytest.raises(ZeroDivisionError):
+            parallel.run([Job(divmod, (1, 0)), Job(divmod, (1, 2))], executor, lambda *_: None)
+        assert executor.submit(abs, -3).result() == 3
+    assert found[:-1] == [divmod(k, 4) for k in range(9)]
+    assert found[-1] != threading.get_ident()
+    assert told == [(done, 10) for done in range(11)]

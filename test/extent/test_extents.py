@@ -49,7 +49,7 @@ def test_extent_off_passes_plots_untouched(one_ship):
     loaded, scans = one_ship
     plain, off = (
         Tracker(TrackerParameters(**loaded.tracker_parameters())),
-        Run(loaded.tracker_parameters(), 'off'),
+        Run(loaded.tracker_parameters(), 'none'),
     )
     memory = plain.start()
     for scan, _ in scans[:8]:
@@ -97,7 +97,7 @@ def test_extents_can_be_switched_while_tracks_live(one_ship):
     run = Run(loaded.tracker_parameters(), 'random_matrix')
     for k, (scan, _) in enumerate(scans[:24]):
         if k in (8, 12, 16):
-            run.become({8: 'gp', 12: 'off', 16: 'random_matrix'}[k])
+            run.become({8: 'gp', 12: 'none', 16: 'random_matrix'}[k])
         run.step(scan)
         assert (run.shapes is None) == (12 <= k < 16)
     assert 1 in run.report.tracks.id.tolist()
@@ -106,7 +106,7 @@ def test_extents_can_be_switched_while_tracks_live(one_ship):
 
 def test_extents_can_be_switched_on_in_an_empty_scan(one_ship):
     loaded, scans = one_ship
-    run = Run(loaded.tracker_parameters(), 'off')
+    run = Run(loaded.tracker_parameters(), 'none')
     for scan, _ in scans[:6]:
         run.step(scan)
     run.become('gp')
@@ -136,7 +136,7 @@ def test_cluster_plot_tells_a_covariance_that_its_error_bears_out(one_ship):
 
 def test_a_coast_gives_hardly_any_track_and_no_ship_is_lost_by_it():
     loaded = scenario.load('coast')
-    runs = [Run(loaded.tracker_parameters(), extent) for extent in ('off', 'random_matrix')]
+    runs = [Run(loaded.tracker_parameters(), extent) for extent in ('none', 'random_matrix')]
     confirmed = [set(), set()]
     scans = list(islice(radar.simulate(loaded, 5), 25))
     for scan, _ in scans:

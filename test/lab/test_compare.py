@@ -80,7 +80,7 @@ def test_a_run_tells_every_estimator_in_every_scene_and_of_the_encounters(monkey
     )
     page = tmp_path / 'page.md'
     page.write_text(f'{compare.BEGIN}\n{compare.END}')
-    found = compare.run(4, 1, page=str(page), processes=1)
+    found = compare.run(4, 1, page=str(page), workers=1)
     names = {figure.name for figure in found.figures}
     assert {
         'imm, busy strait: held',

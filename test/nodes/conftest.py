@@ -148,11 +148,11 @@ class Listener:
 class Process:
     """A node as a process of its own."""
 
-    def __init__(self, folder, module, arguments):
+    def __init__(self, folder, module, arguments, prefix=()):
         self.log = folder / f'{module.split()[-1]}_{time.monotonic_ns()}.log'
         with open(self.log, 'wb') as log:
             self.process = subprocess.Popen(
-                [sys.executable, '-m', *f'marine_tracker.{module}'.split(), *arguments],
+                [*prefix, sys.executable, '-m', *f'marine_tracker.{module}'.split(), *arguments],
                 cwd=CHECKOUT,
                 stdin=subprocess.DEVNULL,
                 stdout=log,
@@ -186,11 +186,14 @@ class Process:
 
 @pytest.fixture
 def launch(domain, tmp_path):
-    """launch('nodes.run tracker', '--ros-args', ...) -> Process; whatever still runs is ended."""
+    """launch('nodes.run tracker', '--ros-args', ...) -> Process; whatever still runs is ended.
+
+    prefix: the words of a command that runs it.
+    """
     processes = []
 
-    def start(module, *arguments):
-        processes.append(Process(tmp_path, module, arguments))
+    def start(module, *arguments, prefix=()):
+        processes.append(Process(tmp_path, module, arguments, prefix))
         return processes[-1]
 
     yield start
@@ -198,6 +201,21 @@ def launch(domain, tmp_path):
         if one.process.poll() is None:
             one.process.kill()
             one.process.wait()
+
+
+@pytest.fixture
+def private_hosts(tmp_path):
+    """private_hosts(text) -> words that run a command where this is /etc/hosts, for it alone."""
+
+    def prefix(text):
+        if subprocess.run(['unshare', '-m', 'true'], capture_output=True).returncode:
+            pytest.skip('no mount namespace of our own: unshare -m fails here')
+        file = tmp_path / 'hosts'
+        file.write_text(text + '\n')
+        script = 'mount --bind "$0" /etc/hosts && exec "$@"'
+        return ['unshare', '-m', 'sh', '-c', script, str(file)]
+
+    return prefix
 
 
 @pytest.fixture

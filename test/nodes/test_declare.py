@@ -1,9 +1,12 @@
+import dataclasses
+
 import pytest
 
 pytest.importorskip('rclpy')
 import rclpy
+import yaml  # comes with rclpy
 from rclpy.node import Node
-from rclpy.parameter import Parameter
+from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
 
 from marine_tracker.nodes.declare import declare, follow
 from marine_tracker.parameters import NODES, TrackerParameters
@@ -162,3 +165,37 @@ def test_use_sim_time_may_change_and_is_none_of_ours(start):
     follow(node, (TrackerParameters,), lambda made: made, applied.append)
     assert node.set_parameters([Parameter('use_sim_time', value=True)])[0].successful
     assert applied == []
+
+
+@pytest.mark.parametrize('node, kinds', NODES.items())
+def test_a_dump_of_the_nodes_own_parameters_is_loaded(start, tmp_path, node, kinds):
+    """In the form in which `ros2 param dump` writes them and `ros2 param load` sets them."""
+    here = start()
+    values = declare(here, *kinds)
+    follow(here, kinds, lambda *made: made, lambda made: None)
+    names = [field.name for kind in kinds for field in dataclasses.fields(kind)]
+    dump = {'/tracker': {'ros__parameters': {n: here.get_parameter(n).value for n in names}}}
+    file = tmp_path / 'dump.yaml'
+    file.write_text(yaml.dump(dump, default_flow_style=False))
+    assert declare(start('--params-file', str(file)), *kinds) == values
+    loaded = parameter_dict_from_yaml_file(str(file))
+    assert set(loaded) == set(names)
+    for message in loaded.values():
+        (answer,) = here.set_parameters([Parameter.from_parameter_msg(message)])
+        fixed = here.describe_parameter(message.name).read_only
+        assert answer.successful or fixed, answer.reason
+
+
+@pytest.mark.parametrize(
+    'text, name, expected',
+    [
+        ('extent:=off', 'extent', 'none'),
+        ('extent:=none', 'extent', 'none'),
+        ('vectors:=true', 'vectors', 'absolute'),
+        ('vectors:="true"', 'vectors', 'absolute'),
+    ],
+)
+def test_words_of_earlier_versions_are_read_at_the_start(start, text, name, expected):
+    here = start(*given(text))
+    declare(here, *NODES['tracker'])
+    assert here.get_parameter(name).value == expected

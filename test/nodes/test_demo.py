@@ -1,12 +1,23 @@
 """The command `marine_tracker demo`, as a process with processes of its own."""
 
 import signal
+import subprocess
+import sys
+import time
 
 import psutil
 import pytest
 
 pytest.importorskip('rclpy')
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.context import Context
+
 from marine_tracker.nodes import domain as domains
+from marine_tracker.nodes import topics
+from marine_tracker.processes import LATE
+
+IN_TIME_S = 12.0  # from a signal to the end
 
 
 @pytest.fixture
@@ -116,6 +127,66 @@ def test_a_node_that_dies_ends_the_demo_which_says_so(demo, node_helpers):
     assert process.ends() == 1
     assert 'tracker ended with code -9' in process.said
     wait(lambda: gone(started.values()))
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_nodes_that_do_not_answer_are_killed_and_the_demo_ends_in_time(demo, node_helpers, number):
+    wait, _ = node_helpers
+    process = demo('--scenario', 'clean', '--rate', '25')
+    assert process.says('TT04'), process.said
+    started = nodes(process)
+    for node in started.values():
+        node.suspend()
+    began = time.monotonic()
+    process.send(number)
+    assert process.ends() == 0, process.said
+    assert time.monotonic() - began < IN_TIME_S
+    wait(lambda: gone(started.values()))
+    assert 'tracker does not end, and is killed' in process.said
+
+
+def test_a_demo_that_hangs_while_it_leaves_the_network_ends_in_time():
+    script = (
+        'import ctypes, sys\n'
+        'from marine_tracker import cli\n'
+        'from marine_tracker.nodes import targets_listener\n'
+        'hold = lambda self: ctypes.PyDLL(None).sleep(37)\n'
+        'targets_listener.TargetsListener.close = hold\n'
+        "sys.exit(cli.main(['demo', '--duration', '1']))\n"
+    )
+    process = subprocess.Popen([sys.executable, '-c', script], stderr=subprocess.PIPE, text=True)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == LATE and 'most recent call first' in said
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_no_name_breaks_the_table_or_keeps_the_demo_from_ending(launch, node_helpers, number):
+    wait, _ = node_helpers
+    with domains.free_domain() as domain:
+        process = launch('__main__', 'demo', '--domain', str(domain), '--scenario', 'clean')
+        context = Context()
+        rclpy.init(context=context, domain_id=domain)
+        node = rclpy.create_node('other', context=context)
+        sender = node.create_publisher(DiagnosticArray, topics.TARGETS, topics.latched())
+        names = ('[/bold]', 'N' * 120_000, 'two\nlines', '\x1b[2J', 'ß' * 700, '')
+        wait(sender.get_subscription_count)
+        sender.publish(
+            DiagnosticArray(
+                status=[
+                    DiagnosticStatus(
+                        name=name, message=name, values=[KeyValue(key=name, value=name)]
+                    )
+                    for name in names
+                ]
+            )
+        )
+        assert process.says('[/bold]'), process.said
+        assert 'N' * 100 not in process.said and '\x1b[2J' not in process.said
+        began = time.monotonic()
+        process.stop(number)
+        assert time.monotonic() - began < IN_TIME_S
+        node.destroy_node()
+        context.try_shutdown()
 
 
 def test_nodes_do_not_outlive_a_demo_that_is_killed(demo, node_helpers):

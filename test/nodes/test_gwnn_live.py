@@ -15,7 +15,7 @@ from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import MarkerArray
 
 from marine_tracker.estimators import ESTIMATORS
-from marine_tracker.estimators.gwnn import gwnn
+from marine_tracker.estimators.gwnn import gwnn, monitor
 from marine_tracker.geometry import own_ship_at
 from marine_tracker.networks import gwnn_weights
 from marine_tracker.nodes import convert, topics
@@ -228,12 +228,12 @@ def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(watch
     for values in bad[-1].values():
         if values['estimator_state'] == 'FALLBACK':
             assert (values['message'], values['level']) == ('TRACKING', DiagnosticStatus.WARN)
-            assert values['fallback_reason'] in gwnn.REASONS[1:]
+            assert values['fallback_reason'] in monitor.REASONS[1:]
         else:
             assert values['fallback_reason'] == ''
     entry, values = here.tracking('confirmed in FALLBACK', str(fallen))
     assert entry.level == DiagnosticStatus.WARN
-    assert values['fallback reason'] in gwnn.REASONS[1:]
+    assert values['fallback reason'] in monitor.REASONS[1:]
     assert f'targets have fallen back: {values["fallback reason"]}' in entry.message
     alarm = here.fallback_alarm('active acknowledged')  # a caution
     assert alarm.level == DiagnosticStatus.WARN

@@ -13,9 +13,9 @@ from sensor_msgs.msg import PointCloud2
 from marine_tracker import config
 from marine_tracker.geometry import to_range_bearing
 from marine_tracker.nodes import convert, topics
-from marine_tracker.parameters import read_yaml_mapping
 from marine_tracker.simulation import radar, scenario
 from marine_tracker.types import OwnShip, PolarPlots, Scan
+from marine_tracker.yaml_file import read_mapping
 
 PERIOD = 60 / 22
 
@@ -121,7 +121,7 @@ def test_two_hundred_tracks_are_out_within_fifty_milliseconds(graph, launch, nod
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize('extent', ['random_matrix', 'gp'])
 def test_five_hulls_cost_at_most_fifteen_percent_of_one_core(graph, launch, node_helpers, extent):
-    values = read_yaml_mapping(config.path('scenarios', 'hulls.yaml'))
+    values = read_mapping(config.path('scenarios', 'hulls.yaml'))
     values['own_ship'] = {}
     sea = scenario.build(values, 'hulls')
     hulls = [scan for (scan, _), _ in zip(radar.simulate(sea, 1), range(34))]

@@ -9,6 +9,7 @@ import time
 import numpy as np
 import pynmea2
 import pytest
+from pyproj import Geod
 
 pytest.importorskip('rclpy')
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -19,13 +20,13 @@ from std_msgs.msg import String
 from marine_tracker.geometry import KNOT, unit_vector
 from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.nmea_output_input import FIX_BY_ARRIVAL, TIME_BY_ARRIVAL
-from marine_tracker.nodes.nmea_output_links import PENDING, Clients, Datagrams, endpoints
 from marine_tracker.nodes.nmea_output_node import NmeaOutputNode
 
 OUTPUT = 'nodes.run nmea_output'
 SECOND = 1_000_000_000
 NOON = 1_700_049_600 * SECOND  # 2023-11-15 12:00 UTC
 LOOPBACK = '127.0.0.1'
+EARTH = Geod(ellps='WGS84')
 
 
 def entry(title, message='TRACKING', **values):
@@ -178,9 +179,9 @@ def test_a_scan_gives_own_ship_and_one_ttm_a_target_alike_on_topic_udp_and_tcp(
     assert said[2].startswith('$RAOSD,090.0,A,090.0,P,10.00,P,,,N*')
     rmc = pynmea2.parse(said[0], check=True)
     # Two seconds on at 10 knots from where the fix was.
-    east = np.radians(rmc.longitude - 10.25) * 6371008.8 * np.cos(np.radians(54.5))
-    assert rmc.is_valid and east == pytest.approx(20 * KNOT, abs=0.5)
-    assert rmc.latitude == pytest.approx(54.5, abs=1e-6)
+    bearing, _, distance = EARTH.inv(10.25, 54.5, rmc.longitude, rmc.latitude)
+    assert rmc.is_valid and distance == pytest.approx(20 * KNOT, abs=0.2)
+    assert bearing == pytest.approx(90, abs=1.0)
 
 
 def test_lost_and_cancelled_targets_get_one_last_word_and_then_no_more(rig):
@@ -232,6 +233,18 @@ def test_what_targets_does_not_tell_is_left_empty_and_what_is_no_target_passed_o
     ]
 
 
+def test_a_receiver_of_three_digits_is_told_each_target_by_its_own_number(rig):
+    here = rig(sentences='TTM', target_numbers=500)
+    said = here.scan(entry('TT08'), entry('TT108'), entry('TT499'), entry('TT3000'))
+    parsed = [pynmea2.parse(line, check=True) for line in said]
+    assert [(one.target_number, one.name) for one in parsed] == [
+        (8, 'TT08'),
+        (108, 'TT108'),
+        (499, 'TT499'),
+        (1, 'TT3000'),
+    ]
+
+
 def test_the_same_message_twice_is_one_scan(rig):
     here = rig(sentences='TTM')
     assert len(here.scan(entry('TT01'), seconds=5.0)) == 1
@@ -254,11 +267,71 @@ def test_all_sentences_and_talkers_as_chosen(rig):
     said = here.scan(entry('TT01', range_nm='1.00', bearing_deg='000.0'), seconds=1.0)
     assert [line[1:6] for line in said] == ['GPRMC', 'GPHDT', 'IIOSD', 'IIRSD', 'IITTM', 'IITLL']
     rmc, tll = (pynmea2.parse(said[k], check=True) for k in (0, 5))
-    mile = np.degrees(1852 / 6371008.8)
-    assert rmc.latitude == pytest.approx(54 + mile, abs=2e-6)
-    assert tll.latitude == pytest.approx(54 + 2 * mile, abs=2e-6)
+    assert rmc.latitude == pytest.approx(EARTH.fwd(10, 54, 0, 1852)[1], abs=2e-6)
+    assert tll.latitude == pytest.approx(EARTH.fwd(10, 54, 0, 2 * 1852)[1], abs=2e-6)
     assert tll.longitude == pytest.approx(10.0, abs=2e-6)
     assert ',12.000,N,N*' in said[3]
+
+
+@pytest.mark.parametrize(
+    ('origin', 'own', 'miles', 'bearing'),
+    [
+        ((-17.0, 179.9), (5000.0, -3000.0), 8.0, 77.0),
+        ((52.0, -179.7), (-30 * 1852.0, 2000.0), 12.0, 200.0),
+        ((80.0, 15.0), (22 * 1852.0, 4 * 1852.0), 10.0, 350.0),
+        ((-84.0, 179.5), (9000.0, 0.0), 24.0, 45.0),
+    ],
+)
+@pytest.mark.parametrize('by', ['origin', 'fix'])
+def test_targets_are_at_range_and_true_bearing_from_own_ship_wherever_she_is(
+    rig, ears, by, origin, own, miles, bearing
+):
+    """By the geodesics of pyproj, to what the sentences can tell (0.2 m)."""
+    ear = ears()
+    where = f'{origin[0]} {origin[1]}' if by == 'origin' else ''
+    here = rig(
+        sentences='RMC TTM TLL',
+        origin=where,
+        signalk_udp=f'{LOOPBACK}:{ear.port}',
+        own_ship_period_s=60.0,
+    )
+    own_bearing = np.degrees(np.arctan2(*own))
+    own_lon, own_lat, _ = EARTH.fwd(*origin[::-1], own_bearing, np.hypot(*own))
+    # A fix tells nothing of the origin of `map`.
+    fix = (own_lat, own_lon) if by == 'fix' else None
+    here.send_own_ship(seconds=1.0, position=own, fix=fix)
+    told = here.scan(
+        entry('TT01', range_nm=f'{miles:.2f}', bearing_deg=f'{bearing:.1f}'), seconds=1.0
+    )
+    rmc, tll = pynmea2.parse(told[0], check=True), pynmea2.parse(told[2], check=True)
+    assert EARTH.inv(rmc.longitude, rmc.latitude, own_lon, own_lat)[2] < 0.3
+    lon, lat, _ = EARTH.fwd(own_lon, own_lat, bearing, miles * 1852)
+    assert EARTH.inv(tll.longitude, tll.latitude, lon, lat)[2] < 0.3
+    (delta,) = map(json.loads, ear.hear(1))
+    place = next(
+        one['value']
+        for one in delta['updates'][0]['values']
+        if one['path'] == 'navigation.position'
+    )
+    assert EARTH.inv(place['longitude'], place['latitude'], lon, lat)[2] < 0.1
+    assert -180 <= place['longitude'] < 180
+
+
+def test_odometry_off_the_earth_makes_rmc_void_and_the_next_one_is_told(rig):
+    here = rig(sentences='RMC TLL', origin='54.0 10.0')
+    here.send_own_ship(seconds=1.0, position=(3e7, 0.0), fix=None)
+    assert kinds(said := here.scan(entry('TT01'), seconds=1.0)) == ['RMC'] and ',V,,,,,' in said[0]
+    here.send_own_ship(seconds=2.0, position=(300.0, 0.0), fix=None)
+    assert kinds(here.scan(entry('TT01'), seconds=2.0)) == ['RMC', 'TLL']
+
+
+def test_own_ship_sails_over_the_date_line(rig):
+    here = rig(sentences='RMC')
+    here.send_own_ship(seconds=1.0, fix=(-17.0, 179.99999))
+    rmc = pynmea2.parse(here.scan(entry('TT01'), seconds=4.0)[0], check=True)
+    lon, lat, _ = EARTH.fwd(179.99999, -17.0, 90.0, 30 * KNOT)
+    assert rmc.lon_dir == 'W' and lon < 0
+    assert EARTH.inv(rmc.longitude, rmc.latitude, lon, lat)[2] < 0.3
 
 
 def test_own_ship_is_told_between_scans_as_often_as_asked(rig):
@@ -304,10 +377,11 @@ def test_broken_input_is_counted_and_the_last_good_one_kept(rig):
     no_fix.status.status = -1
     here.fix.publish(no_fix)
     here.fix.publish(convert.fix_message(NOON, np.nan, 10.0))
+    here.fix.publish(convert.fix_message(NOON, 54.0, 190.0))
     counts = here.node._bad.counts
     here.wait(
         lambda: (
-            (counts['own-ship messages not finite'], counts['fixes without a position']) == (1, 2)
+            (counts['own-ship messages not finite'], counts['fixes without a position']) == (1, 3)
         )
     )
     assert pynmea2.parse(here.scan(entry('TT01'))[0]).latitude == pytest.approx(54.5, abs=1e-6)
@@ -329,100 +403,6 @@ def test_signalk_deltas_go_out_as_datagrams(rig, ears):
     here.scan(entry('TT02'), seconds=2.0)
     gone = [delta for delta in map(json.loads, ear.hear(2)) if delta['context'] == first['context']]
     assert all(one['value'] is None for one in gone[0]['updates'][0]['values'] if one['path'])
-
-
-def test_a_broadcast_reaches_who_listens_to_it(ears):
-    ear = ears(host='127.255.255.255')
-    link = Datagrams('udp', f'127.255.255.255:{ear.port} {LOOPBACK}:{ear.port}')
-    assert link.send([b'one', b'two']) == 0
-    assert ear.hear(2) == ['one', 'two'] and link.sent == 4  # the second goes nowhere, unheard
-    link.close()
-
-
-def test_a_datagram_that_cannot_be_sent_is_counted_with_its_reason():
-    link = Datagrams('udp', '127.0.0.1:9')
-    assert link.send([b'x' * 70_000, b'short']) == 1
-    assert link.error == '127.0.0.1:9: Message too long' and link.sent == 1
-    link.close()
-
-
-def connect(server, port, patience=10.0):
-    client = socket.create_connection((LOOPBACK, port), patience)
-    count, until = len(server), time.monotonic() + patience
-    while len(server) == count and time.monotonic() < until:
-        server.serve()
-    return client
-
-
-def test_a_slow_tcp_client_is_dropped_and_never_blocks_the_others(free_port):
-    server = Clients('tcp', f'{LOOPBACK}:{free_port}')
-    slow, quick = connect(server, free_port), connect(server, free_port)
-    line, count, heard = b'x' * 1022 + b'\r\n', 0, 0
-    quick.setblocking(False)
-    while not server.dropped:
-        server.send([line] * 16)
-        count += 16
-        with contextlib.suppress(BlockingIOError):
-            while True:
-                heard += len(quick.recv(1 << 20))
-        assert count < 100_000
-    assert len(server) == 1 and count * 1024 > PENDING
-    quick.settimeout(10)
-    while heard < count * 1024:
-        server.serve()
-        heard += len(quick.recv(1 << 20))
-    assert heard == count * 1024
-    slow.close()
-    quick.close()
-    server.close()
-
-
-def test_tcp_clients_come_and_go(free_port):
-    server = Clients('tcp', f'{LOOPBACK}:{free_port}')
-    server.send([b'to nobody\r\n'])
-    first, second = connect(server, free_port), connect(server, free_port)
-    server.send([b'a\r\n'])
-    assert first.recv(100) == second.recv(100) == b'a\r\n'
-    first.close()
-    until = time.monotonic() + 10
-    while len(server) == 2 and time.monotonic() < until:  # the first one only tells it
-        server.send([b'b\r\n'])
-    assert len(server) == 1
-    assert second.recv(3) == b'b\r\n'
-    server.close()
-    while second.recv(1000):  # the rest, then the end
-        pass
-    second.close()
-    Clients('tcp', f'{LOOPBACK}:{free_port}').close()  # the port is free again at once
-
-
-def test_no_server_where_none_is_asked_for():
-    server = Clients('tcp', '')
-    server.send([b'nothing'])
-    assert len(server) == 0
-    server.close()
-
-
-@pytest.mark.parametrize(
-    'text',
-    [
-        'localhost',
-        ':10110',
-        'host:',
-        '127.0.0.1:0',
-        '127.0.0.1:70000',
-        '127.0.0.1:x',
-        '127.0.0.1:10110 other',
-    ],
-)
-def test_what_is_no_host_and_port_is_refused(text):
-    with pytest.raises(ValueError, match="parameter udp has '.*'; it must be host:port"):
-        endpoints('udp', text)
-
-
-def test_addresses_of_version_6_stand_in_brackets():
-    (found,) = endpoints('udp', '[::1]:10110')
-    assert found.family == socket.AF_INET6 and found.address[:2] == ('::1', 10110)
 
 
 def p(**parameters):

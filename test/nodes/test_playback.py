@@ -2,13 +2,14 @@ import time
 
 import numpy as np
 import pytest
+from pyproj import Geod
 
 pytest.importorskip('rclpy')
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
 
-from marine_tracker.geometry import geodetic_from_local
+from marine_tracker.geodesy import LocalFrame
 from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.playback import Revolution, _repeat, own_ship_period
 from marine_tracker.nodes.radar_simulator_node import RadarSimulatorNode
@@ -98,10 +99,38 @@ def test_own_ship_its_fix_and_the_clock_cover_each_scan_in_order(graph, node_hel
         position, velocity = convert.odometry_to_own_ship(message)
         assert velocity == pytest.approx([12 * 1852 / 3600, 0.0], abs=1e-6)
         assert (fix.latitude, fix.longitude) == pytest.approx(
-            geodetic_from_local(position, 54.0, 8.0)
+            LocalFrame(54.0, 8.0).to_geodetic(position)
         )
     ticks = np.array([convert.nanoseconds(message.clock) for message in clock.messages])
     assert (np.diff(ticks) >= 0).all() and ticks[0] >= 1e9 and len(ticks) > 20
+
+
+@pytest.mark.parametrize(
+    ('place', 'course'), [((-17.0, 179.9995), 90.0), ((81.5, -179.998), 270.0)]
+)
+def test_fixes_follow_own_ship_over_the_date_line(
+    graph, node_helpers, ears, tmp_path, place, course
+):
+    """20 kn for 16 s, by the geodesic of pyproj."""
+    path = tmp_path / 'line.yaml'
+    path.write_text(
+        'duration_s: 16\n'
+        f'own_ship: {{start: {{lat_deg: {place[0]}, lon_deg: {place[1]}}}, '
+        f'course_deg: {course}, speed_kn: 20}}\n'
+        'targets:\n  - {start: {range_nm: 3, bearing_deg: 10}, course_deg: 180, speed_kn: 10}\n'
+    )
+    wait, _ = node_helpers
+    node = graph.make(RadarSimulatorNode, scenario=str(path), rate=30.0)
+    wait(lambda: node.done)
+    own, fixes = ears[topics.ODOMETRY], ears[topics.FIX]
+    wait(lambda: len(ears[topics.PLOTS]) >= 5 and len(own) == len(fixes) >= 10)
+    earth = Geod(ellps='WGS84')
+    for message, fix in zip(own.messages, fixes.messages):
+        sailed = np.hypot(*convert.odometry_to_own_ship(message)[0])
+        lon, lat, _ = earth.fwd(*place[::-1], course, sailed)
+        assert earth.inv(fix.longitude, fix.latitude, lon, lat)[2] < 0.1
+        assert -180 <= fix.longitude < 180
+    assert np.sign(fixes.messages[0].longitude) == -np.sign(fixes.messages[-1].longitude)
 
 
 def test_the_period_is_kept_within_one_percent_by_the_wall(launch, graph, node_helpers):

@@ -2,8 +2,6 @@
 
 import random
 import signal
-import subprocess
-import sys
 import time
 
 import pytest
@@ -200,33 +198,3 @@ def test_a_signal_ends_a_node_well(launch, number):
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_a_node_well_twenty_times(launch, number):
     signalled(launch, number, 20)
-
-
-@pytest.mark.parametrize('seconds', [0.2, 0.8])
-def test_a_signal_while_it_starts_ends_a_node_well(launch, seconds):
-    process = launch(TRACKER)
-    time.sleep(seconds)
-    process.send(signal.SIGINT)
-    assert process.ends() == 0, process.said
-
-
-def test_a_node_that_hangs_in_its_shutdown_ends_all_the_same():
-    """The main thread waits for ever, deaf to the event that the handler sets."""
-    script = (
-        'import signal, threading\n'
-        'from marine_tracker.nodes import run\n'
-        'run.GRACE_S = 0.5\n'
-        'stop = threading.Event()\n'
-        'signal.signal(signal.SIGTERM, lambda *_: None)\n'
-        "run.end_in_time('tracker', stop)\n"
-        "print('up', flush=True)\n"
-        'threading.Event().wait()\n'
-    )
-    process = subprocess.Popen(
-        [sys.executable, '-c', script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout.readline() == 'up\n'
-    process.send_signal(signal.SIGTERM)
-    _, said = process.communicate(timeout=30)
-    assert process.returncode == 0
-    assert 'tracker: not closed within 0.5 s' in said

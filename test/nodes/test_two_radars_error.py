@@ -1,10 +1,10 @@
 """Two radars against one, measured on what tracker processes publish over DDS. Slow: 12 runs."""
 
+import json
 from typing import NamedTuple
 
 import numpy as np
 import pytest
-import yaml
 
 pytest.importorskip('rclpy')
 from nav_msgs.msg import Odometry
@@ -54,7 +54,7 @@ class Sea:
                 [f'/{name}' for name in names],
             )
             self.files[way].write_text(
-                yaml.safe_dump({'/**': {'ros__parameters': {**given, 'estimator': 'imm'}}})
+                json.dumps({'/**': {'ros__parameters': {**given, 'estimator': 'imm'}}})
             )
 
     def run(self, seed) -> dict[str, Course]:

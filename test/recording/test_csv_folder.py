@@ -181,7 +181,7 @@ def test_radar_yaml_and_notes_are_read(folder):
             r"line 2: target is 'one'; it must be a number",
         ),
         ('radar.yaml', '- 1\n', r'radar.yaml holds a list; it must hold a mapping'),
-        ('notes.json', '{', r'notes.json is not JSON'),
+        ('notes.json', '{', r'notes.json, line 1 is not JSON'),
         ('notes.json', '[]', r'notes.json holds a list; it must hold an object'),
     ],
 )
@@ -195,8 +195,8 @@ def test_what_is_wrong_is_named_with_its_file_and_line(folder, file, text, messa
 
 
 def test_a_file_that_is_not_text_is_an_error(folder):
-    (folder / 'plots.csv').write_bytes(b'\xff\xfe\x00\x01')
-    with pytest.raises(ValueError, match='plots.csv cannot be read as CSV'):
+    (folder / 'plots.csv').write_bytes(b'\x89PNG\r\n')
+    with pytest.raises(ValueError, match='plots.csv, line 1: the byte 0x89 is not UTF-8'):
         csv_folder.read(folder)
 
 

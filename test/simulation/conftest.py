@@ -1,5 +1,6 @@
+import json
+
 import pytest
-import yaml
 
 from marine_tracker.simulation import scenario
 
@@ -16,7 +17,7 @@ def make_scenario(tmp_path):
                 [{'start': {'range_nm': 5, 'bearing_deg': 40}, 'course_deg': 200, 'speed_kn': 12}],
             )
         file = tmp_path / 'made.yaml'
-        file.write_text(yaml.safe_dump(values))
+        file.write_text(json.dumps(values))
         return scenario.load(file)
 
     return make

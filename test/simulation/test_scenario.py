@@ -1,11 +1,13 @@
+import json
 import math
 import re
 import textwrap
 
 import numpy as np
 import pytest
-import yaml
+from pyproj import Geod
 
+from marine_tracker.geodesy import LocalFrame
 from marine_tracker.geometry import KNOT, NAUTICAL_MILE
 from marine_tracker.parameters import TrackerParameters, from_mapping
 from marine_tracker.simulation import scenario
@@ -79,8 +81,45 @@ def test_geodetic_starts_are_placed_by_the_origin(make_scenario):
         own_ship={'start': {'lat_deg': 60, 'lon_deg': 10}},
         targets=[ship(start={'lat_deg': 60.1, 'lon_deg': 10.1})],
     )
-    assert loaded.fleet.origin == (60, 10)
-    assert loaded.truth_at(0).position[0] == pytest.approx([5560, 11120], rel=1e-3)
+    assert loaded.fleet.origin == LocalFrame(60, 10)
+    assert loaded.truth_at(0).position[0] == pytest.approx([5560, 11144], abs=20)
+
+
+@pytest.mark.parametrize(
+    ('own', 'target'),
+    [
+        ((-17.0, 179.99), (-17.0, -179.98)),
+        ((-17.3, -179.6), (-16.9, 179.7)),
+        ((52.0, 180.0), (51.6, -179.7)),
+        ((78.5, 15.0), (78.9, 13.0)),
+        ((-84.9, 179.0), (-84.7, -178.0)),
+    ],
+)
+def test_a_target_is_at_range_and_bearing_of_the_geodesic_across_the_date_line_too(
+    make_scenario, own, target
+):
+    loaded = make_scenario(
+        own_ship={'start': dict(zip(('lat_deg', 'lon_deg'), own))},
+        targets=[ship(start=dict(zip(('lat_deg', 'lon_deg'), target)))],
+    )
+    bearing, _, distance = Geod(ellps='WGS84').inv(*own[::-1], *target[::-1])
+    expected = distance * np.array([np.sin(np.radians(bearing)), np.cos(np.radians(bearing))])
+    assert loaded.own_ship_at(0).position[0] == pytest.approx([0, 0], abs=1e-6)
+    assert loaded.truth_at(0).position[0] == pytest.approx(expected, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ('place', 'said'),
+    [
+        ({'lat_deg': 10, 'lon_deg': 181.5}, 'lon_deg is 181.5; it must be between -180 and 180'),
+        ({'lat_deg': 10, 'lon_deg': -200}, 'lon_deg is -200; it must be between -180 and 180'),
+        ({'lat_deg': -90.5, 'lon_deg': 10}, 'lat_deg is -90.5; it must be between -90 and 90'),
+    ],
+)
+def test_no_place_on_earth_is_refused(make_scenario, place, said):
+    for change in ({'origin': place}, {'own_ship': {'start': place}}):
+        with pytest.raises(ValueError, match=said):
+            make_scenario(**change)
 
 
 def test_tracker_parameters_are_those_of_the_radar(make_scenario):
@@ -129,7 +168,7 @@ def test_detectable_is_between_blind_and_maximum_range(make_scenario):
         ({'duration': 9}, 'duration is not known: the key must end in its unit; write duration_s'),
         ({'duration_s': 0}, 'duration_s is 0; it must be between 1 and'),
         ({'duration_s': '10 min'}, "duration_s is '10 min'; it must be a number"),
-        ({'duration_s': math.nan}, 'duration_s is nan; it must be finite'),
+        ({'duration_s': 1e999}, 'duration_s is inf; it must be finite'),
         ({'duration_s': True}, 'duration_s is True; it must be a number'),
         ({'duration_s': 2}, 'duration_s is 2; it must not be less than a revolution, 2.73 s'),
         ({'targets': []}, 'the scenario has no targets'),
@@ -244,12 +283,14 @@ def test_detectable_is_between_blind_and_maximum_range(make_scenario):
             'own_ship.vessel names an AIS vessel, but the scenario has no',
         ),
         ({'own_ship': [1]}, 'own_ship is [1]; it must be a mapping'),
-        ({'ais': {'file': 'nowhere.csv'}}, 'nowhere.csv cannot be read'),
+        ({'ais': {'file': 'nowhere.csv'}}, 'nowhere.csv does not exist'),
     ],
 )
 def test_wrong_scenarios_are_refused_by_name_value_and_limit(tmp_path, values, text):
     file = tmp_path / 'wrong.yaml'
-    file.write_text(yaml.safe_dump({'duration_s': 600, 'targets': [SHIP], **values}))
+    file.write_text(
+        json.dumps({'duration_s': 600, 'targets': [SHIP], **values}).replace('Infinity', '.inf')
+    )
     with pytest.raises(ValueError) as refused:
         scenario.load(file)
     assert text in str(refused.value)
@@ -329,3 +370,34 @@ def test_own_ship_that_stops_goes_on_heading_where_she_went():
     own = {'course_deg': 320, 'speed_kn': 9, 'legs': legs}
     made = scenario.build({'duration_s': 90, 'own_ship': own, 'targets': [SHIP]}, 'x')
     assert np.degrees(made.own_ship_at([15.0, 80.0]).heading) == pytest.approx([350.0, 20.0])
+
+
+def test_angles_are_decimal_with_or_without_leading_noughts(tmp_path):
+    file = tmp_path / 'noughts.yaml'
+    file.write_text(
+        'duration_s: 060\nown_ship: {course_deg: 000, speed_kn: 0}\ntargets:\n'
+        '  - {start: {range_nm: 02, bearing_deg: 030}, course_deg: 017, speed_kn: 012}\n'
+    )
+    truth = scenario.load(file).truth_at(0.0)
+    assert truth.position[0] == pytest.approx([1852.0, 2 * 1852 * math.cos(math.pi / 6)])
+    course = math.degrees(math.atan2(*truth.velocity[0]))
+    assert course == pytest.approx(17.0)
+
+
+@pytest.mark.parametrize(
+    ('text', 'said'),
+    [
+        ('duration_s: 90\nduration_s: 80\n', "'duration_s' is there twice"),
+        ('duration_s: ' + '[' * 900, 'levels are allowed'),
+        ('duration_s: ' + '6' * 300, 'too large'),
+        ('duration_s: &a [&b [x, x], *b, *b]\ntargets: *a\n', 'duration_s is '),
+    ],
+)
+def test_traps_of_yaml_are_refused_in_one_short_line(tmp_path, text, said):
+    file = tmp_path / 'trap.yaml'
+    file.write_text(text)
+    with pytest.raises(ValueError) as refused:
+        scenario.load(file)
+    message = str(refused.value)
+    assert message.startswith(str(file)) and said in message
+    assert '\n' not in message and len(message) < 600

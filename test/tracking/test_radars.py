@@ -43,7 +43,7 @@ def test_as_many_updates_are_held_as_may_be_later_than_a_plot(periods, updates):
 @pytest.mark.parametrize(
     'text, said',
     [
-        ('[', 'radars are not YAML'),
+        ('[', 'radars, line 1 is not YAML'),
         ('x', "radars are 'x'; they must be a list of mappings, each with topic"),
         ('[{name: x}]', r'radar 1 is .*it must be a mapping with a topic'),
         (

@@ -5,7 +5,7 @@ import pytest
 
 from marine_tracker.estimators import cs_kalman, imm
 from marine_tracker.estimators.gwnn import bank
-from marine_tracker.training import filter_tuning, ship_tracks, training_tracks
+from marine_tracker.training import filter_families, filter_tuning, ship_tracks, training_tracks
 from marine_tracker.types import take
 
 # Restless: a CV mode of much noise, seldom left.
@@ -79,7 +79,7 @@ def test_errors_are_in_deviations_of_the_plots_as_they_truly_are():
 def test_the_best_of_the_family_is_found_where_it_is_known():
     """600 evaluations on a bowl of seven dimensions, three of them flat, from a bad start."""
     found = filter_tuning.search(bowl, 600, 1, BAD)
-    assert bowl(filter_tuning.IMM.at(BAD)) > 30
+    assert bowl(filter_families.IMM.at(BAD)) > 30
     assert found.loss == bowl(found.settings) == found.best[-1] < 0.05
     assert len(found.best) == 600 and (np.diff(found.best) <= 0).all()
 
@@ -89,7 +89,7 @@ def test_a_search_improves_a_bad_start_and_can_be_repeated(few):
         return filter_tuning.loss(filter_tuning.errors(modes, few), few, 'training')
 
     found = filter_tuning.search(judge, 8, 4, BAD)
-    assert found.best[0] == pytest.approx(judge(filter_tuning.IMM.at(BAD)))
+    assert found.best[0] == pytest.approx(judge(filter_families.IMM.at(BAD)))
     assert found.loss == judge(found.settings) < found.best[0] - 0.05
     assert filter_tuning.search(bowl, 80, 4, BAD) == filter_tuning.search(bowl, 80, 4, BAD)
     assert filter_tuning.search(bowl, 80, 4).settings != filter_tuning.search(bowl, 80, 5).settings
@@ -97,15 +97,15 @@ def test_a_search_improves_a_bad_start_and_can_be_repeated(few):
 
 def test_one_evaluation_is_the_start_and_a_loss_that_is_no_number_is_told():
     assert filter_tuning.search(bowl, 1, 1, BAD).loss == pytest.approx(
-        bowl(filter_tuning.IMM.at(BAD))
+        bowl(filter_families.IMM.at(BAD))
     )
     with pytest.raises(FloatingPointError, match=r'the error of Modes\(.*is nan'):
         filter_tuning.search(lambda modes: np.nan, 5, 1)
 
 
 def test_all_settings_tried_keep_to_the_bounds():
-    low, high = filter_tuning.IMM.at(np.zeros(7)), filter_tuning.IMM.at(np.ones(7))
-    assert low.noise[0] == pytest.approx(filter_tuning.PERIOD * 1e-4**2)
+    low, high = filter_families.IMM.at(np.zeros(7)), filter_families.IMM.at(np.ones(7))
+    assert low.noise[0] == pytest.approx(filter_families.PERIOD * 1e-4**2)
     assert high.turn_rate == pytest.approx((0, 0, 0.45, -0.45))
     assert high.stay == pytest.approx((0.7, 0.55, 0.55, 0.55))
     tried = []
@@ -138,12 +138,12 @@ def test_a_ratio_has_its_interval(few):
     assert ratio.value == pytest.approx(np.exp(np.mean(np.log(list(cells.values())))))
 
 
-@pytest.mark.parametrize('name', list(filter_tuning.FAMILIES))
+@pytest.mark.parametrize('name', list(filter_families.FAMILIES))
 def test_settings_as_text_are_the_settings(name):
-    family = filter_tuning.FAMILIES[name]
+    family = filter_families.FAMILIES[name]
     settings = family.at(np.full(len(family.searched), 0.4))
     pasted = eval(
-        filter_tuning.as_text(settings), {'Modes': imm.Modes, 'Manoeuvre': cs_kalman.Manoeuvre}
+        filter_families.as_text(settings), {'Modes': imm.Modes, 'Manoeuvre': cs_kalman.Manoeuvre}
     )
     for one, other in zip(pasted, settings):
         np.testing.assert_allclose(one, other, rtol=1e-4)
@@ -152,6 +152,6 @@ def test_settings_as_text_are_the_settings(name):
 @pytest.mark.parametrize('name', ['cv_cv', 'cv', 'cs'])
 def test_simpler_filters_are_tuned_the_same_way(name):
     """The search ends no worse than at the middle of the bounds, where it begins."""
-    found, _ = filter_tuning.tune('training', 70, 6, 1, family=filter_tuning.FAMILIES[name])
+    found, _ = filter_tuning.tune('training', 70, 6, 1, family=filter_families.FAMILIES[name])
     assert found.loss == found.best[-1] <= found.best[0]
     assert len(found.best) == 6

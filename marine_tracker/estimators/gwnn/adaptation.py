@@ -1,30 +1,31 @@
-"""Learning on the track, for `gwnn`: the output weights of the position, of each track its own.
+"""Learning on the track, for `gwnn`: each track adapts its own output weights of the position.
 
-The shipped weights stay what they are; a track adds its own on top and forgets them by LEAK a
-plot. Off by default: the trained network already knows the filters' habits, and one track holds
-few plots. It helps where something stays wrong for long, as a bias of the radar does.
+The shipped weights do not change. A track adds its own weights, and forgets them by LEAK a plot.
+Off by default: the trained network already knows the filters' errors, and one track has few plots.
+It helps against errors that last long, such as a bias of the radar.
 """
 
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...networks import wavelet_network as net
 from ...types import Array
 
 STEP = 0.001  # of the error, a plot, along the units' values
-LEAK = 0.01  # of a track's own weights forgotten a plot
-MOST_MOMENTUM = 0.9  # a share of 1 would never die out
+LEAK = 0.01  # share of a track's own weights forgotten a plot
+MOST_MOMENTUM = 0.9  # with 1 a change would never decay
 CLIP = 3.0  # sigma: larger residuals count as this
 
 
 class Adapted(NamedTuple):
-    """What tracks have learned; C weights to an axis, none where learning is off.
+    """What tracks have learned; C weights to an axis, none if learning is off.
 
-    units    [N, 2, C]  what the hidden units said after the last plot, along and across; the
-                        second half is for the correction a scan ahead
+    units    [N, 2, C]  output of the hidden units after the last plot, along and across; the second
+                        half is for the correction one scan ahead
     weights  [N, 2, C]  the track's own
-    moved    [N, 2, C]  by how much they changed last
+    moved    [N, 2, C]  their last change
     """
 
     units: Array
@@ -39,7 +40,7 @@ def begin(count: int, network: net.Network, learning: bool) -> Adapted:
     return Adapted(zero, zero.copy(), zero.copy())
 
 
-def units_of(network: net.Network, inputs, outputs: slice):
+def units_of(network: net.Network, inputs: NDArray[np.floating], outputs: slice) -> Array:
     """The hidden units [N, 2, C] of four outputs: position at once, then per scan ahead."""
     group = net.group_size(network.layout)
     layout = network.layout._replace(outputs=4)
@@ -50,18 +51,19 @@ def units_of(network: net.Network, inputs, outputs: slice):
     return np.concatenate([out[:, :2], out[:, 2:]], 2)
 
 
-def _asked(adapted: Adapted, scans):
-    """The units' values [N, 2, C] as they count so many scans ahead [N]."""
+def _asked(adapted: Adapted, scans: Array) -> Array:
+    """The units' values [N, 2, C], weighted for a number of scans ahead [N]."""
     half = adapted.units.shape[2] // 2
     return adapted.units * np.where(np.arange(2 * half) < half, 1.0, scans[:, None])[:, None]
 
 
-def correction(adapted: Adapted, scans):
-    """What the tracks have learned to add to the position [2, N], sigma."""
-    return (_asked(adapted, scans) * adapted.weights).sum(2).T
+def correction(adapted: Adapted, scans: Array) -> Array:
+    """The learned correction of the position [2, N], sigma."""
+    found: Array = (_asked(adapted, scans) * adapted.weights).sum(2).T
+    return found
 
 
-def learn(adapted: Adapted, residual, scans, units) -> Adapted:
+def learn(adapted: Adapted, residual: Array, scans: Array, units: Array) -> Adapted:
     """After plots whose residuals were [2, N] sigma, so many scans ahead; units for the next.
 
     Normalised gradient, with the momentum of paper 000: that of a neuron is its share in the

@@ -1,18 +1,19 @@
 """The banks of filters that `gwnn` fuses: three IMMs, four slow CV filters and CS-Kalman.
 
-All take the same plots. From them come 13 experts, each with its own opinion where the target is:
+All take the same plots. They give 13 experts, each with its own estimate of the target:
 
     0-3    the modes of the base IMM: straight, any, turning right, turning left
     4-6    the nine-mode IMM: its mean, that of its right turns, that of its left turns
     7-10   constant velocity with little to much noise
-    11     CS-Kalman, also what `gwnn` falls back to
-    12     a second IMM, good at what the base is not
+    11     CS-Kalman, also the fallback of `gwnn`
+    12     a second IMM, good where the base is not
 
-The base IMM's mean is where a network that says nothing leaves the track. There is a bank for
-each vessel class (`BANKS`); what tells them apart is data (`BankSettings`).
+With a network output of 0, the track is at the mean of the base IMM. There is one bank for each
+vessel class (`BANKS`). They differ in data only (`BankSettings`).
 """
 
 import hashlib
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -50,12 +51,14 @@ class BankSettings(NamedTuple):
     manoeuvre: cs_kalman.Manoeuvre
 
 
-def _modes(acceleration, turn_rate, stay):
+def _modes(
+    acceleration: Sequence[float], turn_rate: Sequence[float], stay: tuple[float, ...]
+) -> Modes:
     """Modes by the deviation, m/s^2, of their white acceleration over a scan."""
     return Modes(tuple(PERIOD * a * a for a in acceleration), tuple(turn_rate), stay, PERIOD)
 
 
-def _turns(*degrees):
+def _turns(*degrees: float) -> tuple[float, ...]:
     """Turn rates of nine modes, the last six turning right and left by turns; degrees a second."""
     return (0, 0, 0, *np.radians([side * rate for rate in degrees for side in (1, -1)]).tolist())
 
@@ -222,7 +225,7 @@ def begin(
     )
 
 
-def look(bank: Filters, state: BankState, step) -> Ahead:
+def look(bank: Filters, state: BankState, step: Array) -> Ahead:
     """What the filters expect after steps [N] s, or [1] for all; means only, which is cheap."""
     mean, weight = linear_modes.mix_means(bank.modes, state.rows[..., :4], state.weight, step)
     columns = linear_modes.move_means(bank.modes, linear_modes.columns_of(mean), step)
@@ -230,7 +233,7 @@ def look(bank: Filters, state: BankState, step) -> Ahead:
     return _ahead(bank, columns, np.ascontiguousarray(weight.T), cs)
 
 
-def base(bank: Filters, state: BankState, time):
+def base(bank: Filters, state: BankState, time: Array) -> Array:
     """Columns [14, N] of the base IMM at the times [N] s: mean and packed covariance."""
     step = time - state.time
     columns, weight = linear_modes.mix(bank.base, state.rows[:, BASE], state.weight[:, BASE], step)
@@ -238,7 +241,7 @@ def base(bank: Filters, state: BankState, time):
     return linear_modes.combine(columns, weight.T)
 
 
-def _ahead(bank: Filters, columns, weight, cs):
+def _ahead(bank: Filters, columns: Array, weight: Array, cs: Array) -> Ahead:
     mean = (columns[:, BASE] * weight[BASE]).sum(1)
     experts = np.empty((4, EXPERTS, len(cs)))
     experts[:, :4] = columns[:, BASE]

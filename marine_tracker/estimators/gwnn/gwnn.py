@@ -1,55 +1,43 @@
 """Extrapolation by a generalised wavelet network over a bank of filters (after paper 000).
 
-Thirteen filters follow every track (`bank`). After each plot a trained wavelet network looks at
-how they disagree and how the plots fit them, and says how much each is worth and what all of them
-get wrong:
+Thirteen filters follow every track (`bank`). After each plot a trained wavelet network looks at how
+they disagree and how the plots fit them. It outputs a weight for each filter, and a correction for
+the errors that all of them share:
 
     x(t) = base(t) + sum_j w_j (expert_j(t) - base(t)) + c(t),   w = softmax(l + network)
 
-with l the log mode probabilities of the base IMM. The network never feeds back into the filters,
-so leaving it out is taking another output. That happens, track by track, where its expectations
-fit the plots worse than CS-Kalman's by more than `FALL` for the last dozen plots or so, or where
-it says anything that is not a number; it stays away until `RETURN` times in a row it has fitted
-the last few plots better than CS-Kalman.
+with l the log mode probabilities of the base IMM. The network never feeds back into the filters, so
+a track can do without it at any time. This happens, track by track, when its expectations fit the
+plots worse than CS-Kalman's, or when an output is not a number (see `monitor`).
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...gaussian import linear_modes
 from ...gaussian.linear import sandwich
 from ...networks import gwnn_weights
 from ...networks.wavelet_network import forward
-from ...types import Array, Extrapolation, put, take, where
+from ...types import Array, Extrapolation, IntArray, Plots, Rows, put, take, where
 from .. import cs_kalman
-from ..contract import Estimator
+from ..contract import Account, Estimator, Velocity
 from . import adaptation, inputs
 from . import bank as filters
+from . import monitor as monitors
+from .bank import BankState, Expected
+from .inputs import ResidualMemory
+from .monitor import EXPECTED, FALLBACK, GWNN, TRUST, WARM, Monitor, Trust, judge
 
-GATE, REFUSALS = 16.0, 2  # squared distance from the base; plots refused in a row, at most
+GATE, REFUSALS = 16.0, 2  # squared distance from the base; largest number of plots refused in a row
 SETTLED = 10  # plots before any is refused
-WARM = 8  # plots before the network is heard
-FADE = 3.0  # scans ahead up to which the network speaks
-MOST = 4.0  # what it may add by itself; trained, it adds less than half of it
-MISSED, SURE = 1.5, 1.0  # scans without a plot; sigma: then it corrects by no more
-OTHERS = -5.0  # log weight, with a silent network, of all but the base's modes
-FALL, BACK, RETURN = 1.6, 1.0, 3
-KEEP, KEEP_LATELY = 0.9, 0.7  # of J, a plot: to fall back; to return
-WORST = 25.0  # squared residual that counts at most
-EXPECTED = 2.2  # squared residual of a good filter, sigma^2: where J starts
-WARMUP, GWNN, FALLBACK = 0.0, 1.0, 2.0
-STATUS = ('WARMUP', 'GWNN', 'FALLBACK')
-REASONS = (
-    '',
-    'expectations worse than those of CS-Kalman',
-    'network output is not a number',
-    'network output out of all proportion',
-)
+FADE = 3.0  # scans ahead up to which the network is used
+MOST = 4.0  # largest correction by the network; when trained, it uses less than half
+MISSED, SURE = 1.5, 1.0  # scans without a plot; sigma: limit of the correction after that
+OTHERS = -5.0  # log weight of all experts except the base's modes, for network output 0
 
-# The network's outputs: what it adds to the experts' log weights; corrections of the position
-# when it speaks and per scan ahead, and of the velocity; in the units of `gwnn_inputs`.
+# The network's outputs: changes of the experts' log weights; corrections of the position now and
+# per scan ahead, and of the velocity; in the units of `inputs`.
 LOGITS = slice(0, filters.EXPERTS)
 AT_ONCE, PER_SCAN, OF_VELOCITY = slice(13, 15), slice(15, 17), slice(17, 19)
 POSITION = slice(13, 17)
@@ -57,28 +45,10 @@ OUTPUTS = 19
 SPREADS = 8  # log ratio of the variances to the base's: now, a scan ahead
 
 
-class Monitor(NamedTuple):
-    """How the network fares, [N] each.
-
-    status      WARMUP, GWNN or FALLBACK
-    network     J of the network, heard or not: mean squared residual of its expectations, sigma^2
-    cs          J of CS-Kalman
-    lately      both again, [N, 2], of fewer plots
-    better      plots in a row at which a network not heard was the better one
-    reason      of FALLBACK: index into REASONS
-    """
-
-    status: Array
-    network: Array
-    cs: Array
-    lately: Array
-    better: Array
-    reason: Array
-
-
 class GwnnState(NamedTuple):
-    """bank, memory, monitor; output [N, 27]: what the network said after the last plot; adapted:
-    what the track has learned."""
+    """bank, memory, monitor; output [N, 27]: of the network after the last plot; adapted: what the
+    track has learned.
+    """
 
     bank: filters.BankState
     memory: inputs.ResidualMemory
@@ -87,40 +57,16 @@ class GwnnState(NamedTuple):
     adapted: adaptation.Adapted
 
 
-class Account(NamedTuple):
-    """For display, one row a track.
-
-    status  [N]  index into STATUS
-    rho     [N]  J of the network over J of CS-Kalman
-    network [N]  J of the network, sigma^2
-    cs      [N]  J of CS-Kalman, sigma^2
-    reason  [N]  index into REASONS
-    """
-
-    status: NDArray[np.int8]
-    rho: Array
-    network: Array
-    cs: Array
-    reason: NDArray[np.int8]
-
-
 def account(state: GwnnState) -> Account:
     """Why each track is extrapolated as it is."""
-    monitor = state.monitor
-    return Account(
-        monitor.status.astype(np.int8),
-        monitor.network / monitor.cs,
-        monitor.network,
-        monitor.cs,
-        monitor.reason.astype(np.int8),
-    )
+    return monitors.account(state.monitor)
 
 
 class Look(NamedTuple):
-    """What the network's words are about: the filters at some time.
+    """The filters at some time, in the form that the network's output refers to.
 
-    apart       [4, 13, N]  experts from the base, in the units of `gwnn_inputs`
-    log_weight  [13, N]     what the experts are worth to a silent network
+    apart       [4, 13, N]  experts relative to the base, in the units of `inputs`
+    log_weight  [13, N]     weights of the experts for network output 0
     scans       [N]         ahead of the last plot
     """
 
@@ -129,15 +75,15 @@ class Look(NamedTuple):
     scans: Array
 
 
-def look(state: filters.BankState, frame, ahead: filters.Ahead, time) -> Look:
-    """The filters at the times [N] s, as the network speaks of them."""
+def look(state: filters.BankState, frame: Array, ahead: filters.Ahead, time: Array) -> Look:
+    """The filters at the times [N] s, in the form that the network's output refers to."""
     log_weight = np.full((filters.EXPERTS, len(frame)), OTHERS)
     log_weight[:4] = np.log(ahead.weight[filters.BASE] + 1e-4)
     scans = (time - state.time) / inputs.SCAN
     return Look(inputs.apart(frame, ahead), log_weight, np.clip(scans, 0.0, FADE))
 
 
-def fuse(output, at: Look):
+def fuse(output: Array, at: Look) -> Array:
     """The network's correction [4, N] of the base, from its outputs [N, 19 or more]."""
     output = output.T
     weight = at.log_weight + output[LOGITS]
@@ -146,27 +92,31 @@ def fuse(output, at: Look):
     out = (at.apart * weight).sum(1)
     out[:2] += output[AT_ONCE] + at.scans * output[PER_SCAN]
     out[2:] += output[OF_VELOCITY]
-    return out
+    found: Array = out
+    return found
 
 
-def correct(state: GwnnState, at: Look):
-    """The correction [4, N] of the base, in the units of `gwnn_inputs`, with what the tracks have
-    learned."""
+def correct(state: GwnnState, at: Look) -> Array:
+    """The correction [4, N] of the base, in the units of `inputs`, including what the tracks have
+    learned.
+    """
     shift = fuse(state.output, at)
     shift[:2] += adaptation.correction(state.adapted, at.scans)
     return shift
 
 
-def flaw(output):
+def flaw(output: Array) -> Array:
     """What is wrong with outputs [N, 27]: index into REASONS, 0 for nothing."""
     alone = np.abs(output[:, AT_ONCE.start : OF_VELOCITY.stop]).max(1)
     return np.where(~np.isfinite(output).all(1), 2.0, np.where(alone > MOST, 3.0, 0.0))
 
 
-def advance(bank: filters.Filters, state: filters.BankState, memory: inputs.ResidualMemory, plots):
-    """States and memories of N rows after one plot each; and what the filters had expected.
+def advance(
+    bank: filters.Filters, state: filters.BankState, memory: inputs.ResidualMemory, plots: Plots
+) -> tuple[BankState, ResidualMemory, Expected]:
+    """States and memories of N rows after one plot each, and what the filters had expected.
 
-    A plot far off a settled track is refused by all filters alike, up to REFUSALS times in a
+    A plot far from a settled track is refused by all filters alike, at most REFUSALS times in a
     row.
     """
     expected = filters.expect(bank, state, plots)
@@ -179,7 +129,7 @@ def advance(bank: filters.Filters, state: filters.BankState, memory: inputs.Resi
 
 
 def weights(path: str = '', vessel_class: str = 'ship') -> gwnn_weights.Weights:
-    """Trained weights from a file, or those shipped; ValueError where the file is not fit."""
+    """Trained weights from a file, or the shipped ones. ValueError if the file does not fit."""
     file = path or gwnn_weights.shipped(vessel_class)
     found = gwnn_weights.load(file, inputs.COUNT, {'fusion': OUTPUTS, 'spread': SPREADS})
     theirs = found.manifest.get('vessel_class', 'unknown'), found.manifest.get('filters', 'unknown')
@@ -197,7 +147,7 @@ def gwnn(
     weights: gwnn_weights.Weights,
     max_speed: float,
     period: float,
-    fall: float = FALL,
+    trust: Trust = TRUST,
     learning: bool = False,
     vessel_class: str = 'ship',
 ) -> Estimator:
@@ -205,29 +155,28 @@ def gwnn(
 
     max_speed     m/s, of the targets: the velocity variance before the second plot
     period        s, of the radar
-    fall          J of the network over J of CS-Kalman that it falls back at
-    learning      whether tracks add to the output weights what their plots tell
-                  (`gwnn_adaptation`)
-    vessel_class  whose filters the weights weigh
+    trust         when tracks fall back on CS-Kalman, and when they return
+    learning      whether tracks adapt the output weights to their own plots (`adaptation`)
+    vessel_class  the class of the filters
     """
     bank = filters.BANKS[vessel_class]
 
-    def speak(state, memory):
-        """What the network says [N, 27] of rows, and the units that learn; 0 while warming up."""
+    def speak(state: BankState, memory: ResidualMemory) -> tuple[Array, Array]:
+        """The network's outputs [N, 27] for rows, and the units that learn; 0 while warming up."""
         out = np.zeros((len(state.time), OUTPUTS + SPREADS))
         units = adaptation.begin(len(state.time), weights.fusion, learning).units
         warm = np.flatnonzero(memory.plots >= WARM)
         if len(warm):
             seen = inputs.inputs(bank, _chosen(state, warm), _chosen(memory, warm), period).astype(
                 np.float32
-            )  # as the weights: half the time
+            )  # as the weights; float32 takes half the time
             out[warm, :OUTPUTS] = forward(weights.fusion, seen)
             out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
             if learning:
                 units[warm] = adaptation.units_of(weights.fusion, seen, POSITION)
         return out, units
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> GwnnState:
         count = len(plots.time)
         zero = np.zeros(count)
         monitor = Monitor(
@@ -246,7 +195,7 @@ def gwnn(
             adaptation.begin(count, weights.fusion, learning),
         )
 
-    def extrapolate(state, time):
+    def extrapolate(state: GwnnState, time: Array) -> Extrapolation:
         begun, frame = state.bank.time, state.memory.frame
         near = np.clip(time, begun, begun + FADE * period)
         columns = filters.base(bank, state.bank, time)
@@ -262,31 +211,32 @@ def gwnn(
                 near[heard],
             )
             shift, ratio = correct(rows, at), rows.output[:, OUTPUTS:]
-            # After a missed plot the base says how sure the position is: were the network too
-            # sure and wrong, no plot would come near enough to tell; were it too unsure, plots of
-            # what else is there would.
+            # After a missed plot the base gives the uncertainty of the position. If the network's
+            # was too small, no plot would be near enough to correct it. If it was too large,
+            # wrong plots would be taken.
             missed = (near - begun)[heard] > MISSED * period
             size = np.hypot(*shift[:2])
             shift = shift * np.where(missed, SURE / np.maximum(size, SURE), 1.0)
             ratio = np.where(missed[:, None], 0.0, ratio)
             shift = inputs.from_sigma(frame[heard], shift).T
-            # Beyond what it was trained for, the network's correction is carried on straight.
+            # Beyond the range of its training, the network's correction is continued in a straight
+            # line.
             shift[:, :2] += (time - near)[heard, None] * shift[:, 2:]
             mean[heard] += shift
             covariance[heard] = respread(covariance[heard], ratio, frame[heard], at.scans)
         fallen = np.flatnonzero(state.monitor.status == FALLBACK)
         if len(fallen):
-            rows = take(state.bank, fallen)
+            alone = take(state.bank, fallen)
             mean[fallen], covariance[fallen] = cs_kalman.predict(
-                rows.cs_mean,
-                rows.cs_covariance,
+                alone.cs_mean,
+                alone.cs_covariance,
                 (time - begun)[fallen],
                 bank.settings.manoeuvre,
                 cs_kalman.SHOWN,
             )
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
-    def update(state, plots, rows):
+    def update(state: GwnnState, plots: Plots, rows: IntArray) -> GwnnState:
         before = take(state, rows)
         frame = before.memory.frame
         after, memory, expected = advance(bank, before.bank, before.memory, plots)
@@ -304,23 +254,23 @@ def gwnn(
             adapted = adaptation.learn(
                 adapted, residual, at.scans, np.where(sound[:, None, None], units, 0.0)
             )
-        monitor = judge(before.monitor, plots, expected.ahead, shift, memory, wrong, fall)
+        monitor = judge(before.monitor, plots, expected.ahead, shift, memory, wrong, trust)
         return put(
             state,
             rows,
             GwnnState(after, memory, monitor, np.where(sound[:, None], output, 0.0), adapted),
         )
 
-    return Estimator(init, extrapolate, update)
+    return Estimator(init, extrapolate, update, account)
 
 
-def _chosen(state, rows):
-    """The rows (ascending) of a state; itself where they are all."""
+def _chosen(state: Rows, rows: IntArray) -> Rows:
+    """The rows (ascending) of a state; the state itself if these are all rows."""
     whole = len(rows) == len(state[0] if isinstance(state[0], np.ndarray) else state[0].time)
     return state if whole else take(state, rows)
 
 
-def respread(covariance, ratio, frame, scans):
+def respread(covariance: Array, ratio: Array, frame: Array, scans: Array) -> Array:
     """Covariances [N, 4, 4] with variances along and across scaled, correlations kept.
 
     ratio [N, 8]: logs of the variances' ratios, at once and a scan ahead.
@@ -332,42 +282,3 @@ def respread(covariance, ratio, frame, scans):
     for at in (slice(0, 2), slice(2, 4)):
         stretch[:, at, at] = np.matmul(line.swapaxes(1, 2), scale[:, at, None] * line)
     return sandwich(stretch, covariance)
-
-
-def judge(
-    monitor: Monitor, plots, ahead: filters.Ahead, shift, memory, wrong, fall: float = FALL
-) -> Monitor:
-    """The monitor after one plot each.
-
-    shift [4, N]: the network's correction of the base, m; wrong [N]: the flaw of its new
-    output; memory: after the plots; fall: J over J at which it falls back.
-    """
-    sigma = inputs.frame_of(plots)[:, 2:].T
-
-    def residual(position):
-        off = inputs.turn(memory.frame, plots.position.T - position) / sigma
-        size = (off * off).sum(0)
-        return np.where(size < WORST, size, WORST)  # nan counts as worst
-
-    speaking = memory.plots > WARM  # before, its output was still empty
-    residuals = np.stack(
-        [residual(ahead.mean[:2] + shift[:2]), residual(ahead.experts[:2, filters.CS])], 1
-    )
-
-    def averaged(j, keep):
-        return np.where(speaking[:, None], keep * j + (1 - keep) * residuals, j)
-
-    network, cs = averaged(np.stack([monitor.network, monitor.cs], 1), KEEP).T
-    lately = averaged(monitor.lately, KEEP_LATELY)
-    rho = network / cs
-    sound, fallen = wrong == 0, monitor.status == FALLBACK
-    ahead_of_cs = sound & (lately[:, 0] < BACK * lately[:, 1])
-    better = np.where(fallen & ahead_of_cs, monitor.better + 1, 0.0)
-    away = np.where(fallen, better < RETURN, rho > fall) | ~sound
-    status = np.where(memory.plots < WARM, WARMUP, np.where(away, FALLBACK, GWNN))
-    reason = np.where(
-        status != FALLBACK,
-        0.0,
-        np.where(~sound, wrong, np.where(fallen, np.maximum(monitor.reason, 1.0), 1.0)),
-    )
-    return Monitor(status, network, cs, lately, better, reason)

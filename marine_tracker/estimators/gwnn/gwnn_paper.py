@@ -20,8 +20,8 @@ import numpy as np
 from ...gaussian.linear import invert_2x2, squared_distance
 from ...geometry import to_range_bearing, unit_vector, wrap_angle
 from ...networks.backpropagation import Rule, Weights, draw, forward, gwnn, learn
-from ...types import Array, put, take, where
-from ..contract import Estimator
+from ...types import Array, Extrapolation, IntArray, Plots, put, take, where
+from ..contract import Estimator, Velocity
 from ..cs_kalman import POSITION_VELOCITY, CsState, Manoeuvre, cs_kalman
 
 LEVELS, TRANSLATIONS, WIDTH = 1, 5, 1.2
@@ -76,21 +76,21 @@ class Lesson(NamedTuple):
     deviation: Array
 
 
-def polar(mean, origin):
+def polar(mean: Array, origin: Array) -> Array:
     """z [N, 4]: range m, bearing rad, speed m/s and course rad (0 at rest)."""
     distance, bearing = to_range_bearing(mean[:, :2] - origin)
     speed, course = to_range_bearing(mean[:, 2:])
     return np.stack([np.maximum(distance, 1.0), bearing, speed, course], 1)
 
 
-def difference(after, before):
+def difference(after: Array, before: Array) -> Array:
     """after - before of two z [N, 4], angles by the shorter way."""
     out = after - before
     out[:, 1::2] = wrap_angle(out[:, 1::2])
     return out
 
 
-def output_unit(z):
+def output_unit(z: Array) -> Array:
     """D [N, 4] at z [N, 4]; across as along, in metres."""
     unit = np.empty_like(z)
     unit[:, 0], unit[:, 2], unit[:, 3] = POSITION_UNIT, SPEED_UNIT, COURSE_UNIT
@@ -98,19 +98,20 @@ def output_unit(z):
     return unit
 
 
-def network_inputs(z, centre):
+def network_inputs(z: Array, centre: Array) -> Array:
     """The network's inputs [N, 4] for z [N, 4]."""
     off = difference(z, centre)
     off[:, 1] *= z[:, 0]
-    return INPUT_GAIN * np.clip(off / INPUT_UNIT, -INPUT_LIMIT, INPUT_LIMIT)
+    found: Array = INPUT_GAIN * np.clip(off / INPUT_UNIT, -INPUT_LIMIT, INPUT_LIMIT)
+    return found
 
 
-def deviation(base: CsState):
+def deviation(base: CsState) -> Array:
     """Standard deviation [N] m of the filter's position, the mean of both axes."""
     return np.sqrt((base.covariance[:, 0, 0] + base.covariance[:, 3, 3]) / 2)
 
 
-def gain(base: CsState, plots):
+def gain(base: CsState, plots: Plots) -> Array:
     """How far [N] the plots have moved the filter, 0 to 1: half the trace of P R^-1."""
     inverse, _ = invert_2x2(plots.covariance)
     spread = base.covariance
@@ -121,7 +122,7 @@ def gain(base: CsState, plots):
     )
 
 
-def distance(apart, covariance):
+def distance(apart: Array, covariance: Array) -> Array:
     """Squared distance [N] of offsets [N, 2] by their covariance [N, 2, 2]."""
     return squared_distance(apart, invert_2x2(covariance)[0])
 
@@ -135,7 +136,7 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
     design = gwnn(4, 4, LEVELS, TRANSLATIONS, WIDTH)
     fresh = draw(design, 1, np.random.default_rng(SEED))
 
-    def init(plots, velocity=None):
+    def init(plots: Plots, velocity: Velocity | None = None) -> PaperState:
         count = len(plots.time)
         base = filter_.init(plots, velocity)
         weights = take(fresh, np.zeros(count, int))
@@ -149,7 +150,9 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
             np.zeros(count),
         )
 
-    def ahead(state, time, base):
+    def ahead(
+        state: PaperState, time: Array, base: Extrapolation
+    ) -> tuple[IntArray, Extrapolation, Array]:
         """Rows whose networks are warm, what they extrapolate, its squared distance from base."""
         rows = np.flatnonzero((state.taught >= WARM_UP) & (time > state.base.time))
         mine = take(state, rows)
@@ -169,13 +172,13 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
             )
         return rows, base._replace(position=position, velocity=velocity), off
 
-    def extrapolate(state, time):
+    def extrapolate(state: PaperState, time: Array) -> Extrapolation:
         base = filter_.extrapolate(state.base, time)
         rows, told, off = ahead(state, time, base)
         believed = off <= BELIEVED
         return put(base, rows[believed], take(told, believed))
 
-    def update(state, plots, rows):
+    def update(state: PaperState, plots: Plots, rows: IntArray) -> PaperState:
         old = take(state, rows)
         warm, _, off = ahead(old, plots.time, filter_.extrapolate(old.base, plots.time))
         old = renew(old, warm[~(off <= HOPELESS)])
@@ -200,7 +203,7 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
         new = PaperState(base, plots.time, mean, old.weights, centre, plots.origin, old.taught)
         return put(state, rows, where(told, new, old._replace(base=base)))
 
-    def renew(state, rows):
+    def renew(state: PaperState, rows: IntArray) -> PaperState:
         """The state with new networks in the named rows."""
         return put(
             state,
@@ -210,7 +213,7 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
             ),
         )
 
-    def teach(state, lesson):
+    def teach(state: PaperState, lesson: Lesson) -> PaperState:
         """The rows with their networks taught; one that overflows begins anew."""
         wanted = np.clip(lesson.wanted, -WANTED_LIMIT, WANTED_LIMIT)
         near = np.maximum(FINEST, NEAR_SHARE * lesson.deviation)

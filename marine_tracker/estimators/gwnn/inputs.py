@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...gaussian import linear_modes
-from ...types import Array, Plots
+from ...types import Array, BoolArray, Plots
 from . import bank as filters
 
 SCAN = filters.PERIOD  # s: the unit of time of every input, whatever the radar's period
@@ -98,7 +98,7 @@ def begin(plots: Plots) -> ResidualMemory:
     )
 
 
-def frame_of(plots: Plots):
+def frame_of(plots: Plots) -> Array:
     """The line of sight [N, 4] of plots: unit vector, sigma along and across it, m."""
     offset = plots.position - plots.origin
     distance = np.hypot(offset[:, 0], offset[:, 1])
@@ -107,7 +107,7 @@ def frame_of(plots: Plots):
     return np.column_stack([east, north, *np.sqrt(spread)])
 
 
-def turn(frame, vectors):
+def turn(frame: Array, vectors: Array) -> Array:
     """Vectors [2, ..., N] turned into the line of sight [along, across], or back again."""
     east, north = frame[:, 0], frame[:, 1]
     out = np.empty(vectors.shape)
@@ -116,7 +116,7 @@ def turn(frame, vectors):
     return out
 
 
-def to_sigma(frame, states):
+def to_sigma(frame: Array, states: Array) -> Array:
     """States [4, ..., N], m and m/s, in the units of the network."""
     sigma = frame[:, 2:].T.reshape((2,) + (1,) * (states.ndim - 2) + (-1,))
     return np.concatenate(
@@ -124,7 +124,7 @@ def to_sigma(frame, states):
     )
 
 
-def from_sigma(frame, states):
+def from_sigma(frame: Array, states: Array) -> Array:
     """The way back from `to_sigma`, for states [4, N]."""
     sigma = frame[:, 2:].T
     return np.concatenate(
@@ -132,13 +132,13 @@ def from_sigma(frame, states):
     )
 
 
-def apart(frame, ahead: filters.Ahead):
+def apart(frame: Array, ahead: filters.Ahead) -> Array:
     """How far the experts are from the base [4, 13, N], in the units of the network."""
     off = to_sigma(frame, ahead.experts - ahead.mean[:, None])
     return np.minimum(np.maximum(off, -FARTHEST), FARTHEST)
 
 
-def variances(frame, covariance):
+def variances(frame: Array, covariance: Array) -> Array:
     """Variances [4, N] of covariances [N, 4, 4], in the units of the network."""
     sigma = frame[:, 2:].T
     return np.concatenate(
@@ -150,7 +150,7 @@ def variances(frame, covariance):
 
 
 def remember(
-    memory: ResidualMemory, expected: filters.Expected, plots: Plots, step, used
+    memory: ResidualMemory, expected: filters.Expected, plots: Plots, step: Array, used: BoolArray
 ) -> ResidualMemory:
     """Memories after one plot each, which the filters took where `used` [N] holds."""
     frame = frame_of(plots)
@@ -195,7 +195,9 @@ def remember(
     )
 
 
-def inputs(bank: filters.Filters, state: filters.BankState, memory: ResidualMemory, period):
+def inputs(
+    bank: filters.Filters, state: filters.BankState, memory: ResidualMemory, period: float
+) -> Array:
     """The network's inputs [N, COUNT] after a plot; period s of the radar (or [N])."""
     frame, sigma = memory.frame, memory.frame[:, 2:].T
     ahead = filters.look(bank, state, np.atleast_1d(np.asarray(period, float)))
@@ -236,7 +238,7 @@ def inputs(bank: filters.Filters, state: filters.BankState, memory: ResidualMemo
     return np.ascontiguousarray(np.concatenate(blocks).T)
 
 
-def _modes(weight, straight):
+def _modes(weight: Array, straight: int) -> Array:
     """Logarithms of mode probabilities [J, N], and by how much right turns exceed left ones.
 
     The first `straight` modes go straight, the others turn right and left by turns.
@@ -248,7 +250,7 @@ def _modes(weight, straight):
     return np.concatenate(blocks)
 
 
-def _along_across(frame, spread):
+def _along_across(frame: Array, spread: Array) -> Array:
     """Variances [2, N] along and across the line of sight, of ee, en, nn [3, N]."""
     east, north = frame[:, 0], frame[:, 1]
     ee, en, nn = spread

@@ -1,11 +1,14 @@
-"""Paper 002's adaptive alpha-beta filters on its HF radar, and at a marine radar's ranges.
+"""Tests the adaptive alpha-beta filters of paper 002 on its HF radar and on a marine radar.
 
-HF radar: 60 scans of a minute, five ships at 60 to 140 km, 0.8 km, 0.5 km/h and 1 deg, detection
-0.85, 150 false plots a scan (the scenario `hf_radar`); errors of the fifth ship, which crosses at
-110 km, RMS after ten scans while its track lives. Every filter gets the same plots by the same
-association (hf_trials.py). The paper's table of ships is lost: how many tracks are lost depends on
-the speed of that ship, so it is also tried at 40 km/h. Marine radar: the tracks of `marine_table`
-with a Doppler of 0.5 m/s, each plot given to its track. 200 runs take some 12 s of CPU.
+HF radar: 60 scans of one minute; five ships at 60 to 140 km; plot deviations 0.8 km, 0.5 km/h and
+1 deg; detection probability 0.85; 150 false plots a scan (the scenario `hf_radar`). Errors are
+those of the fifth ship, which crosses at 110 km: RMS after the first ten scans, while its track
+lives. Every filter gets the same plots by the same association (hf_trials.py). The paper's table
+of ships is lost. The share of lost tracks depends on the speed of the fifth ship, so that ship is
+also tried at 40 km/h.
+
+Marine radar: the tracks of `marine_table` with a Doppler deviation of 0.5 m/s. Each plot is given
+to its own track. 200 runs take about 12 s of CPU time.
 """
 
 from typing import NamedTuple
@@ -31,16 +34,19 @@ HELP = "adaptive alpha-beta with Doppler: paper 002's HF radar, and a marine one
 RUNS = 200
 KALMAN, IMM = 'polar Kalman', 'imm, no Doppler'
 NO_DOPPLER = np.array([hf_trials.GATE[0], np.inf, hf_trials.GATE[2]])
-SETTLED = 10  # scans that do not count
+SETTLED = 10  # first scans, left out of the errors
 UNITS = (('R', 'km', 1e3), ('v', 'km/h', 1 / 3.6), ('theta', 'deg', float(np.radians(1))))
-DOPPLER_SIGMA = 0.5  # m/s, of the marine radar
-FASTER = 40 / 3.6  # m/s: the crossing ship once more, harder
+DOPPLER_SIGMA = 0.5  # m/s, Doppler deviation of the marine radar
+FASTER = 40 / 3.6  # m/s: a faster crossing ship, which is harder
 PROTOTYPE = 'prototype'
 
 
 class Summary(NamedTuple):
-    """A filter in the HF scene: share of crossing ships lost, RMS errors [3] of those not lost in
-    m, m/s, rad, and of all five ships; roughness of the crossing track m, see `summary`."""
+    """Results of a filter in the HF scene.
+
+    Share of crossing ships lost; RMS errors [3] of those not lost in m, m/s, rad; share lost of all
+    five ships; roughness of the crossing track in m, see `summary`.
+    """
 
     lost: float
     error: np.ndarray
@@ -49,7 +55,7 @@ class Summary(NamedTuple):
 
 
 def filters(on: Scene) -> dict[str, Estimator]:
-    """The four modes, and what they are to be measured by."""
+    """The four modes, and the filters to compare them with."""
     sigma = on.sigma.tolist()
     rows = {
         mode: alpha_beta(mode, on.max_speed, sigma[1], NOISE['ship'])
@@ -64,7 +70,9 @@ def filters(on: Scene) -> dict[str, Estimator]:
 
 
 def summary(outcome: Outcome) -> Summary:
-    """Its figures. Roughness: RMS second difference from scan to scan of the error in place."""
+    """The figures of one filter. Roughness: RMS of the second difference of the position error from
+    scan to scan.
+    """
     error = outcome.error[SETTLED:, :, CROSSING]
     off = error[..., [0, 2]] * [1.0, 110e3]  # m along and across
     rough = np.diff(off, 2, axis=0)
@@ -77,7 +85,7 @@ def summary(outcome: Outcome) -> Summary:
 
 
 def _mean(values):
-    """Over scans and runs, [3 or 2]; nan where every track is lost."""
+    """RMS over scans and runs, [3 or 2]; nan where every track is lost."""
     known = np.isfinite(values)
     count = known.sum((0, 1))
     return np.where(
@@ -86,7 +94,7 @@ def _mean(values):
 
 
 def marine(leg: marine_table.Leg, runs: int, seed: int, doppler: bool) -> tuple[float, float]:
-    """Position error m an axis and course error deg of `hf_soft`, RMS, on a track at sea."""
+    """RMS position error (m an axis) and course error (deg) of `hf_soft` on a marine track."""
     rng = np.random.default_rng(seed)
     position, velocity = marine_table.truth(leg)
     distance, bearing = to_range_bearing(position)
@@ -116,7 +124,7 @@ def marine(leg: marine_table.Leg, runs: int, seed: int, doppler: bool) -> tuple[
 
 
 def run(runs: int, seed: int, progress: Progress = silent) -> Result:
-    """Every filter on the HF radar, `hf_soft` at sea; figures, claims and pictures."""
+    """Every filter on the HF radar, and `hf_soft` at sea: figures, claims and pictures."""
     on = hf_trials.scene()
     rows = filters(on)
     outcomes: dict[str, Outcome] = {}
@@ -143,7 +151,7 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
 
 
 def hf_figures(found: dict[str, Summary]) -> list[report.Figure]:
-    """What is demanded of each filter in the HF scene, and what is not, beside it."""
+    """The limits for each filter in the HF scene, and the figures without a limit beside them."""
     most_lost = {'hf': 6.0, 'hf_soft': 2.0, KALMAN: 1.0}
     limits = {'R': 0.60, 'v': 0.40, 'theta': 0.75}
     figures = []
@@ -167,7 +175,7 @@ def hf_figures(found: dict[str, Summary]) -> list[report.Figure]:
 
 
 def marine_figures(track: str, leg, runs: int, seed: int) -> list[report.Figure]:
-    """`hf_soft` on one track of the marine table, with Doppler and without."""
+    """`hf_soft` on one track of the marine table, with Doppler and without it."""
     figures = []
     for doppler in (True, False):
         how = 'with Doppler' if doppler else 'without'

@@ -9,8 +9,9 @@ SOURCE = 'paper 002'
 
 
 def claims(found, faster) -> list[Claim]:
-    """Verdicts from the summaries by filter's name, and the shares lost of a faster crossing ship
-    (experiments/alpha_beta.py)."""
+    """Verdicts from the summaries by filter name, and from the shares lost with a faster crossing
+    ship (alpha_beta.py).
+    """
     ours, soft, one, two = (found[name] for name in ('hf', 'hf_soft', 'method1', 'method2'))
     kalman = found['polar Kalman']
     km, kmh, deg = 1e3, 1 / 3.6, np.radians(1)

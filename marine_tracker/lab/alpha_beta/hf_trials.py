@@ -1,10 +1,10 @@
 """The HF surface-wave radar of paper 002: filters on its ships among clutter, many runs at once.
 
-The ships are those of the scenario `hf_radar`, the radar's deviations and probability of detection
-too; every minute a run has a plot of each ship that is seen, and false plots evenly in range,
+Ships, radar deviations and detection probability are those of the scenario `hf_radar`. Every minute
+a run has a plot of each ship that is seen, and false plots. False plots are uniform in range,
 bearing and radial speed over the station's sector. Each ship's track begins with its first two
-plots and then takes, of all plots inside its gate, the nearest in deviations: the paper's own
-association, the same for every filter, so that only the filters differ.
+plots. After that it takes the plot nearest in deviations, out of all plots inside its gate. This is
+the paper's own association. It is the same for every filter, so only the filters differ.
 """
 
 from collections.abc import Iterator
@@ -13,20 +13,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import config
+from ... import config, yaml_file
 from ...estimators.contract import Estimator
 from ...estimators.polar_motion import to_polar
 from ...geometry import polar_to_position, wrap_angle
-from ...parameters import read_yaml_mapping
 from ...simulation import scenario
 from ...types import Array, Plots, take
 
 CLUTTER = 150  # false plots a scan in the station's sector:
 NEAR, FAR = 20e3, 180e3  # m
 SECTOR = np.radians(60)  # either side of north
-BAND = 12.5  # m/s, radial speeds either way
+BAND = 12.5  # m/s, largest radial speed in either direction
 GATE = np.array([4.0, 3.0, 6.0])  # sigma of range, radial speed, bearing
-LOST_AFTER = 8  # scans without plot, or out of the gate, in a row
+LOST_AFTER = 8  # scans in a row without a plot in the gate
 CROSSING = 4  # the paper's fifth ship
 
 
@@ -60,11 +59,11 @@ class Outcome(NamedTuple):
 
 
 def scene(crossing_speed: float | None = None) -> Scene:
-    """The scenario as the station sees it, a scan at a time, all ships at once.
+    """The scenario as the station sees it: one scan at a time, all ships at once.
 
     crossing_speed  m/s, of the fifth ship; by default the scenario's
     """
-    values = read_yaml_mapping(config.path('scenarios', 'hf_radar.yaml'))
+    values = yaml_file.read_mapping(config.path('scenarios', 'hf_radar.yaml'))
     if crossing_speed is not None:
         values['targets'][CROSSING]['speed_mps'] = crossing_speed
     loaded = scenario.build(values, 'hf_radar')
@@ -90,9 +89,9 @@ def scene(crossing_speed: float | None = None) -> Scene:
 
 
 def observe(on: Scene, runs: int, seed: int) -> Iterator[tuple[Array, NDArray[np.bool_]]]:
-    """Scan by scan the plots [B, T + CLUTTER, 3], those of the ships first, and which exist.
+    """For each scan the plots [B, T + CLUTTER, 3], ships first, and which of them exist.
 
-    The ships are seen in the first two scans.
+    The ships are always seen in the first two scans.
     """
     rng = np.random.default_rng(seed)
     ships = on.truth.shape[1]
@@ -107,7 +106,7 @@ def observe(on: Scene, runs: int, seed: int) -> Iterator[tuple[Array, NDArray[np
 
 
 def as_plots(polar, time: float, sigma) -> Plots:
-    """Plots of range, radial speed and bearing [N, 3] taken at the origin."""
+    """Plots from range, radial speed and bearing [N, 3], for a radar at the origin."""
     distance, speed, bearing = polar.T
     position, covariance = polar_to_position(distance, bearing, sigma[0], sigma[2])
     none = np.zeros(len(distance))
@@ -124,9 +123,9 @@ def as_plots(polar, time: float, sigma) -> Plots:
 
 
 def run(estimator: Estimator, on: Scene, runs: int, seed: int, gate=GATE) -> Outcome:
-    """The filter on all runs and ships; the same seed gives every filter the same plots.
+    """Runs the filter on all runs and ships. The same seed gives every filter the same plots.
 
-    gate  [3]  sigma of range, radial speed and bearing; inf where a filter cannot tell
+    gate  [3]  sigma of range, radial speed and bearing; inf where a filter cannot judge
     """
     scans, ships, _ = on.truth.shape
     error = np.full((scans, runs, ships, 3), np.nan)
@@ -169,7 +168,7 @@ def _polar(estimator, state, time):
 
 
 def _apart(one, other):
-    """Differences [..., 3] of range, radial speed and bearing."""
+    """Differences [..., 3] of range, radial speed and bearing; the bearing wraps."""
     apart = one - other
     apart[..., 2] = wrap_angle(apart[..., 2])
     return apart

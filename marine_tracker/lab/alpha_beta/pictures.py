@@ -1,4 +1,4 @@
-"""The HF scene as pictures: a run's tracks by each filter, and how errors and losses grow."""
+"""Pictures of the HF scene: tracks of one run by each filter; errors and losses over time."""
 
 from functools import partial
 
@@ -7,7 +7,7 @@ import numpy as np
 from ...evaluation.result import Picture
 from .hf_trials import CROSSING, Outcome, Scene
 
-# Colours of Okabe and Ito, which the colour-blind tell apart.
+# Colours of Okabe and Ito, safe for colour-blind readers.
 STYLES = {
     'method2': ('#e69f00', '--'),
     'method1': ('#009e73', '-.'),
@@ -28,7 +28,7 @@ def pictures(on: Scene, outcomes: dict[str, Outcome]) -> list[Picture]:
 
 
 def tracks(figure, on: Scene, outcomes: dict[str, Outcome]) -> None:
-    """A plan for each mode: the ships' ways and the tracks, which end where they are lost."""
+    """One plan for each mode: the true paths and the tracks. A track ends where it is lost."""
     way = (
         on.truth[..., 0, None]
         * np.stack([np.sin(on.truth[..., 2]), np.cos(on.truth[..., 2])], -1)
@@ -77,7 +77,9 @@ def tracks(figure, on: Scene, outcomes: dict[str, Outcome]) -> None:
 
 
 def errors(figure, on: Scene, outcomes: dict[str, Outcome]) -> None:
-    """RMS errors of the crossing ship over the runs whose track lives, and how many do not."""
+    """RMS errors of the crossing ship over the runs whose track lives, and the share of lost
+    tracks.
+    """
     minutes = on.time / 60
     panels = figure.subplots(2, 2, sharex=True).flat
     for axes, what, part, size in zip(
@@ -91,7 +93,7 @@ def errors(figure, on: Scene, outcomes: dict[str, Outcome]) -> None:
             error = outcomes[name].error[:, :, CROSSING, part] / size
             alive = np.isfinite(error).sum(1)
             value = np.sqrt(np.nansum(error**2, 1) / np.maximum(alive, 1))
-            value[alive < 5] = np.nan  # too few to tell
+            value[alive < 5] = np.nan  # too few runs for a mean
             axes.plot(minutes, value, line, color=colour, label=name)
         axes.axhline(on.sigma[part] / size, color='0.6', linewidth=1, label='one plot')
         axes.set_title(f'RMS error of the {what}', fontsize=10)

@@ -1,8 +1,8 @@
-"""The Kalman filter that paper 002's filters have to be measured by: polar, with Doppler.
+"""A polar Kalman filter with Doppler: the reference for the filters of paper 002.
 
-Range and radial speed, bearing and bearing rate: two pairs of a value and its rate, white noise in
-the rates. The same model as the paper's, with the shares that make the error least. For a radar at
-rest; plots must tell radial speeds.
+Two pairs of a value and its rate: range and radial speed, bearing and bearing rate. The rates have
+white process noise. The model is the paper's, with the gains that make the error smallest. It is
+for a radar at rest. Plots must have radial speeds.
 """
 
 from typing import NamedTuple
@@ -21,8 +21,9 @@ MEASURED = np.array([0, 1, 2])  # of range, radial speed, bearing, bearing rate
 
 
 class PolarState(NamedTuple):
-    """time [N]; mean [N, 4] range, radial speed, bearing, its rate; covariance [N, 4, 4]; origin
-    [N, 2]."""
+    """time [N]; mean [N, 4] range, radial speed, bearing, bearing rate; covariance [N, 4, 4];
+    origin [N, 2].
+    """
 
     time: Array
     mean: Array
@@ -33,7 +34,7 @@ class PolarState(NamedTuple):
 def polar_kalman(
     max_speed: float, range_sigma: float, speed_sigma: float, bearing_sigma: float
 ) -> Estimator:
-    """The filter for a radar of these deviations: m, m/s and rad; max_speed m/s of the targets."""
+    """The filter for a radar with these deviations (m, m/s, rad); max_speed m/s of the targets."""
     noise = np.diag([range_sigma, speed_sigma, bearing_sigma]) ** 2
 
     def init(plots, velocity=None):

@@ -1,6 +1,6 @@
-"""Every estimator on every kind of scene: which one to choose when.
+"""Compares every estimator on every kind of scene, to help choose one.
 
-Errors of position and velocity, RMS, for each estimator of the registry as shipped:
+RMS errors of position and velocity, for each estimator of the registry with its default settings:
 
     straight, turns, fast boat     the tracks of `marine_table`, each plot given to its track
     sharp turns, boat              B tracks that turn hard, of ships and of boats (ship_tracks)
@@ -8,12 +8,12 @@ Errors of position and velocity, RMS, for each estimator of the registry as ship
     AIS                            real ships drive the simulator; with --data
     recordings                     real radar, with --data
 
-`runs` counts the Monte Carlo tracks of the first five; through the whole tracker each scene runs
-once for every 50 of them, recordings once. Imazu's encounters go through the whole service, where
-danger is told from a motion that is the ARPA's own whatever the estimator is.
+`runs` is the number of Monte Carlo tracks of the first five scenes. A scene through the whole
+tracker runs once for every 50 of them; a recording runs once. Imazu's encounters go through the
+whole service. There the ARPA judges danger by a motion model of its own, which does not depend on
+the estimator.
 """
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -25,6 +25,7 @@ from ...conformance.encounters import WARNED_BEFORE
 from ...estimators import ESTIMATORS, Estimator
 from ...evaluation import parallel, replay, report
 from ...evaluation.result import Progress, Result, silent
+from ...files import write_text
 from ...parameters import TrackerParameters
 from ...recording import csv_folder
 from ...simulation import scenario
@@ -42,7 +43,7 @@ OPTIONS = {
     },
     'page': {'metavar': 'FILE', 'help': 'also write the table into this page, between its marks'},
 }
-AIS_OWN_SHIP = '14'  # a vessel that reports all the time and meets some
+AIS_OWN_SHIP = '14'  # a vessel that reports all the time and meets several others
 AIS_SCENE = {
     'duration_s': 1800,
     'ais': {'file': 'ais.csv'},
@@ -58,8 +59,9 @@ SHARP_SCANS = 150
 
 
 class Errors(NamedTuple):
-    """Of one estimator in one scene: RMS m and m/s; part of the time that targets were held;
-    nan where there was nothing to take it from."""
+    """One estimator in one scene: RMS errors in m and m/s; share of the time that targets were
+    held; nan where there is no data for a figure.
+    """
 
     position: float
     velocity: float
@@ -67,7 +69,7 @@ class Errors(NamedTuple):
 
 
 def made(name: str, vessel_class: str = 'ship') -> Estimator:
-    """The estimator as shipped."""
+    """The estimator with its default settings."""
     return ESTIMATORS[name](
         TrackerParameters(estimator=name, vessel_class=vessel_class, range_sigma_m=RANGE_SIGMA)
     )
@@ -79,17 +81,16 @@ def run(
     progress: Progress = silent,
     data: str | None = None,
     page: str | None = None,
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> Result:
     """Every estimator of the registry in every scene."""
-    processes = processes or os.cpu_count() or 1
     scenes = scenes_of(runs, seed, data)
     work = [
         parallel.Job(function, (name, *arguments))
         for name in ESTIMATORS
         for function, *arguments in scenes.values()
     ]
-    results = iter(parallel.run(work, processes, progress))
+    results = iter(parallel.run(work, workers, progress))
     found = {name: {scene: next(results) for scene in scenes} for name in ESTIMATORS}
     figures = [
         report.Figure(f'{name}, {scene}: {what}', getattr(errors, what), unit)
@@ -98,14 +99,14 @@ def run(
         for what, unit in (('position', 'm'), ('velocity', 'm/s'), ('held', ''))
         if what != 'held' or errors.held != 1.0
     ]
-    figures += _imazu(max(1, runs // 200), seed, processes)
+    figures += _imazu(max(1, runs // 200), seed, workers)
     if page:
         write_table(page, found)
     return Result(figures, pictures=[pictures.picture(found)])
 
 
 def scenes_of(runs: int, seed: int, data: str | None) -> dict[str, tuple[Any, ...]]:
-    """A function and its arguments after the estimator's name, for each scene."""
+    """For each scene a function, and its arguments after the estimator's name."""
     scenes: dict[str, tuple[Callable[..., Errors], *tuple[Any, ...]]] = {
         name: (on_track, name, runs, seed) for name in marine_table.TRACKS
     }
@@ -184,7 +185,7 @@ def _scored(runs: list[dict[str, Any]]) -> Errors:
         told = [run[name] for run in runs if run[name] is not None]
         return float(np.mean(np.power(told, power)) ** (1 / power)) if told else float('nan')
 
-    # Of both axes together in the score, of one elsewhere here.
+    # The score has the error of both axes together; elsewhere in this module it is per axis.
     return Errors(
         mean('position_rmse_m', 2) / np.sqrt(2),
         mean('velocity_rmse_mps', 2) / np.sqrt(2),
@@ -192,9 +193,9 @@ def _scored(runs: list[dict[str, Any]]) -> Errors:
     )
 
 
-def _imazu(runs: int, seed: int, processes: int) -> list[report.Figure]:
-    """The encounters: dangers told in time, and the CPA three minutes after acquisition."""
-    found = encounters.run(list(ESTIMATORS), runs, seed, processes=processes)
+def _imazu(runs: int, seed: int, workers: parallel.Workers) -> list[report.Figure]:
+    """The encounters: dangers warned of in time, and CPA error 3 minutes after acquisition."""
+    found = encounters.run(list(ESTIMATORS), runs, seed, workers=workers)
     figures = []
     for e, name in enumerate(ESTIMATORS):
         warned = np.concatenate([one.warned[e].ravel() for one in found])
@@ -214,7 +215,10 @@ BEGIN, END = '<!-- table: begin -->', '<!-- table: end -->'
 
 
 def write_table(page: str, found: dict[str, dict[str, Errors]]) -> None:
-    """The table between the marks of the page, a row a scene. ValueError where it has none."""
+    """Writes the table, one row a scene, between the marks of the page.
+
+    ValueError if the page has no marks.
+    """
     text = Path(page).read_text()
     head, begin, rest = text.partition(BEGIN)
     _, end, tail = rest.partition(END)
@@ -228,7 +232,7 @@ def write_table(page: str, found: dict[str, dict[str, Errors]]) -> None:
         row = [errors[scene] for errors in found.values()]
         best = [np.nanmin([one[k] for one in row] + [np.inf]) for k in (0, 1)]
         lines.append(f'| {scene} | ' + ' | '.join(_cell(one, best) for one in row) + ' |')
-    Path(page).write_text('\n'.join([head + begin, *lines, end + tail]))
+    write_text(page, '\n'.join([head + begin, *lines, end + tail]))
 
 
 def _cell(errors: Errors, best) -> str:

@@ -1,4 +1,4 @@
-"""Every estimator's errors over those of the IMM, scene by scene."""
+"""Every estimator's errors relative to those of the IMM, scene by scene."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -9,7 +9,7 @@ import numpy as np
 from ...evaluation.result import Picture
 
 BESIDE = 'imm'
-# Colours of Okabe and Ito, and a mark each; estimators that are not named here take what is left.
+# Colours of Okabe and Ito, and a marker each. Other estimators take the colours that are left.
 MARKS = (
     ('s', '#e69f00'),
     ('o', '#0072b2'),
@@ -20,12 +20,12 @@ MARKS = (
     ('X', '#000000'),
     ('*', '#7f7f7f'),
 )
-MOST = 2.5  # ratio; what is above stands at the edge
-FEWER = 0.02  # held by so much less than with the IMM: drawn hollow
+MOST = 2.5  # ratio; larger values are drawn at the edge
+FEWER = 0.02  # held for this much less of the time than with the IMM: drawn hollow
 
 
 def picture(found: Mapping[str, Mapping[str, Any]]) -> Picture:
-    """Of Errors by estimator and scene (compare.py)."""
+    """Errors by estimator and scene (compare.py)."""
     scenes = list(next(iter(found.values())))
     return Picture(
         'compare', (10, 1.7 + 0.36 * len(scenes)), partial(paint, found=found, scenes=scenes)
@@ -33,7 +33,7 @@ def picture(found: Mapping[str, Mapping[str, Any]]) -> Picture:
 
 
 def paint(figure, found, scenes) -> None:
-    """Two panels, position and velocity; a row a scene, left of 1 is better than the IMM."""
+    """Two panels, position and velocity; one row a scene. Left of 1 is better than the IMM."""
     panels = figure.subplots(1, 2, sharey=True)
     others = [name for name in found if name != BESIDE]
     for axes, what in zip(panels, ('position', 'velocity'), strict=True):

@@ -1,4 +1,4 @@
-"""What paper 004 claims of its filters, and whether the runs bear it out."""
+"""What paper 004 claims of its filters, and whether the runs confirm it."""
 
 from collections.abc import Callable
 
@@ -11,11 +11,11 @@ from .trials import RANDOM_MATRIX, ExtendedTrial
 SOURCE = 'paper 004'
 PAPERS = ('gp', 'gp_ts', 'gp_ss', 'gp_mc')  # its four filters
 NOISY = PAPERS[1:]
-CLOSE = 1.25  # the largest error over the smallest that is still close
+CLOSE = 1.25  # largest error over the smallest at which errors still count as close
 
 
 def claims(found: Findings) -> list[Claim]:
-    """Each with the figures of all cases and the verdict."""
+    """Each claim with the figures of all cases and the verdict."""
     cases = {
         case: {name: found[case, name] for name in (*VARIANTS, RANDOM_MATRIX)} for case in CASES
     }

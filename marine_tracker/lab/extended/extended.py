@@ -1,17 +1,15 @@
-"""Extended targets: outlines by Gaussian processes with noisy input, beside a random matrix.
+"""Extended targets: outlines by Gaussian processes with noisy input, compared with a random matrix.
 
-The scenario of paper 004: outlines of three shapes, about 3 to 6 m, seen for 100 s as points with a
-deviation of 1 m; 0.8 a frame, which is next to nothing, and 0.8 a metre of outline. Then a ship of
-200 m whose near side is seen, handed over from a random matrix. 100 runs take some two minutes on
-two processors.
+The scenario of paper 004: outlines of three shapes, about 3 to 6 m in size, seen for 100 s as
+points with a deviation of 1 m. The mean number of points is 0.8 a frame (very few), or 0.8 a metre
+of outline. Then a ship of 200 m whose near side is seen, handed over from a random matrix to a
+Gaussian process. 100 runs take about two minutes on two processors.
 """
-
-import os
 
 import numpy as np
 
 from ...evaluation import parallel
-from ...evaluation.parallel import Job
+from ...evaluation.parallel import Job, Workers
 from ...evaluation.result import Progress, Result, silent
 from ...extent.input_noise import VARIANTS
 from . import figures, handover
@@ -23,28 +21,13 @@ from .trials import RANDOM_MATRIX, gaussian_process_trial, random_matrix_trial
 
 HELP = 'outlines of extended targets by Gaussian processes and by a random matrix'
 RUNS = 100
-OPTIONS = {
-    'processes': {
-        'type': int,
-        'metavar': 'N',
-        'default': os.cpu_count(),
-        'help': 'how many at once (default %(default)s); no figure depends on it',
-    }
-}
 
 
-def run(runs: int, seed: int, progress: Progress = silent, processes: int | None = None) -> Result:
-    """All variants in all cases, the claims of the paper, and the pictures."""
-    if processes is not None and processes < 1:
-        raise ValueError(f'--processes is {processes}; it must be at least 1')
+def run(runs: int, seed: int, progress: Progress = silent, workers: Workers = None) -> Result:
+    """Runs all variants in all cases; returns figures, the claims of the paper, and pictures."""
     paper, ship = plan(runs, seed)
     found = dict(
-        zip(
-            [*paper, *ship],
-            parallel.run(
-                [*paper.values(), *ship.values()], processes or os.cpu_count() or 1, progress
-            ),
-        )
+        zip([*paper, *ship], parallel.run([*paper.values(), *ship.values()], workers, progress))
     )
     trials = {of: found[of] for of in paper}
     return Result(

@@ -1,4 +1,4 @@
-"""What the outline filters do in the scenario of paper 004, as figures beside what is demanded."""
+"""Figures of the outline filters in the scenario of paper 004, with their limits."""
 
 import time
 
@@ -29,19 +29,19 @@ CASES = {
     'cross, .8 a frame': Case('cross', 0.8),
     'diamond, .8 a frame': Case('diamond', 0.8),
 }
-# SPARSE, but for one thing: the last arguments of `gaussian_process_trial`, full and drawn.
+# SPARSE with one change each: the last two arguments of `gaussian_process_trial`, full and drawn.
 OTHERWISE = {'noise of the cells only': (False, False), 'start drawn from P0': (True, True)}
 OTHER_VARIANTS = ('gp', 'gp_ts', 'gp_q15')
 SAMPLED = ('gp_mc', 'gp_q15')
-CELLS = 30  # of a scan whose cost is taken
+CELLS = 30  # plots of the scan whose cost is measured
 REPEATS = 20
-STEP = 1e-6  # m and rad, of finite differences
+STEP = 1e-6  # m and rad, steps of finite differences
 
-Findings = dict[tuple[str, str], ExtendedTrial]  # by case, or what is otherwise, and filter
+Findings = dict[tuple[str, str], ExtendedTrial]  # by case (or by change) and filter
 
 
 def figures(found: Findings) -> list[Figure]:
-    """All that was measured, then the demands."""
+    """All measured figures, then those with limits."""
     table = []
     for (case, name), trial in found.items():
         if name != RANDOM_MATRIX:
@@ -59,7 +59,7 @@ def figures(found: Findings) -> list[Figure]:
 
 
 def demands(found: Findings) -> list[Figure]:
-    """What the filters must reach."""
+    """The limits that the filters must meet."""
     sparse, dense = ({name: found[case, name] for name in VARIANTS} for case in (SPARSE, DENSE))
     against = 'prototype'
     made = []
@@ -110,7 +110,7 @@ def demands(found: Findings) -> list[Figure]:
 
 
 def jacobian() -> Figure:
-    """Of the plain filter, against central differences, at the start of 200 runs."""
+    """The plain filter's Jacobian against central differences, at the start of 200 runs."""
     state, cells, noise, model = _start(200, 'gp')
     found = gaussian_process.measure(state, cells[:, 0], noise, model).jacobian
     worst = 0.0
@@ -127,7 +127,7 @@ def jacobian() -> Figure:
 
 
 def costs() -> list[Figure]:
-    """Processor time of one target's scan of 30 cells, alone in its batch."""
+    """Processor time for one target's scan of 30 cells, with no other target in the batch."""
     made = []
     for variant in VARIANTS:
         state, cells, noise, model = _start(1, variant)
@@ -146,7 +146,7 @@ def costs() -> list[Figure]:
 
 
 def _start(runs: int, variant: str):
-    """Filters at the start, cells [runs, CELLS, 2] m of a scan, their noise, the model."""
+    """Filters at the start, cells [runs, CELLS, 2] m of one scan, their noise, the model."""
     rng = np.random.default_rng(runs)
     angle = rng.uniform(0, 2 * np.pi, (runs, CELLS))
     cells = START[:2] + SHAPES['complex'](angle)[..., None] * unit_vector(angle + START[4])

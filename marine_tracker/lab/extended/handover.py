@@ -1,8 +1,8 @@
-"""From a random matrix to an outline: a ship of 200 x 32 m whose near side is seen.
+"""Handover from a random matrix to an outline, for a ship of 200 x 32 m whose near side is seen.
 
-She passes at 1 km with 6 m/s and is seen at 22 rpm as about 20 points a scan, evenly along what of
-her hull faces the radar, of deviation 3 m on each axis. After 10 scans the random matrix is handed
-over; after 60 both are judged.
+She passes at 1 km with 6 m/s. A radar at 22 rpm sees her as about 20 points a scan, spread evenly
+along the part of her hull that faces the radar, with a deviation of 3 m on each axis. After 10
+scans the random matrix is handed over. After 60 scans both are judged.
 """
 
 from typing import NamedTuple
@@ -21,23 +21,25 @@ from .trials import cluster_of
 LENGTH, BEAM = 200.0, 32.0  # m
 # Corners of the hull in half lengths ahead and half beams to starboard, clockwise from the bow.
 HULL = np.array([[1.0, 0.0], [0.6, 1.0], [-1.0, 1.0], [-1.0, -1.0], [0.6, -1.0]])
-SIGMA, CELLS = 3.0, 20.0  # m; mean number a scan
+SIGMA, CELLS = 3.0, 20.0  # m; mean number of points a scan
 DISTANCE, SPEED, PERIOD = 1000.0, 6.0, 60 / 22  # m, m/s, s
 SCANS, HANDED_OVER = 60, 10
-BEARING = np.radians(45)  # of the ship half way
-ASPECTS = (20, 45, 90, 135, 160)  # deg, of her course off the line of sight
+BEARING = np.radians(45)  # of the ship at the middle of the run
+ASPECTS = (20, 45, 90, 135, 160)  # deg, between her course and the line of sight
 FIRST_EXTENT = 40.0  # m, half axes
 
 
 class Errors(NamedTuple):
-    """RMS m over the runs: of the length, and of the centre."""
+    """RMS over the runs, m: error of the length, and of the centre."""
 
     length: float
     centre: float
 
 
 def points(middle, course: float, rng, runs: int):
-    """Points [runs, C, 2] m of a ship at middle [2] m from the radar, and how many [runs]."""
+    """Points [runs, C, 2] m of a ship whose middle is at [2] m from the radar, and their number
+    [runs].
+    """
     corners = HULL * [0.5 * LENGTH, 0.5 * BEAM]
     sides = np.roll(corners, -1, 0) - corners
     size = np.hypot(*sides.T)
@@ -52,7 +54,7 @@ def points(middle, course: float, rng, runs: int):
 
 
 def trial(aspect: float, runs: int, seed: int) -> tuple[Errors, Errors]:
-    """Of the random matrix and of the outline."""
+    """Errors of the random matrix and of the outline."""
     rng = np.random.default_rng(seed)
     course = float(BEARING + np.radians(aspect))
     velocity = SPEED * unit_vector(course)
@@ -88,7 +90,7 @@ def trial(aspect: float, runs: int, seed: int) -> tuple[Errors, Errors]:
 
 
 def first_matrix(centroid, velocity) -> RandomMatrixState:
-    """Of ships first seen at [N, 2] m, with velocities [N, 2] m/s known to 1 m/s."""
+    """For ships first seen at [N, 2] m, with velocities [N, 2] m/s known to 1 m/s."""
     count = len(centroid)
 
     def each(variance: float) -> Array:
@@ -104,7 +106,7 @@ def first_matrix(centroid, velocity) -> RandomMatrixState:
 
 
 def figures(found: dict[int, tuple[Errors, Errors]]) -> list[Figure]:
-    """Of each aspect, then RMS over all of them."""
+    """Figures for each aspect, then RMS over all aspects."""
     made, squares = [], np.square(list(found.values()))  # [aspects, filters, length and centre]
     for aspect, pair in found.items():
         for name, errors in zip(('rm', 'gp_q15'), pair):

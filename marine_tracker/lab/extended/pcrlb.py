@@ -1,11 +1,12 @@
-"""Posterior Cramer-Rao lower bound of the outline filter (Tichavsky, Muravchik, Nehorai, IEEE T-SP
-46(5), 1998; paper 004, eq 48-52):
+"""Posterior Cramer-Rao lower bound of the outline filter.
+
+Source: Tichavsky, Muravchik, Nehorai, IEEE T-SP 46(5), 1998; paper 004, eq 48-52:
 
     J+ = (F J^-1 F' + Q)^-1 + E[sum H' (p' R p + V)^-1 H]
 
-Kept as a covariance, J^-1, because Q is singular. The expectation is the mean over N targets
-whose truth is known. V is that of the variant, so a filter that counts more noise has a wider
-bound; gp's is that of the cells' noise alone.
+The bound is kept as a covariance, J^-1, because Q is singular. The expectation is the mean over N
+targets whose truth is known. V is the noise of the variant: a filter that counts more noise has a
+wider bound. The bound of gp counts only the noise of the cells.
 """
 
 import numpy as np
@@ -16,8 +17,9 @@ from ...extent.gaussian_process import GpState, Model, measure, predict
 def bound_step(bound, time: float, truth: GpState, cells, count, noise, model: Model, rng=None):
     """The bound [n, n] one scan later.
 
-    bound was that at `time`; truth of N rows at the scan's time, of which mean and semi_axes
-    count; cells [N, C, 2] m, the first count [N] of each; noise [N, 2, 2] m^2.
+    bound is the bound at `time`. truth has N rows at the scan's time; only their mean and semi_axes
+    are used. cells [N, C, 2] m, of which the first count [N] of each row are used; noise [N, 2, 2]
+    m^2.
     """
     one = GpState(np.array([time]), truth.mean[:1], bound[None], truth.semi_axes[:1])
     bound = predict(one, truth.time[:1], model).covariance[0]

@@ -1,4 +1,4 @@
-"""Outlines as the filters see them, and their error bars: Figs 4 and 5 of paper 004 drawn anew."""
+"""Outlines as the filters see them, with error bars: Figs 4 and 5 of paper 004, redrawn."""
 
 from functools import partial
 
@@ -20,7 +20,7 @@ NAMES = {
     'gp_q15': 'GP-Q15',
     RANDOM_MATRIX: 'random matrix',
 }
-REACH = 9.0  # m from the centre that is shown
+REACH = 9.0  # m from the centre, half the width of the picture
 
 
 def pictures(found: Findings) -> list[Picture]:
@@ -65,7 +65,7 @@ def outlines(figure, found: Findings) -> None:
 
 
 def error_bars(figure, found: Findings, case: str) -> None:
-    """Errors of the radii of the first run with 3 deviations; those beyond them stand out."""
+    """Errors of the radii of the first run, with 3 deviations; larger errors are highlighted."""
     figure.suptitle(f'Errors of the radius with 3 deviations, the first run after 100 s: {case}')
     angle = np.degrees(PRIOR.angle)
     for ax, name in zip(figure.subplots(1, len(VARIANTS), sharey=True), VARIANTS):

@@ -1,8 +1,8 @@
-"""The scenario of paper 004: a target with an outline, seen as a few noisy points of it a second.
+"""The scenario of paper 004: a target with an outline, seen as a few noisy points a second.
 
-It starts at [10 m, 10 m] with [2, 2] m/s and goes about straight on; points lie evenly along its
-outline, of deviation 1 m on each axis, and their number is Poisson's. Filters start from the
-paper's state and covariance and a circle of 1 m. Every run is a track of one batch.
+It starts at [10 m, 10 m] with [2, 2] m/s and moves almost straight on. Points lie evenly along its
+outline, with a deviation of 1 m on each axis. Their number is Poisson distributed. Filters start
+from the paper's state and covariance, and from a circle of 1 m. Every run is one track of a batch.
 """
 
 from collections.abc import Callable
@@ -28,7 +28,7 @@ PRIOR = contour_prior(points=36, deviation=2.0, mean_deviation=2.0, scale=np.pi 
 ELLIPSE = random_matrix.Model(NOISE, memory=1e9, spread=random_matrix.CONTOUR)
 RANDOM_MATRIX = 'rm'
 NOTHING = np.empty(0)
-FINE = 2000  # points of an outline, to measure it by
+FINE = 2000  # points of an outline, used to measure errors
 
 SHAPES: dict[str, Callable[[Array], Array]] = {
     'complex': lambda b: 4 + 1.2 * np.cos(2 * b) + 0.8 * np.sin(3 * b) + 0.5 * np.cos(5 * b),
@@ -38,7 +38,7 @@ SHAPES: dict[str, Callable[[Array], Array]] = {
 
 
 class Case(NamedTuple):
-    """shape of SHAPES; rate: mean number of points a scan, or a metre of outline."""
+    """shape: one of SHAPES; rate: mean number of points a scan, or per metre of outline."""
 
     shape: str
     rate: float
@@ -49,7 +49,7 @@ class Scene(NamedTuple):
     """Truth and points of all scans and N runs.
 
     truth   [scans, N, 6]     e n ve vn psi psi'
-    cells   [scans, N, C, 2]  m, of which the first `number` are some
+    cells   [scans, N, C, 2]  m; the first `number` of them are points
     number  [scans, N]
     """
 
@@ -59,9 +59,9 @@ class Scene(NamedTuple):
 
 
 class Drawn(NamedTuple):
-    """The first run after its last scan, about the true centre.
+    """The first run after its last scan, relative to the true centre.
 
-    outline, inner, outer  [A, 2]  m, east and north; 3 deviations within and without it
+    outline, inner, outer  [A, 2]  m, east and north; inner and outer are 3 deviations off
     error, deviation       [M]     m, of the radii at the angles of f
     The random matrix has an outline only.
     """
@@ -74,14 +74,14 @@ class Drawn(NamedTuple):
 
 
 class ExtendedTrial(NamedTuple):
-    """What became of N runs of one filter; nan what a random matrix does not tell.
+    """Results of N runs of one filter; nan for figures that a random matrix does not have.
 
     rmse         m, of the outline in its own frame, RMS over angles and runs
-    mahalanobis  mean of the runs
-    coverage     part of the truth within 3 deviations
+    mahalanobis  mean over the runs
+    coverage     share of the truth within 3 deviations
     bound        m, PCRLB of the outline, RMS over its angles
-    shape        m, RMS off the true outline where it truly lies
-    place        m, RMS of the centre off the truth
+    shape        m, RMS error of the outline against the true one at its true place
+    place        m, RMS error of the centre
     """
 
     rmse: float
@@ -116,7 +116,7 @@ def scene(case: Case, runs: int, rng) -> Scene:
 
 
 def first_guess(runs: int, drawn: bool, rng):
-    """[N, 6] where the filters start: at the true start, as in the paper, or drawn about it."""
+    """[N, 6] where the filters start: at the true start, as in the paper, or drawn around it."""
     off = np.sqrt(START_VARIANCE) * rng.standard_normal((runs, 6))
     return START + drawn * off
 
@@ -124,7 +124,7 @@ def first_guess(runs: int, drawn: bool, rng):
 def gaussian_process_trial(
     case: Case, variant: str, runs: int, seed: int, full: bool = True, drawn: bool = False
 ) -> ExtendedTrial:
-    """All runs of one variant, on the scenes of the seed, with its bound."""
+    """All runs of one variant on the scenes of the seed, with its bound."""
     rng = np.random.default_rng(seed)
     seen, guess = scene(case, runs, rng), first_guess(runs, drawn, rng)
     at_angles = np.tile(SHAPES[case.shape](PRIOR.angle), (runs, 1))
@@ -179,7 +179,7 @@ def _drawn(state: GpState, found: outline_measures.Outline, at_angles, seen: Sce
 
 
 def random_matrix_trial(case: Case, runs: int, seed: int) -> ExtendedTrial:
-    """The same scenes by a random matrix that takes the points of a scan as one cluster."""
+    """The same scenes with a random matrix, which takes the points of a scan as one cluster."""
     rng = np.random.default_rng(seed)
     seen, guess = scene(case, runs, rng), first_guess(runs, False, rng)
     spread = [np.tile(np.diag(START_VARIANCE[at]), (runs, 1, 1)) for at in ([0, 1], [2, 3])]
@@ -208,7 +208,7 @@ def _rms(values) -> float:
 
 
 def _against(found: outline_measures.Outline, case: Case, seen: Scene, mean):
-    """`shape` and `place` of a `ExtendedTrial`."""
+    """`shape` and `place` of an `ExtendedTrial`."""
     truth = seen.truth[-1]
     shape = outline_measures.shape_error(
         found.points, truth[:, :2], truth[:, 4], SHAPES[case.shape]
@@ -217,9 +217,9 @@ def _against(found: outline_measures.Outline, case: Case, seen: Scene, mean):
 
 
 def cluster_of(cells, number):
-    """The rows [K] that have cells at all, and centroid, scatter and count of each.
+    """The rows [K] that have any cells, and centroid, scatter and count of each.
 
-    cells [N, C, 2] m, of which the first `number` [N] of each row are some.
+    cells [N, C, 2] m, of which the first `number` [N] of each row are points.
     """
     rows = (number > 0).nonzero()[0]
     cells, count = cells[rows], number[rows]

@@ -1,4 +1,4 @@
-"""What could be claimed of `gwnn`, and whether the comparison bears it out."""
+"""Claims about `gwnn`, and whether the comparison confirms them."""
 
 from ...evaluation.report import Claim
 from ...evaluation.result import IN_PART, NOT_BORNE_OUT, verdict
@@ -14,12 +14,14 @@ from .figures import (
 from .trials import ALONE, IMM, OWN, TANH, Cell
 
 MANOEUVRE = 'IMM for manoeuvre'
-NEEDLESS = 0.01  # part of the scans in fallback that is little
-LITTLE = 0.01  # of the error
+NEEDLESS = 0.01  # largest share of scans in fallback that counts as small
+LITTLE = 0.01  # of the error; a smaller difference does not count
 
 
 def claims(found: Findings) -> list[Claim]:
-    """Each with what was found and the verdict; the interval says which cells are won or lost."""
+    """Each claim with what was found and the verdict. A cell is won or lost if its interval says
+    so.
+    """
     ships, boats = (fair_cells(found, name) for name in ('ship', 'small_craft'))
     return [
         _mean(ships),
@@ -55,7 +57,7 @@ def _mean(cells: list[Cell]) -> Claim:
 
 
 def _everywhere(cells: list[Cell], rival: str, called: str) -> Claim:
-    """Of every kind of motion and phase."""
+    """The verdict over every kind of motion and phase."""
     over = {name_of(cell): cell.over[rival] for cell in cells}
     won = [name for name, ratio in over.items() if ratio.high < 1]
     lost = {name: ratio for name, ratio in over.items() if ratio.low > 1}
@@ -76,14 +78,16 @@ def _everywhere(cells: list[Cell], rival: str, called: str) -> Claim:
 
 
 def _units(cells: list[Cell]) -> Claim:
-    """A gain of less than LITTLE is not much to build on: there was one training of each."""
+    """Compares wavelet with tanh units. Each network was trained only once, so a gain below LITTLE
+    proves nothing.
+    """
     mean = geometric_mean([cell.over[TANH] for cell in cells])
     told = (
         'with as many plain tanh units in their place, trained once by the same command, the '
         f'ratio is {mean.value:.3f} [{mean.low:.3f} {mean.high:.3f}]'
     )
     if mean.value > 1 - LITTLE:
-        told += ': what is gained is gained by weighing the filters, whatever the units'
+        told += ': the gain comes from weighting the filters, not from the kind of unit'
     return Claim(
         'paper 000',
         'wavelets do better than plain sigmoids',
@@ -99,7 +103,7 @@ def _fallback(cells: list[Cell]) -> Claim:
         'monitor',
         'on good weights it hardly ever falls back',
         f'at most {most.idle:.1%} of the scans ({name_of(most)}); the errors are '
-        f'{mean.value:.3f} of those of a network that never does',
+        f'{mean.value:.3f} of those of a network that never falls back',
         verdict(most.idle <= NEEDLESS, IN_PART),
     )
 
@@ -110,6 +114,6 @@ def _rubbish(found: Findings) -> Claim:
     return Claim(
         'monitor',
         'bad weights cost little more than CS-Kalman',
-        f'position ratios with random weights, and with ones that are no numbers: {told}',
+        f'position ratios with random weights, and with weights that are not numbers: {told}',
         verdict(all(ratio is not None and ratio.value <= RUBBISH_LIMIT for ratio in ratios)),
     )

@@ -1,21 +1,24 @@
-"""What becomes of tracks whose network fails, on the way or from the start; and what it costs."""
+"""What happens to tracks when the network fails, in the middle of a run or from the start.
+
+Also measures what the estimator costs.
+"""
 
 import time
 
 import numpy as np
 
-from ...estimators.gwnn import gwnn
+from ...estimators.gwnn import gwnn, monitor
 from ...networks.gwnn_weights import Weights
 from ...training import track_trials
 from .trials import FLEETS, SCANS, fallback, network, trial
 
-BREAK_SCAN, BREAK_SIZE = 40, 3.0  # sigma, of the network's position
-LATER = 6  # scans after the break that do not count
+BREAK_SCAN, BREAK_SIZE = 40, 3.0  # scan; sigma, offset of the network's position
+LATER = 6  # scans left out after the break
 COST_TRACKS, COST_SCANS = 1000, 30
 
 
 def broken(weights: Weights, shift) -> Weights:
-    """Weights whose positions are off by shift [2] sigma."""
+    """Weights whose positions are wrong by shift [2] sigma."""
     bias = weights.fusion.bias.copy()
     bias[gwnn.AT_ONCE] += shift
     return weights._replace(fusion=weights.fusion._replace(bias=bias))
@@ -24,7 +27,8 @@ def broken(weights: Weights, shift) -> Weights:
 def scans_to_fallback(vessel_class: str, kind: str, runs: int, seed: int, weights: Weights):
     """Scans [B] from a sudden break of the network to the fallback, and the error afterwards.
 
-    The error is RMS over that of CS-Kalman, over all scans from six after the break.
+    The error is the RMS relative to that of CS-Kalman, over all scans from the sixth after the
+    break on.
     """
     rng = np.random.default_rng(seed)
     radar = FLEETS[vessel_class].radar
@@ -34,12 +38,12 @@ def scans_to_fallback(vessel_class: str, kind: str, runs: int, seed: int, weight
     sound, bad = (
         network(vessel_class, one, 60 / radar.rpm) for one in (weights, broken(weights, shift))
     )
-    first = np.full(len(on.seen), float(SCANS))  # plots that it took
+    first = np.full(len(on.seen), float(SCANS))  # number of plots until the fallback
 
     def watch(k, state):
         if k < BREAK_SCAN:
             return None
-        down = (state.monitor.status == gwnn.FALLBACK) & (first == SCANS)
+        down = (state.monitor.status == monitor.FALLBACK) & (first == SCANS)
         first[down] = k - BREAK_SCAN - 1  # scan BREAK_SCAN + 2 is the first expected so
         return bad
 
@@ -57,7 +61,7 @@ def _over_cs(own, vessel_class, on, rng) -> track_trials.Ratio:
 def rubbish(vessel_class: str, runs: int, seed: int, weights: Weights):
     """Position ratio to CS-Kalman with random weights, and with weights that are not numbers.
 
-    None where anything that is not a number came out.
+    None if any result is not a number.
     """
     rng = np.random.default_rng(seed)
     radar, usual = FLEETS[vessel_class].radar, FLEETS[vessel_class].usual
@@ -85,4 +89,4 @@ def cost(seed: int, weights: Weights) -> float:
         estimator.extrapolate(state, on.plots[k].time)
         state = estimator.update(state, on.plots[k], rows)
         spent.append(time.process_time() - begin)
-    return 1e3 * float(np.median(spent[gwnn.WARM :]))
+    return 1e3 * float(np.median(spent[monitor.WARM :]))

@@ -1,4 +1,4 @@
-"""What the comparison of `gwnn` with its rivals found, as figures beside what is demanded."""
+"""The comparison of `gwnn` with its rivals as figures with limits."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,8 @@ from .failures import BREAK_SIZE, COST_TRACKS
 from .trials import ALONE, BRIEFLY, FLEETS, IMM, OWN, Cell, Conditions
 
 GEOMETRIC_MEAN = 0.96
-# Position ratios demanded of ships, by cell; every other cell 1.00, the interval's upper end 1.01.
+# Limits of the position ratio for ships, by cell. Every other cell: 1.00, upper end of the interval
+# 1.01.
 DEMANDED = {
     'steady, straight': 0.94,
     'weave, manoeuvre': 0.93,
@@ -21,17 +22,17 @@ DEMANDED = {
 }
 UPPER_END = 1.01
 VELOCITY_LIMIT = 1.02
-SHIPPED, SHIPPED_LIMIT = 'IMM as shipped', 1.02  # demanded of small craft: no worse than `imm`
+SHIPPED, SHIPPED_LIMIT = 'IMM as shipped', 1.02  # limit for small craft: not worse than `imm`
 HARD_LIMIT = 1.03
 SIGMA_LIMITS = {'straight': 0.85, 'manoeuvre': 1.10}
 NIS = (1.6, 2.8)  # 2 in theory
-IDLE = {'straight': 0.006, 'manoeuvre': 0.013}  # part of the scans in needless fallback
+IDLE = {'straight': 0.006, 'manoeuvre': 0.013}  # limit of the share of scans in needless fallback
 IDLE_AGILE = {'straight': 0.029, 'manoeuvre': 0.035}
 AGILE = ('agile', 'boat')
 BROKEN = {'ship': ('mix', 'sharp', 'autopilot', 'agile'), 'small_craft': ('cruise',)}
-CAUGHT, CAUGHT_AGILE = 8, 34  # scans from the break to the fallback, nine times in ten
-RUBBISH_LIMIT = 1.10  # of CS-Kalman's error
-COST_LIMIT = 40.0  # ms
+CAUGHT, CAUGHT_AGILE = 8, 34  # limits: scans from the break to the fallback, in nine of ten runs
+RUBBISH_LIMIT = 1.10  # limit, relative to CS-Kalman's error
+COST_LIMIT = 40.0  # ms, limit
 HARD, SIGMA = 'Pd .8, 3 % outliers, uneven scans', 'sigma stated half'
 HARD_RPM = {'ship': 23.9, 'small_craft': 33.0}
 
@@ -55,7 +56,7 @@ class Findings(NamedTuple):
 
 
 def conditions(vessel_class: str) -> list[tuple[str, str, Conditions]]:
-    """Conditions that are not fair: what, kind of motion, radar."""
+    """Conditions other than the fair ones: name, kind of motion, radar."""
     fleet = FLEETS[vessel_class]
     hard = fleet.radar._replace(
         detection=0.8, outliers=0.03, jitter=0.05, rpm=HARD_RPM[vessel_class]
@@ -74,20 +75,20 @@ def fair_cells(found: Findings, vessel_class: str) -> list[Cell]:
 
 
 def name_of(cell: Cell) -> str:
-    """What a cell is called in a figure."""
+    """The name of a cell in a figure."""
     fleet = '' if cell.vessel_class == 'ship' else f'{cell.vessel_class.replace("_", " ")}, '
     return f'{fleet}{cell.kind}, {cell.phase}'
 
 
 def geometric_mean(ratios: list[Ratio]) -> Ratio:
-    """Of cells that know nothing of each other; the interval from theirs, taken as normal."""
+    """Geometric mean over independent cells. The interval comes from theirs, taken as normal."""
     level, low, high = np.log(np.array(ratios)).T
     half = np.sqrt(np.square(0.5 * (high - low)).sum()) / len(ratios)
     return Ratio(*(float(np.exp(level.mean() + side * half)) for side in (0, -1, 1)))
 
 
 def figures(found: Findings) -> list[Figure]:
-    """The table."""
+    """All figures."""
     table = []
     for name in FLEETS:
         cells = fair_cells(found, name)
@@ -250,5 +251,5 @@ def _figures_of_failures(found: Findings) -> list[Figure]:
 
 
 def interval(ratio: Ratio, to: str = IMM) -> str:
-    """Of a ratio to an estimator."""
+    """A ratio with its interval, as text."""
     return f'{to} [{ratio.low:.3f} {ratio.high:.3f}]'

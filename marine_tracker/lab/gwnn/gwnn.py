@@ -1,12 +1,13 @@
-"""All about the wavelet network: its own paper's figures, and how the estimator compares.
+"""The wavelet network: the figures of its own paper, and how the estimator compares with others.
 
-The first part is `gwnn_paper`: Figs 1 to 5 and eq 20-23 of paper 000, of at most 40 seeds. The
-second is `gwnn_monte_carlo`: the estimator `gwnn` beside CS-Kalman, CV, IMMs and plain tanh units
-on ships and small craft; 300 runs of both take about three minutes on two processors.
+The first part is `gwnn_paper`: Figs 1 to 5 and eq 20-23 of paper 000, with at most 40 seeds. The
+second part is `monte_carlo`: the estimator `gwnn` compared with CS-Kalman, CV, IMMs and plain tanh
+units, on ships and small craft. 300 runs of both take about three minutes on two processors.
 """
 
 from pathlib import Path
 
+from ...evaluation.parallel import Workers
 from ...evaluation.result import Progress, Result, silent
 from ..gwnn_paper import gwnn_paper
 from . import monte_carlo
@@ -21,12 +22,12 @@ def run(
     seed: int,
     progress: Progress = silent,
     data: Path | None = None,
-    processes: int | None = None,
+    workers: Workers = None,
 ) -> Result:
     """Figures, claims and pictures of both parts."""
     parts = (
         gwnn_paper.run(min(runs, gwnn_paper.RUNS), seed, progress),
-        monte_carlo.run(runs, seed, progress, data, processes),
+        monte_carlo.run(runs, seed, progress, data, workers),
     )
     return Result(
         [figure for part in parts for figure in part.figures],

@@ -1,6 +1,6 @@
 """True tracks that no weights were trained on: autopilots, the turn of paper 000, real ships.
 
-All give `ship_tracks.Ships` for time steps [B, K] s.
+Every function returns `ship_tracks.Ships` for time steps [B, K] s.
 """
 
 import csv
@@ -9,15 +9,16 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import make_smoothing_spline
 
+from ...geodesy import LocalFrame
 from ...geometry import unit_vector
-from ...simulation import ais, motion
+from ...simulation import ais, ais_file, motion
 from ...training.ship_tracks import Ships
 
 TURN_SCAN, TURN_RADIUS, TURN_ANGLE = 100, 200.0, float(np.radians(50))  # paper 000, 5.2
-TURNING = 0.04  # m/s^2, acceleration that counts as manoeuvre
-WARM_UP = 20  # scans at the start that do not count
+TURNING = 0.04  # m/s^2, acceleration that counts as a manoeuvre
+WARM_UP = 20  # first scans, left out
 TRIES = 40
-FASTEST = 2.5  # m/s^2: a ship cannot; the reports were late
+FASTEST = 2.5  # m/s^2; no ship accelerates more, so larger values come from late reports
 LONGEST_GAP = 60.0  # s between two AIS reports
 HOUR = 3600.0  # s, the length of an AIS file that is used
 
@@ -29,7 +30,7 @@ def _clock(steps):
 def nomoto(steps, rng) -> Ships:
     """Ships under autopilot with first-order Nomoto steering, ordered to new courses and speeds.
 
-    A steady stream of up to a metre a second or so sets them over the ground.
+    A steady current, of about 1 m/s at most, moves them over the ground.
     """
     count, scans = steps.shape
     position = rng.uniform(1500, 15000, count)[:, None] * unit_vector(
@@ -96,14 +97,16 @@ def paper_turn(steps, rng) -> Ships:
 
 
 def real_ships(file: Path, steps, rng) -> Ships:
-    """Stretches of AIS tracks, every vessel as often, half of them with a manoeuvre if it can be.
+    """Stretches of AIS tracks. Every vessel is used equally often; half of the stretches have a
+    manoeuvre if possible.
 
-    Each is turned, mirrored and moved at random. Raises ValueError where no vessel reports
-    without a gap for long enough.
+    Each is turned, mirrored and moved at random. Raises ValueError if no vessel reports long enough
+    without a gap.
     """
-    vessels = ais.read(file, 0.0, HOUR, LONGEST_GAP)
-    origin = next(iter((r.latitude[0], r.longitude[0]) for r in vessels.values()))
-    ways = [ais.way(reports, origin) for reports in vessels.values()]
+    vessels = ais_file.read(file, 0.0, HOUR, LONGEST_GAP).vessels
+    first = next(iter(vessels.values()))
+    frame = LocalFrame(first.latitude[0], first.longitude[0])
+    ways = [ais.way(reports, frame) for reports in vessels.values()]
     paths = motion.table(ways, HOUR)
     need = steps.sum(1).max() + 20
     stretches = []
@@ -137,7 +140,7 @@ def real_ships(file: Path, steps, rng) -> Ships:
 
 
 def recorded_boats(file: Path, steps, rng) -> Ships:
-    """Stretches of the true tracks of a recording, smoothed, turned and moved at random."""
+    """Stretches of the true tracks of a recording: smoothed, turned and moved at random."""
     rows: dict[str, list[tuple[float, float, float]]] = {}
     with open(file, newline='') as table:
         for row in csv.DictReader(table):
@@ -160,12 +163,12 @@ def recorded_boats(file: Path, steps, rng) -> Ships:
 
 
 def _acceleration(velocity, time):
-    """[K] m/s^2."""
+    """Acceleration [K] m/s^2."""
     return np.hypot(*np.gradient(velocity, time, axis=0).T)
 
 
 def _place(draw, steps, rng) -> Ships:
-    """Tracks that draw(run, time [K]) gives, each turned, mirrored and put somewhere."""
+    """Tracks that draw(run, time [K]) returns, each turned, mirrored and moved at random."""
     time = _clock(steps)
     count, scans = steps.shape
     positions, velocities = np.empty((2, count, scans, 2))

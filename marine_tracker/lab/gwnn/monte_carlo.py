@@ -1,14 +1,13 @@
-"""The wavelet network beside the filters it fuses: how far off each is one scan ahead.
+"""The wavelet network compared with the filters it fuses: the error one scan ahead.
 
 Ships: 22 rpm, 25 m and 0.4 deg, targets at 1.5 to 18 km. Small craft: 30 rpm, 6 m and 0.7 deg,
-0.15 to 4 km. 150 scans, of which the first 20 do not count. Kinds of motion that the network was
-trained on, on fresh tracks, and others that it never saw: ships under autopilot, the sharp turn of
-paper 000, real ships by AIS and a real speed boat (from --data). Errors are RMS an axis, positions
-in the plots' deviations sigma. Ratios are to the IMM tuned on the network's own training tracks,
-with 95 % intervals over the tracks. 300 runs take two to three minutes on two processors.
+0.15 to 4 km. 150 scans, of which the first 20 are left out. Kinds of motion: those that the network
+was trained on, on new tracks; and others: ships under autopilot, the sharp turn of paper 000, real
+ships by AIS and a real speed boat (from --data). Errors are RMS per axis, positions in the plots'
+deviations sigma. Ratios are to the IMM tuned on the network's own training tracks, with 95 %
+intervals over the tracks. 300 runs take two to three minutes on two processors.
 """
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,9 +15,9 @@ import numpy as np
 
 from ...estimators.gwnn import gwnn
 from ...evaluation import parallel
-from ...evaluation.parallel import Job
+from ...evaluation.parallel import Job, Workers
 from ...evaluation.result import Progress, Result, silent
-from ...networks import gwnn_weights
+from ...networks import gwnn_weights, weight_file
 from . import failures, figures, pictures
 from .claims import claims
 from .figures import Findings
@@ -32,13 +31,7 @@ OPTIONS = {
         'metavar': 'FOLDER',
         'help': 'also judge on real tracks: a folder that '
         'holds ' + ' or '.join(map(str, RECORDED.values())) + ', or both',
-    },
-    'processes': {
-        'type': int,
-        'metavar': 'N',
-        'default': os.cpu_count(),
-        'help': 'how many at once (default %(default)s); no figure depends on it',
-    },
+    }
 }
 
 
@@ -47,36 +40,34 @@ def run(
     seed: int,
     progress: Progress = silent,
     data: Path | None = None,
-    processes: int | None = None,
+    workers: Workers = None,
 ) -> Result:
-    """All cells and failures; what is demanded of them, what is claimed, and the picture."""
-    if processes is not None and processes < 1:
-        raise ValueError(f'--processes is {processes}; it must be at least 1')
-    found = measure(runs, seed, progress, data, processes or os.cpu_count() or 1)
+    """All cells and failures: figures with limits, claims, and the picture."""
+    found = measure(runs, seed, progress, data, workers)
     return Result(figures.figures(found), claims(found), pictures.pictures(found))
 
 
 def measure(
-    runs: int, seed: int, progress: Progress, data: Path | None, processes: int
+    runs: int, seed: int, progress: Progress, data: Path | None, workers: Workers
 ) -> Findings:
-    """All measurements, in `processes` processes."""
+    """All measurements."""
     if data is not None and not any((data / file).exists() for file in RECORDED.values()):
         raise ValueError(
             f'--data is {data}; it holds neither of ' + ', '.join(map(str, RECORDED.values()))
         )
     weights = {name: {OWN: gwnn.weights(vessel_class=name)} for name in FLEETS}
-    weights['ship'][TANH] = gwnn.weights(str(gwnn_weights.FOLDER / 'gwnn_tanh.npz'))
+    weights['ship'][TANH] = gwnn.weights(str(weight_file.FOLDER / 'gwnn_tanh.npz'))
     # Apart from every seed of a training, whose numbers come in pairs.
     seeds = iter(np.random.SeedSequence([seed, 7, 7]).generate_state(100).tolist())
     planned = {
         of: job for name in FLEETS for of, job in plan(name, runs, data, weights[name], seeds)
     }
-    results = dict(zip(planned, parallel.run(list(planned.values()), processes, progress)))
+    results = dict(zip(planned, parallel.run(list(planned.values()), workers, progress)))
 
     def those(what):
         return {of[1:]: result for of, result in results.items() if of[0] == what}
 
-    # Timed last, with nothing beside it.
+    # Timed last, when no other job runs.
     (cost,) = parallel.run([Job(failures.cost, (next(seeds), weights['ship'][OWN]))], 1, silent)
     return Findings(
         those('fair'), those('hard'), those('sigma'), those('broken'), those('rubbish'), cost
@@ -90,10 +81,12 @@ def plan(
     weights: dict[str, gwnn_weights.Weights],
     seeds: Iterator[int],
 ) -> Iterator[tuple[tuple[str, str, str], Job]]:
-    """The measurements of a vessel class: of `Findings` which, vessel class, kind of motion."""
+    """The measurements of a vessel class, each with its key: field of `Findings`, vessel class,
+    kind of motion.
+    """
     fleet, own = FLEETS[name], weights[OWN]
     for kind in kinds(name):
-        its = next(seeds)  # also where it is not used: without data the others stay the same
+        its = next(seeds)  # drawn even if unused: without data the other seeds stay the same
         if kind not in RECORDED or (data is not None and (data / RECORDED[kind]).exists()):
             yield (
                 ('fair', name, kind),

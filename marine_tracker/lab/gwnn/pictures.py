@@ -1,4 +1,4 @@
-"""The comparison as a picture: every estimator's error beside the IMM's, cell by cell."""
+"""The comparison as a picture: every estimator's error relative to the IMM's, cell by cell."""
 
 from functools import partial
 
@@ -6,7 +6,8 @@ from ...evaluation.result import Picture
 from .figures import SHIPPED, Findings, fair_cells
 from .trials import HELD_OUT, OWN, TANH, Cell
 
-# Colours of Okabe and Ito, which the colour-blind tell apart; so do the marks. OWN is drawn last.
+# Colours of Okabe and Ito, safe for colour-blind readers; the markers differ too. OWN is drawn
+# last.
 STYLES = {
     'CS': ('x', '#000000', 'current statistical model (tuned)'),
     'CV/CV': ('D', '#cc79a7', 'IMM of two constant velocities (tuned)'),
@@ -15,8 +16,8 @@ STYLES = {
     TANH: ('o', '#56b4e9', 'GWNN with plain tanh units'),
     OWN: ('o', '#0072b2', 'GWNN'),
 }
-LEFT_OUT = {'ship': SHIPPED, 'small_craft': TANH}  # to keep the picture readable
-LEAST, MOST = 0.8, 1.6  # ratio; above, it is told as a number at the edge
+LEFT_OUT = {'ship': SHIPPED, 'small_craft': TANH}  # keeps the picture readable
+LEAST, MOST = 0.8, 1.6  # ratio; larger values are written as a number at the edge
 LINE = 0.16  # rows between two estimators
 
 
@@ -36,7 +37,7 @@ def pictures(found: Findings) -> list[Picture]:
 
 
 def compare(figure, cells: list[Cell], title: str) -> None:
-    """Rows of cells: straight courses, manoeuvres, then what the network was not trained on."""
+    """Rows of cells: straight courses, manoeuvres, then kinds of motion outside the training."""
     groups: dict[str, list[Cell]] = {'straight': [], 'manoeuvre': [], 'never trained on': []}
     for cell in cells:
         groups['never trained on' if cell.kind in HELD_OUT else cell.phase].append(cell)

@@ -1,7 +1,7 @@
 """The estimator `gwnn` and its rivals on the same tracks: errors and their ratios, cell by cell.
 
-Errors are those of the expectation one scan ahead, RMS an axis, positions in the plots'
-deviations sigma. A cell is one kind of motion in one phase, under some conditions of the radar.
+Errors are those of the expectation one scan ahead, RMS per axis; positions in the plots'
+deviations sigma. A cell is one kind of motion in one phase, under one set of radar conditions.
 """
 
 from pathlib import Path
@@ -11,7 +11,7 @@ import numpy as np
 
 from ...estimators import cs_kalman, imm
 from ...estimators.contract import Estimator
-from ...estimators.gwnn import bank, gwnn
+from ...estimators.gwnn import bank, gwnn, monitor
 from ...estimators.imm import Modes
 from ...geometry import unit_vector
 from ...networks import gwnn_weights
@@ -23,7 +23,7 @@ from ...types import take
 from . import held_out_tracks
 
 SCANS = 150
-SPEED = 25.0  # m/s, what every estimator is told of the targets
+SPEED = 25.0  # m/s, maximum target speed given to every estimator
 LEAST_CELL = 300  # scans; smaller cells are not judged
 AIS, BOAT = Path('ais_north_sea', 'ais.csv'), Path('autosea_joyride', 'truth.csv')
 RECORDED = {'AIS': AIS, 'boat': BOAT}  # kinds of motion that need --data
@@ -33,13 +33,17 @@ HELD_OUT = {
     'AIS': held_out_tracks.real_ships,
     'boat': held_out_tracks.recorded_boats,
 }
-# The network; with plain units; with its monitor silenced; and what all ratios refer to.
+# The network; the network with plain units; with its monitor switched off; the reference of all
+# ratios.
 OWN, TANH, ALONE, IMM = 'GWNN', 'tanh units', 'never falling back', 'IMM'
 
 
 class Conditions(NamedTuple):
-    """A radar: range_sigma m, bearing_sigma deg; detection; outliers; truly: true deviation over
-    the stated one; rpm; jitter: deviation of a scan's time over the time."""
+    """A radar.
+
+    range_sigma m; bearing_sigma deg; detection; outliers; truly: true deviation over the stated
+    one; rpm; jitter: deviation of a scan's time over the time.
+    """
 
     range_sigma: float
     bearing_sigma: float
@@ -54,10 +58,10 @@ class Fleet(NamedTuple):
     """What a vessel class is judged on.
 
     radar     fair conditions
-    ranges    m, at which tracks begin, or lie in the middle
+    ranges    m, at which tracks begin, or where their middle lies
     nearest   m; tracks that come nearer are left out
-    held_out  kinds of motion beside those of the training
-    usual     the kind of motion for what is judged on one only
+    held_out  kinds of motion that the training does not have
+    usual     the kind of motion for measurements on one kind only
     """
 
     radar: Conditions
@@ -79,8 +83,8 @@ FLEETS = {
 }
 
 
-# What a short search came to, of 75 evaluations on ships: beside the strongest IMM it tells what
-# that one's tuning is worth.
+# Result of a short search: 75 evaluations on ships. Compared with the strongest IMM it shows how
+# much the tuning is worth.
 BRIEFLY = 'IMM tuned in brief'
 IN_BRIEF = Modes(
     tuple(bank.PERIOD * a * a for a in (0.0010256, 0.79201, 0.014074, 0.014074)),
@@ -103,7 +107,7 @@ def trial(vessel_class: str, kind: str, runs: int, radar: Conditions, rng, data:
     ranges = np.exp(rng.uniform(*np.log(fleet.ranges), 2 * runs))
     if kind in HELD_OUT:
         ships = HELD_OUT[kind](_file(data, kind), steps, rng)
-        if kind in RECORDED:  # may lie anywhere: put where the others are
+        if kind in RECORDED:  # recorded tracks may lie anywhere: move them to where the others are
             away = ranges[:, None] * unit_vector(rng.uniform(0, 2 * np.pi, 2 * runs))
             ships = ships._replace(
                 position=ships.position + (away - ships.position[:, SCANS // 2])[:, None]
@@ -139,7 +143,9 @@ def _file(data, kind) -> Path | None:
 
 
 def rivals(vessel_class: str) -> dict[str, Estimator]:
-    """The filters beside the network; the IMM is tuned on the tracks of its training."""
+    """The filters to compare the network with. The IMM is tuned on the tracks of the network's
+    training.
+    """
     best, tuned = bank.STRONGEST[vessel_class], TUNED[vessel_class]
     brief = {BRIEFLY: imm.imm(IN_BRIEF, SPEED)} if vessel_class == 'ship' else {}
     return {
@@ -160,7 +166,7 @@ def fallback(vessel_class: str) -> Estimator:
 
 
 def network(vessel_class: str, weights: gwnn_weights.Weights, period: float, **options):
-    """The estimator `gwnn`, with the options of its own."""
+    """The estimator `gwnn` with its own options."""
     return gwnn.gwnn(weights, SPEED, period, vessel_class=vessel_class, **options)
 
 
@@ -168,10 +174,10 @@ class Cell(NamedTuple):
     """One kind of motion in one phase, `straight` or `manoeuvre`.
 
     rms       position RMS in sigma, by estimator
-    position  ratio of position RMS to the IMM's, by estimator but the IMM; velocity likewise
+    position  ratio of position RMS to the IMM's, for every other estimator; velocity likewise
     over      ratio of the network's position RMS to each other estimator's
-    nis       mean of the network's
-    idle      part of the scans in fallback
+    nis       mean NIS of the network
+    idle      share of the scans in fallback
     """
 
     vessel_class: str
@@ -196,7 +202,7 @@ def cells(
 ) -> list[Cell]:
     """Both phases of one kind of motion.
 
-    weights  of the network, OWN, and of others to compare with it
+    weights  of the network, OWN, and of other networks to compare with it
     """
     rng = np.random.default_rng(seed)
     on = trial(vessel_class, kind, runs, radar, rng, data)
@@ -204,13 +210,15 @@ def cells(
     fallen = np.zeros(on.seen.shape, bool)
 
     def watch(k, state):
-        fallen[:, k] = state.monitor.status == gwnn.FALLBACK
+        fallen[:, k] = state.monitor.status == monitor.FALLBACK
 
     outcomes = {
         OWN: track_trials.run(network(vessel_class, weights[OWN], period), on, False, watch)
     }
     outcomes[ALONE] = track_trials.run(
-        network(vessel_class, weights[OWN], period, fall=np.inf), on, gated=False
+        network(vessel_class, weights[OWN], period, trust=monitor.Trust(fall=np.inf)),
+        on,
+        gated=False,
     )
     for name in weights:
         if name != OWN:

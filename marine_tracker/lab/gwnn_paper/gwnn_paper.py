@@ -1,8 +1,8 @@
 """The paper's wavelet network, trained on line: its Figs 1 to 5 and eq 20-23 (paper 000).
 
-The tracks, networks and rules are those of `paper_network_study`; every figure is the median over
---runs seeds. The paper's pictures carry no numbers that can be read, so its claims are set beside
-what is found, with a verdict.
+Tracks, networks and rules are in `study`. Every figure is the median over --runs seeds. No numbers
+can be read from the paper's pictures, so each claim of the paper is listed with what was found and
+a verdict.
 """
 
 import numpy as np
@@ -116,7 +116,9 @@ def frame(s: Study) -> list[report.Figure]:
 
 
 def signal_band():
-    """Frequencies of the paper's track, rad a scan: the speed's wave, and the sharp turn's 19 s."""
+    """Frequencies of the paper's track, rad a scan: the wave of the speed, and the sharp turn of 19
+    s.
+    """
     return 2 * np.pi * PERIOD / 1000, 2 * np.pi * PERIOD / (2 * 19)
 
 

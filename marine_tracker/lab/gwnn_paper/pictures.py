@@ -1,4 +1,4 @@
-"""Pictures of what `paper_network_study` finds: the paper's Figs 1 to 5 and eq 20-22 drawn anew."""
+"""Pictures of the results of `study`: the paper's Figs 1 to 5 and eq 20-22, redrawn."""
 
 from functools import partial
 

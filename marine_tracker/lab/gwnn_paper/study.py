@@ -1,11 +1,11 @@
-"""What the paper's own form of the wavelet network does on the paper's own tracks (paper 000).
+"""The paper's own form of the wavelet network on the paper's own tracks (paper 000).
 
 22 rpm; the target starts at 4.6 km, 30 deg, on course 70 deg at 9.26 + 1.03 sin(2 pi t / 1000)
-m/s, and where it turns does so through 50 deg on a radius of 200 m at scan 500. Networks of many
-seeds learn side by side; a figure is the median over the seeds. Nothing but the speed is known of
-the paper's networks, so units and sizes are those of `estimators.gwnn_paper`. Each plot corrects
-the weights once, as the paper's figures count iterations; `LOOP` corrects until E_R <= E1, as its
-algorithm says, and only there the step changes by eq 10.
+m/s. If it turns, it turns through 50 deg on a radius of 200 m at scan 500. Networks of many seeds
+learn side by side; a figure is the median over the seeds. The paper gives only the speed, so units
+and network sizes are those of `estimators.gwnn_paper`. Each plot corrects the weights once, since
+the paper's figures count iterations. `LOOP` corrects until E_R <= E1, as the paper's algorithm
+says; only `LOOP` changes the step by eq 10.
 """
 
 from typing import Any, NamedTuple
@@ -36,7 +36,7 @@ TURN, TURN_RADIUS, TURN_AT = np.radians(50), 200.0, 500  # rad, m, scan
 NEAR, FAR = 1.852, 9.26  # E1, E2, m
 NOISE_MEAN, NOISE_SIGMA = 0.5, 0.3  # m, of Fig 4
 RADAR_SIGMA = 15.0  # m, along and across, of a real radar at 2 km
-NOISY_WINDOW = 10  # scans, from which speed and course are taken
+NOISY_WINDOW = 10  # scans over which speed and course are taken
 STEADY = 100  # last scans of a run, over which errors are RMS
 
 GWNN = net.gwnn(4, 4, LEVELS, TRANSLATIONS, WIDTH)
@@ -93,8 +93,8 @@ def to_z(position, velocity):
 def noisy(truth, runs: int, rng, mean: float = NOISE_MEAN, sigma: float = NOISE_SIGMA):
     """The track [N, 4] as seen with N(mean, sigma) m on range and across, [runs, N, 4].
 
-    The paper does not say how noisy its speed and course are. A radar has them from positions:
-    here the difference over ten scans, and the first ten scans the truth.
+    The paper does not give the noise of speed and course. A radar computes them from positions.
+    Here they are the difference over ten scans; in the first ten scans they are the truth.
     """
 
     def draw():
@@ -112,7 +112,9 @@ def noisy(truth, runs: int, rng, mean: float = NOISE_MEAN, sigma: float = NOISE_
 
 
 def predict(design: net.Design, rule: net.Rule, seen, rng):
-    """One scan ahead of each plot [B, N, 4], learning on line; nan for the first two plots."""
+    """Prediction one scan ahead of each plot [B, N, 4], learning on line; nan for the first two
+    plots.
+    """
     count, scans, _ = seen.shape
     weights = net.draw(design, count, rng)
     centre = seen[:, 0]
@@ -137,7 +139,7 @@ def predict(design: net.Design, rule: net.Rule, seen, rng):
 
 
 def two_point(z):
-    """What the straight line through the last two plots predicts [N, 4] on a track [N, 4]."""
+    """Prediction [N, 4] by the straight line through the last two plots of a track [N, 4]."""
     position = z[:, :1] * np.stack([np.sin(z[:, 1]), np.cos(z[:, 1])], 1)
     ahead = np.full_like(z, np.nan)
     ahead[2:, :2] = to_z(2 * position[1:-1] - position[:-2], np.zeros((len(z) - 2, 2)))[:, :2]
@@ -152,7 +154,7 @@ def radial_error(ahead, truth):
 def plots_to_converge(error, over: int = 10):
     """Plots learnt from [B] until errors [B, N] are RMS at most E1 over ten scans; N if never.
 
-    Column j of the errors is that after j + 1 plots.
+    Column j of the errors is the error after j + 1 plots.
     """
     sums = np.concatenate([np.zeros((len(error), 1)), np.cumsum(np.square(error), 1)], 1)
     good = sums[:, over:] - sums[:, :-over] <= over * NEAR**2
@@ -160,22 +162,22 @@ def plots_to_converge(error, over: int = 10):
 
 
 def rms(values, axis=None):
-    """Root mean square, nan left out."""
+    """Root mean square, ignoring nan."""
     return np.sqrt(np.nanmean(np.square(values), axis))
 
 
 class Study(NamedTuple):
-    """All that the figures and pictures show; errors are medians over the seeds.
+    """The data of all figures and pictures. Errors are medians over the seeds.
 
     speeds [S] m/s, range_error m and bearing_error deg [S]: steady, RMS (Fig 1)
     learning, plots  by learner: E_R [N] m after 1, 2, ... plots; plots to converge [runs]
                 (Fig 2, 3)
     noise       [N, 4] absolute errors m, deg, m/s, deg under noise (Fig 4)
     noise_rms   RMS of E_R m, speed m/s and course deg, last scans
-    real_noise  RMS of E_R m at a radar's noise, and that of the plots themselves
-    turning, peak  by learner: E_R [N] m around the turn, and its greatest m (Fig 5)
-    ratio, steep  1/q and 2q max|psi'|; crossing: where it is 1 (eq 20-22)
-    broken      by 1/q: shares in which the norm, and the gradient, of the GWNN is not the smaller
+    real_noise  RMS of E_R m at a radar's noise, and RMS of the plots themselves
+    turning, peak  by learner: E_R [N] m around the turn, and its maximum m (Fig 5)
+    ratio, steep  1/q and 2q max|psi'|; crossing: 1/q at which that is 1 (eq 20-22)
+    broken      by 1/q: shares in which the GWNN's norm, and its gradient, is not the smaller one
     bands       by q: lowest and highest frequency at which psi's spectrum is half its peak
     """
 
@@ -243,7 +245,7 @@ def steady(runs, rng, scans=400):
 
 
 def learning(runs, rng, scans=500):
-    """Fig 2 and 3: error curves of the learners, and plots until they have converged."""
+    """Fig 2 and 3: error curves of the learners, and the number of plots until they converge."""
     truth = np.repeat(track(scans)[None], runs, 0)
     error = {
         name: radial_error(predict(design, rule, truth, rng), truth)[:, 2:]
@@ -256,7 +258,7 @@ def learning(runs, rng, scans=500):
 
 
 def under_noise(runs, rng, scans=500):
-    """Fig 4: errors of all four outputs, against the truth; and at a radar's own noise."""
+    """Fig 4: errors of all four outputs against the truth; and at the noise of a real radar."""
     truth = track(scans)
     ahead = predict(GWNN, VARIABLE, noisy(truth, runs, rng), rng)
     off = ahead - truth
@@ -273,7 +275,7 @@ def under_noise(runs, rng, scans=500):
 
 
 def turning(runs, rng):
-    """Fig 5: errors and peaks around the sharp turn, those of the two-point line beside."""
+    """Fig 5: errors and peaks around the sharp turn, and those of the two-point line."""
     truth = track(TURN_AT + 40, turn_at=TURN_AT)
     around = slice(TURN_AT - 10, TURN_AT + 40)
     every = np.repeat(truth[None], runs, 0)
@@ -291,9 +293,9 @@ def turning(runs, rng):
 def broken(width: float, rng, tries: int = 20000):
     """Shares of random inputs at which the inequalities behind eq 22 fail.
 
-    Norm: |D| of a group of wavelet units against that of as many units S, all at one net input
-    drawn evenly from -5 to 5. Gradient: |dE/de0| of random networks, evenly drawn inputs of
-    -6 to 6 and equal output errors; the GWNN connected locally, the BP network fully.
+    Norm: |D| of a group of wavelet units against that of as many units S, all at one net input,
+    drawn evenly from -5 to 5. Gradient: |dE/de0| of random networks with inputs drawn evenly from
+    -6 to 6 and equal output errors. The GWNN is connected locally, the BP network fully.
     """
     common = rng.uniform(-5, 5, (tries, 1))
     form = wavelets.units(LEVELS, TRANSLATIONS, width)

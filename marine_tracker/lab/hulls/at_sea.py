@@ -1,4 +1,4 @@
-"""One ship seen as cells, tracked with its extent: what length, course and centre come to."""
+"""One ship seen as cells, tracked with its extent: errors of length, course and centre."""
 
 from typing import NamedTuple
 
@@ -13,13 +13,15 @@ from ...tracking.lifecycle import CONFIRMED
 SPEED = 6.0  # m/s
 SCANS = 44  # two minutes
 PERIOD = 60 / 22  # s
-BEARING = 45.0  # deg, of the ship half way
+BEARING = 45.0  # deg, of the ship at the middle of the run
 BEAMS = {60: 12, 120: 20, 200: 32, 300: 45}
 FINE, COARSE = (10.0, 0.75), (30.0, 1.2)  # m, deg: cells of a short and of a long pulse
 
 
 class Case(NamedTuple):
-    """A ship of length m that passes at distance m half way, aspect deg off the line of sight."""
+    """A ship of `length` m. At the middle of the run it is `distance` m away, `aspect` deg off the
+    line of sight.
+    """
 
     length: int
     distance: float
@@ -28,10 +30,10 @@ class Case(NamedTuple):
 
 
 class HullsAtSea(NamedTuple):
-    """What one run ends with; errors are estimate minus truth, nan where nothing was tracked.
+    """The results of one run. Errors are estimate minus truth, nan if nothing was tracked.
 
     length m, course rad, beam m; centre [2] m along and across the ship's axis, mean of the last
-    half; outlined: share of it with an outline
+    half; outlined: share of the last half with an outline
     """
 
     length: float
@@ -42,7 +44,7 @@ class HullsAtSea(NamedTuple):
 
 
 def scene(case: Case) -> scenario.Scenario:
-    """The ship alone, own ship at rest."""
+    """The ship alone; own ship is at rest."""
     course = BEARING + case.aspect
     way = 0.5 * SCANS * PERIOD * SPEED
     at, along = np.radians(BEARING), np.radians(course)

@@ -1,7 +1,7 @@
-"""Ships as hulls: how long they are found to be, where their centre is, and land left out.
+"""Ships as hulls: their estimated length and centre, and land that is left out.
 
-A ship that passes at 1 and 2 km, with cells of a short and of a long pulse; one close by, with and
-without an outline; and the scenarios `hulls` and `coast` with and without extents. Ten runs take
+One ship that passes at 1 and 2 km, with cells of a short and of a long pulse; one close by, with
+and without an outline; the scenarios `hulls` and `coast` with and without extents. Ten runs take
 about three minutes.
 """
 
@@ -25,7 +25,7 @@ CLOSE = [Case(200, 1000.0, aspect, FINE) for aspect in (45.0, 90.0, 120.0)]
 
 
 def run(runs: int, seed: int, progress: Progress = silent) -> Result:
-    """All parts; the demands are those of the prototype."""
+    """All parts. The limits are those of the prototype."""
     done, whole = 0, 2 * len(LENGTHS) * len(DISTANCES) * len(ASPECTS) + 2 * len(CLOSE) + 5
 
     def one_more():
@@ -88,10 +88,10 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
 
     tracked = {}
     for name, extent in (
-        ('hulls', 'off'),
+        ('hulls', 'none'),
         ('hulls', 'random_matrix'),
         ('hulls', 'gp'),
-        ('coast', 'off'),
+        ('coast', 'none'),
         ('coast', 'gp'),
     ):
         one_more()
@@ -102,34 +102,34 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
             report.Figure(f'{name}, extent {extent}: RMSE of the nearest track', now.nearest, 'm'),
         ]
     for extent in ('random_matrix', 'gp'):
-        now, plain = tracked['hulls', extent], tracked['hulls', 'off']
+        now, plain = tracked['hulls', extent], tracked['hulls', 'none']
         figures += [
             report.at_most(
-                f'hulls, extent {extent}: position RMSE', now.rmse, plain.rmse, 'm', 'extent off'
+                f'hulls, extent {extent}: position RMSE', now.rmse, plain.rmse, 'm', 'extent none'
             ),
             report.at_least(
                 f'hulls, extent {extent}: held',
                 float(now.held.mean()),
                 float(plain.held.mean()),
                 '',
-                'extent off',
+                'extent none',
             ),
         ]
     coast = tracked['coast', 'gp']
     figures += [
         report.at_most(
-            'coast: tracks confirmed over those with extent off',
-            coast.confirmed / tracked['coast', 'off'].confirmed,
+            'coast: tracks confirmed over those with extent none',
+            coast.confirmed / tracked['coast', 'none'].confirmed,
             0.1,
             '',
-            'extent off',
+            'extent none',
         ),
         report.at_least(
             'coast: held',
             float(coast.held.mean()),
-            float(tracked['coast', 'off'].held.mean()),
+            float(tracked['coast', 'none'].held.mean()),
             '',
-            'extent off',
+            'extent none',
         ),
     ]
     progress(whole, whole)

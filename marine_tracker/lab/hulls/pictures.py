@@ -1,14 +1,14 @@
-"""Hulls as tracked, with the cells that the radar saw of them: one scan of both scenarios."""
+"""Tracked hulls with the cells that the radar saw of them: one scan of both scenarios."""
 
 import numpy as np
 
 from .traffic import Snapshot
 
-NEAR = 350.0  # m around a ship that is shown at large
+NEAR = 350.0  # m around a ship that is shown enlarged
 
 
 def paint(figure, hulls: Snapshot | None, coast: Snapshot | None) -> None:
-    """Left all of the coast, right the ships of `hulls`, each at large."""
+    """Left the whole coast; right the ships of `hulls`, each enlarged."""
     assert hulls is not None and coast is not None
     left, right = figure.subfigures(1, 2, width_ratios=(1, 1.25))
     axes = left.add_subplot(

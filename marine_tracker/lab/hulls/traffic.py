@@ -11,15 +11,18 @@ from ...simulation import hull, radar, scenario
 from ...tracking.lifecycle import COASTING, CONFIRMED
 from ...types import Array, Extrapolation
 
-SETTLED = 10  # scans that do not count
-CUTOFF = 100.0  # m beyond half the length: a track farther off is not on the ship
-OUTLINE_SCAN = 110  # whose picture is kept
+SETTLED = 10  # first scans, left out
+CUTOFF = 100.0  # m beyond half the length; a track farther off is not on the ship
+OUTLINE_SCAN = 110  # the scan of the picture
 
 
 class Snapshot(NamedTuple):
-    """One scan for a picture: cells [M, 2] m, tracks' positions [N, 2] m and outlines [N, K, 2] m
-    about them, where they are extended [N]; truth [T, 2] m and true outlines [T, C, 2] m about it,
-    nan without a hull; own ship [2] m."""
+    """One scan for a picture.
+
+    Cells [M, 2] m; tracks' positions [N, 2] m; outlines [N, K, 2] m relative to them, for extended
+    tracks [N]; truth [T, 2] m and true outlines [T, C, 2] m relative to it, nan without a hull; own
+    ship [2] m.
+    """
 
     cells: Array
     position: Array
@@ -31,9 +34,10 @@ class Snapshot(NamedTuple):
 
 
 class HullsInTraffic(NamedTuple):
-    """confirmed: tracks ever confirmed; held [T]: part of the scans in which each ship had a track;
-    rmse m: of the tracks that the ships kept; nearest m: the same of whatever track was nearest;
-    snapshot of one scan, None without extents."""
+    """confirmed: tracks ever confirmed; held [T]: share of the scans in which each ship had a
+    track; rmse m: of the tracks that the ships kept; nearest m: the same for the nearest track at
+    each moment; snapshot of one scan, None without extents.
+    """
 
     confirmed: int
     held: Array
@@ -43,9 +47,10 @@ class HullsInTraffic(NamedTuple):
 
 
 def track(name: str, extent: str, seed: int) -> HullsInTraffic:
-    """One run of a shipped scenario; a ship keeps its track as long as that is confirmed and near.
+    """One run of a shipped scenario. A ship keeps its track while that is confirmed and near.
 
-    The nearest of many tracks on one hull would flatter a tracker that has too many.
+    If the nearest track counted instead, a tracker with many tracks on one hull would look too
+    good.
     """
     loaded = scenario.load(name)
     service = service_for(loaded.tracker_parameters(), extent=extent)

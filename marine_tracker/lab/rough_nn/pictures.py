@@ -1,4 +1,4 @@
-"""How the filters answer a step of the acceleration: Figs 3 to 5 of paper 001, and at sea."""
+"""The filters' answers to a step of the acceleration: Figs 3 to 5 of paper 001, and at sea."""
 
 from functools import partial
 
@@ -7,8 +7,8 @@ import numpy as np
 from ...evaluation.result import Picture
 from .trials import BP, CS, IMM, ROUGH, SETTINGS
 
-# Colours of Okabe and Ito, as in `gwnn_pictures`.
-# The BP network's line is wide: the other one hides it.
+# Colours of Okabe and Ito, as in `lab.gwnn.pictures`. The BP network's line is wide, because the
+# other one covers it.
 STYLES = {
     CS: ('#000000', '--', 1.5, 'CS filter alone'),
     IMM: ('#009e73', '-', 1.5, IMM),
@@ -32,7 +32,7 @@ def pictures(found) -> list[Picture]:
 
 
 def paint(figure, found, name: str) -> None:
-    """Above the mean acceleration, below the mean O (of the IMM: the weight of its F1)."""
+    """Top: the mean acceleration. Bottom: the mean O (for the IMM the weight of its F1)."""
     setting = SETTINGS[name]
     above, below = figure.subplots(2, len(setting.steps), sharex=True, height_ratios=(3, 1.3))
     time = (np.arange(setting.scans) - setting.change) * setting.period

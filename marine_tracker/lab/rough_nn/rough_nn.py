@@ -1,10 +1,10 @@
-"""Two parallel filters joined by a rough network, by a plain one, by none (paper 001).
+"""Two parallel filters joined by a rough network, by a plain network, or without one (paper 001).
 
-A target that flies straight, or accelerates gently, and then accelerates: 5, 40, and from 5 to
-25 m/s^2, as in the paper (300 m/s; the paper does not tell the radar: 1 s and 100 m are taken,
-a_max 60 m/s^2); and the same at sea (22 rpm, 20 m, a_max 1 m/s^2). Beside the two networks stand
-the plain CS filter with the same a_max, and an IMM of the same two filters. Delay: time until the
-mean of the estimated accelerations has made 63 % of the step.
+A target flies straight or accelerates gently, and then accelerates: 5, 40, and from 5 to 25 m/s^2,
+as in the paper at 300 m/s. The paper does not describe the radar; 1 s, 100 m and a_max 60 m/s^2 are
+assumed. The same is done at sea (22 rpm, 20 m, a_max 1 m/s^2). The two networks are compared with
+the plain CS filter with the same a_max, and with an IMM of the same two filters. Delay: time until
+the mean of the estimated accelerations has made 63 % of the step.
 """
 
 from typing import NamedTuple
@@ -38,7 +38,7 @@ Found = dict[tuple[str, str, str], Answer]
 
 
 class Ratio(NamedTuple):
-    """Of two RMSE on the same plots, with its 95 % interval."""
+    """Ratio of two RMSE on the same plots, with its 95 % interval."""
 
     value: float
     low: float
@@ -56,7 +56,7 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
 
 
 def figures(found: Found) -> list[report.Figure]:
-    """Every cell, then what is demanded."""
+    """Every cell, then the figures with limits."""
     out = []
     for (name, step, rival), cell in found.items():
         where = f'{name} {step}, {rival}'
@@ -113,10 +113,10 @@ def calmness(calm) -> list[report.Figure]:
 
 
 def ratio(found: Found, setting: str, step: str, rival: str, against: str) -> Ratio:
-    """Acceleration RMSE of one filter over another's."""
+    """Ratio of the acceleration RMSE of one filter to another's."""
     one, other = (found[setting, step, name].of_runs for name in (rival, against))
     square = one.mean() / other.mean()
-    # Both saw the same plots: of the difference only what is not common counts.
+    # Both saw the same plots, so errors they share cancel in the difference.
     spread = 1.96 * np.std(one - square * other) / (np.sqrt(len(one)) * other.mean())
     low, value, high = np.sqrt(np.maximum(square + np.array([-spread, 0, spread]), 0.0))
     return Ratio(float(value), float(low), float(high))

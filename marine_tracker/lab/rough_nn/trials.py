@@ -1,8 +1,8 @@
 """The scenario of paper 001 and one at sea: one axis, a target that begins to accelerate.
 
-The filters are those of the tracker, run on tracks whose two axes are independent runs: plots with
-the same deviation and no correlation on both. Beside them stand the filter of constant variance
-F1, and an IMM of the same two filters.
+The filters are those of the tracker. They run on tracks whose two axes are independent runs: plots
+have the same deviation on both, without correlation. They are compared with the filter of constant
+variance F1, and with an IMM of the same two filters.
 """
 
 from collections.abc import Callable, Iterator
@@ -17,9 +17,9 @@ from ...geometry import polar_to_position, to_range_bearing, unit_vector
 from ...types import Array, Plots, take
 
 CS, BP, ROUGH, IMM = 'CS', 'BP', 'rough', 'IMM of the same two filters'
-IMM_NARROW = 0.002  # variance of its calm filter over that of F1
+IMM_NARROW = 0.002  # variance of its calm filter relative to that of F1
 IMM_STAY = np.array([[0.98, 0.02], [0.1, 0.9]])
-SETTLED = 20  # scans left out of all errors
+SETTLED = 20  # first scans, left out of all errors
 
 
 class Setting(NamedTuple):
@@ -71,7 +71,7 @@ SETTINGS = {
 
 
 class TrialRadar(NamedTuple):
-    """A radar and a target on a straight course that it sees.
+    """A radar, and a target on a straight course.
 
     vessel_class   preset of the filters
     period         s
@@ -102,10 +102,10 @@ QUIET_SCANS = 120
 
 
 class Answer(NamedTuple):
-    """What a filter makes of a step of the acceleration.
+    """A filter's answer to a step of the acceleration.
 
     delay         s until the mean acceleration has made 63 % of the step; nan if never
-    overshoot     greatest mean acceleration after the step, in steps
+    overshoot     maximum of the mean acceleration after the step, relative to the step
     acceleration  RMSE after the first scans, m/s^2; likewise velocity m/s and position m
     quiet_velocity, quiet_position  RMSE before the step
     of_runs       [runs]   mean squared error of the acceleration after the first scans
@@ -158,7 +158,7 @@ Filter = Callable[[Setting, Iterator[Plots]], Iterator[tuple[Array, Any]]]
 
 
 def _states(estimator, setting, scans, of):
-    """After every scan what `of` makes of the state; velocity known roughly at the start."""
+    """The value of `of` after every scan. The velocity is known roughly at the start."""
     state = None
     for plots in scans:
         count = len(plots.time)
@@ -194,7 +194,7 @@ def run_parallel(kind: str) -> Filter:
 
 
 def run_imm(setting, scans):
-    """Blom and Bar-Shalom's IMM of F1 and a calm F2, on each axis for itself."""
+    """Blom and Bar-Shalom's IMM of F1 and a calm F2, on each axis separately."""
     frequency, limit = setting.manoeuvre.frequency, setting.manoeuvre.max_acceleration
     phi, q = cs_kalman.model(frequency, np.array([setting.period]))
     variance = cs_kalman.RAYLEIGH * limit**2 * np.array([1.0, IMM_NARROW])
@@ -276,7 +276,7 @@ def answer(
 
 
 def answers(runs: int, seed: int, progress: Progress) -> dict[tuple[str, str, str], Answer]:
-    """By setting, step and filter; all filters of a step see the same plots."""
+    """Answers by setting, step and filter. All filters of a step see the same plots."""
     cells = [
         (name, step, rival)
         for name, setting in SETTINGS.items()
@@ -293,7 +293,7 @@ def answers(runs: int, seed: int, progress: Progress) -> dict[tuple[str, str, st
 
 
 def quiet_share(kind: str, radar: TrialRadar, runs: int, seed: int) -> float:
-    """Mean O of a target that keeps its course, in the latter half of QUIET_SCANS."""
+    """Mean O of a target that keeps its course, over the second half of QUIET_SCANS."""
     rng = np.random.default_rng(seed)
     estimator = cs_rough_nn.parallel(
         cs_kalman.PRESETS[radar.vessel_class], 25.0, cs_rough_nn.weights(kind)

@@ -1,14 +1,13 @@
-"""Two radars on one ship: is the fused track better than either alone, and does it outlive one?
+"""Two radars on one ship: is the fused track better than each alone, and does it survive a failure?
 
-Each run is the shipped scene `two_radars_x` / `two_radars_s` with noise of its own: seven ships,
-three of which turn, clutter, a boat that only the X band radar sees. It is tracked by each radar
-alone and by both, the latter with all scans, with the S band radar silent for five minutes, and
-with late plots taken as they come instead of in the order of their times. Errors are of the
-tracker's positions, and of the course and speed that the ARPA shows, every 5 s from the second
-minute on, of the six ships that both radars see; ratios have their 95 % interval over the runs.
+Each run is the shipped scene `two_radars_x` / `two_radars_s` with its own noise: seven ships, three
+of which turn, clutter, and a boat that only the X band radar sees. Ways to track it: each radar
+alone; both with all scans; both with the S band radar silent for five minutes; and both with late
+plots taken as they come instead of in the order of their times. Errors are those of the tracker's
+positions and of the course and speed that the ARPA shows. They are taken every 5 s from the second
+minute on, for the six ships that both radars see. Ratios have a 95 % interval over the runs.
 """
 
-import os
 from typing import NamedTuple
 
 import numpy as np
@@ -26,17 +25,17 @@ from ...types import Array, take
 HELP = 'the fused track of two radars against that of each alone, with one of them failing'
 RUNS = 100
 SETTLED, EVERY = 120.0, 5.0  # s
-WITHIN = 300.0  # m, a track no farther from a ship is its track
+WITHIN = 300.0  # m; a track at most this far from a ship is its track
 SILENT = 300.0, 600.0  # s, of the S band radar
 SEEN_BY_BOTH = 6  # ships; the seventh is the boat
 WAYS = 'X band', 'S band', 'both', 'both, S band silent', 'both, as plots come'
 
 
 class Course(NamedTuple):
-    """position [K, T] m and velocity [K, T] m/s, errors; nan where a ship has no track.
+    """Errors of position [K, T] m and velocity [K, T] m/s; nan where a ship has no track.
 
-    changes  times that a ship's track was another than before
-    false    tracks that were never a ship's
+    changes  number of times that a ship's track was replaced by another
+    false    tracks that were never on a ship
     """
 
     position: Array
@@ -50,12 +49,12 @@ def run(
     seed: int,
     progress: Progress = silent,
     estimator: str = 'imm',
-    processes: int | None = None,
+    workers: parallel.Workers = None,
 ) -> Result:
     """The scene `runs` times in every way."""
     seeds = np.random.SeedSequence([seed, 5]).generate_state(runs)
     work = [parallel.Job(scene, (estimator, int(one))) for one in seeds]
-    found = parallel.run(work, processes or os.cpu_count() or 1, progress)
+    found = parallel.run(work, workers, progress)
     by_way = dict(zip(WAYS, zip(*found), strict=True))
     rng = np.random.default_rng(seed)
     figures = []
@@ -116,7 +115,7 @@ def scene(estimator: str, seed: int) -> list[Course]:
     )
     of_both = service_for({**x.tracker_parameters(), **both}, estimator=estimator)
     as_they_come = service_for({**x.tracker_parameters(), **both}, estimator=estimator)
-    as_they_come.tracker.updates = 0  # none is held to be undone
+    as_they_come.tracker.updates = 0  # no update is kept, so none can be undone
     return [
         follow(of_radar_x, of_x, x),
         follow(of_radar_s, of_s, s),
@@ -127,7 +126,7 @@ def scene(estimator: str, seed: int) -> list[Course]:
 
 
 def follow(service: Service, scans, truth: scenario.Scenario) -> Course:
-    """What the service makes of the scans."""
+    """Runs the service on the scans and takes its errors."""
     memory, output, due = service.start(), None, SETTLED
     errors: list[Array] = []
     last: dict[int, int] = {}
@@ -158,7 +157,7 @@ def follow(service: Service, scans, truth: scenario.Scenario) -> Course:
 
 
 def _ratio(square, against, rng, resamples: int = 2000):
-    """RMS over RMS of the runs [R], and its 95 % interval: runs are drawn anew in pairs."""
+    """Ratio of the RMS of the runs [R], and its 95 % interval by resampling the runs in pairs."""
     pick = rng.integers(0, len(square), (resamples, len(square)))
     spread = np.sqrt(square[pick].mean(1) / against[pick].mean(1))
     return (

@@ -1,4 +1,4 @@
-"""Pictures of the wavelet experiment: the paper's Fig 1 drawn anew, and a_max at sea."""
+"""Pictures of the wavelet experiment: the paper's Fig 1 redrawn, and a_max at sea."""
 
 from functools import partial
 
@@ -8,7 +8,7 @@ from ...evaluation.result import Picture
 from .study import SCENES, SIZE
 
 CS_COLOUR, OURS_COLOUR, LATE_COLOUR, OTHER = '#c2571a', '#1f5fa8', '#009e73', '0.35'
-SMOOTH = 20  # s over which the curves are averaged, to be told apart
+SMOOTH = 20  # s of averaging, so that the curves can be told apart
 
 
 def pictures(errors, sea, sea_imm) -> list[Picture]:

@@ -1,8 +1,8 @@
 """Paper 003's scenario and the filters that are compared on it.
 
-Two radars, range deviations 200 and 100 m, 0.3 deg, a plot each second for 800 s. Constant
-acceleration as in the paper's initial state would take the target 3,800 km off, so it decays
-(`singer`) or ends after 20 s and turns follow (`manv`).
+Two radars with range deviations of 200 and 100 m and 0.3 deg, a plot each second for 800 s. With
+the constant acceleration of the paper's initial state the target would move 3,800 km. So here the
+acceleration decays (`singer`), or it ends after 20 s and turns follow (`manv`).
 """
 
 from typing import NamedTuple
@@ -24,7 +24,7 @@ RANGE_SIGMAS, BEARING_SIGMA = (200.0, 100.0), float(np.radians(0.3))
 START = np.array([10000.0, 34, 10, 30000, 55, 6])
 START_COVARIANCE = np.diag([100.0, 10, 1, 100, 10, 1])
 SCENES = ('singer', 'manv')
-# Begin and end, s, and acceleration to the left of the way, m/s^2; one more brakes.
+# Begin and end, s, and acceleration to the left of the course, m/s^2. One more brakes.
 TURNS = ((200, 240, 20.0), (350, 400, -15.0), (650, 700, 25.0))
 BRAKES = (550, 560, -12.0)
 MAX_SPEED = 1500.0
@@ -104,7 +104,7 @@ def case(scene: str, runs: int, rng) -> Case:
 
 
 def sea_case(runs: int, rng) -> Case:
-    """The turns of `marine_table`, each run begun from its first plot."""
+    """The turns of `marine_table`. Each run begins with its first plot."""
     position, velocity = marine_table.truth(marine_table.TRACKS['turns'])
     distance, bearing = to_range_bearing(position)
     sigmas = marine_table.RANGE_SIGMA, marine_table.BEARING_SIGMA
@@ -121,10 +121,10 @@ def sea_case(runs: int, rng) -> Case:
 
 
 def kalman(on: Case, manoeuvre: Manoeuvre, plots=None, hold: int = 1) -> Filtered:
-    """CS-Kalman with the plots of each second in turn, by default the fused one.
+    """CS-Kalman with the plots of each second one after another, by default the fused one.
 
-    hold  plots for which mean and variance of the acceleration stay what they were, as they do
-          within a block
+    hold  number of plots for which mean and variance of the acceleration are kept, as within a
+    block
     """
     plots = plots or [(on.position, on.noise)]
     mean, covariance = on.mean, on.covariance
@@ -196,7 +196,7 @@ def interacting(on: Case) -> Array:
 
 
 def each_second(on: Case):
-    """The fused plots as an estimator takes them."""
+    """The fused plots in the form an estimator takes."""
     return (_plots(1.0 + k, on.position[:, k], on.noise[:, k]) for k in range(on.position.shape[1]))
 
 
@@ -215,8 +215,9 @@ def _plots(time, position, noise):
 
 
 class Literal(NamedTuple):
-    """means [B, K, 6]; broken: share of the first two blocks whose P is no covariance;
-    deviation: of the last position east, m, that P tells."""
+    """means [B, K, 6]; broken: share of the first two blocks whose P is not a covariance; deviation
+    m of the last east position according to P.
+    """
 
     mean: Array
     broken: float
@@ -224,7 +225,7 @@ class Literal(NamedTuple):
 
 
 def literal(on: Case, manoeuvre: Manoeuvre, low_pass_only: bool, period: float = 1.0) -> Literal:
-    """Eq 13 to 15 as printed: P - H' K S K' H; eq 14 without details where asked; period s."""
+    """Eq 13 to 15 as printed: P - H' K S K' H; eq 14 without details if low_pass_only; period s."""
     rows = wavelet_block.coarse('haar', wavelet_block.COARSEST)
     states = np.kron(rows, np.eye(6))
     mean, covariance = on.mean, on.covariance

@@ -1,7 +1,7 @@
 """Wavelet multiresolution tracking (paper 003): its scenario, its claims, and the same at sea.
 
-Two radars, 200 and 100 m, 0.3 deg, a plot each second for 800 s, fused; errors are RMS of the
-position an axis after 40 s. "Late" states come at the end of their block of four; "block mean" is
+Two radars, 200 and 100 m, 0.3 deg, a plot each second for 800 s, fused. Errors are RMS of the
+position per axis after 40 s. "Late" states come at the end of their block of four. "Block mean" is
 the error of the mean position of a block. Then the turns of `marine_table`, without latency.
 """
 
@@ -21,7 +21,7 @@ from .wavelet_noise import noise_deviation
 
 HELP = 'wavelet multiresolution CS-Kalman: equivalence, the scenario of its paper, turns at sea'
 RUNS = 50
-# Of the equivalence: rounding grows with the ratio of process noise and plot noise.
+# For the equivalence: rounding errors grow with the ratio of process noise to plot noise.
 GENTLE = Manoeuvre(30.0, 1 / 60)
 WAVELETS = ('haar', 'db2', 'db4', 'sym4', 'coif1')
 EXACT = 1e-8
@@ -39,7 +39,7 @@ WINDOW, WILD = 32, (0.05, 150.0)  # plots; share of wild plots and their deviati
 
 
 def run(runs: int, seed: int, progress: Progress = silent) -> Result:
-    """Equivalence, both scenes, the sea and the noise found on line."""
+    """Equivalence, both scenes, the turns at sea and the noise estimated on line."""
     errors: dict[tuple[str, str], Array] = {}
     parts = len(study.SCENES) + 2
     for done, scene in enumerate(study.SCENES):
@@ -68,7 +68,7 @@ def run(runs: int, seed: int, progress: Progress = silent) -> Result:
 
 
 def filters(on: Case) -> dict[str, Array]:
-    """Means [B, K, 6] of all that are compared on the paper's scenario."""
+    """Means [B, K, 6] of all filters compared on the paper's scenario."""
     manoeuvre = study.MANOEUVRE
     plain = study.kalman(on, manoeuvre)
     return {
@@ -82,7 +82,7 @@ def filters(on: Case) -> dict[str, Array]:
 
 
 def rms(error) -> float:
-    """Of the position an axis of errors [B, K, 6], settled."""
+    """RMS of the position per axis of errors [B, K, 6], after settling."""
     return float(np.sqrt(np.mean(error[:, SETTLED:, POSITION] ** 2)))
 
 
@@ -93,13 +93,13 @@ def block_mean(error) -> float:
 
 
 def block_end(error) -> float:
-    """The same of the last state of each block, the one that goes on."""
+    """The same of the last state of each block, from which the filter continues."""
     ends = error[:, SIZE - 1 :: SIZE]
     return float(np.sqrt(np.mean(ends[:, SETTLED // SIZE :, POSITION] ** 2)))
 
 
 def equivalence(on: Case, runs: int = 5, plots: int = 200) -> list[report.Figure]:
-    """The whole block against filter and smoother; both radars in turn against them fused."""
+    """The whole block against filter and smoother; both radars in turn against both fused."""
     part = on._replace(
         plots=[(z[:runs, :plots], r[:runs, :plots]) for z, r in on.plots],
         position=on.position[:runs, :plots],
@@ -161,7 +161,7 @@ def _whole(on: Case, manoeuvre: Manoeuvre, wavelet: str) -> Array:
 
 
 def scenes(errors) -> list[report.Figure]:
-    """Every filter on both scenes, and what is demanded of the late coarse level."""
+    """Every filter on both scenes, and the limits for the late coarse level."""
     figures = []
     for scene in study.SCENES:
         for name in (CS, RTS, COARSE, SHRUNK, CAUSAL, IMM):
@@ -183,7 +183,7 @@ def scenes(errors) -> list[report.Figure]:
 
 
 def at_sea(runs: int, seed: int):
-    """RMS of position and velocity in turns of 1.5 deg/s by filter and a_max; those of `imm`."""
+    """RMS of position and velocity in turns of 1.5 deg/s, by filter and a_max; and of `imm`."""
     leg, found = marine_table.TRACKS['turns'], {}
     for limit in LIMITS:
         manoeuvre = Manoeuvre(limit, 1 / 60)
@@ -193,7 +193,7 @@ def at_sea(runs: int, seed: int):
 
 
 def sea_figures(sea, sea_imm) -> list[report.Figure]:
-    """By a_max, and what is demanded."""
+    """Figures by a_max, and the limits."""
     figures = []
     for limit in (0.1, 0.3, 1.0):
         for name in (CS, CAUSAL):
@@ -216,7 +216,7 @@ def sea_figures(sea, sea_imm) -> list[report.Figure]:
 
 
 def circles(runs: int, seed: int) -> list[report.Figure]:
-    """Where it is weak: turning on and on, by how many of the plots are seen."""
+    """Where it is weak: a target that keeps turning, by the share of plots that are seen."""
     leg = marine_table.TRACKS['turns']._replace(turning=marine_table.SCANS)
     ship = cs_kalman.PRESETS['ship']
     rivals = {
@@ -236,7 +236,7 @@ def circles(runs: int, seed: int) -> list[report.Figure]:
 
 
 def noise_figures(runs: int, seed: int) -> list[report.Figure]:
-    """The deviation of ranges found by their details over what it is, with wild plots too."""
+    """Estimated over true deviation of ranges, from their details; with wild plots too."""
     rng = np.random.default_rng(seed)
     position, _ = marine_table.truth(marine_table.TRACKS['turns'])
     series = np.hypot(*position.T) + rng.normal(0, marine_table.RANGE_SIGMA, (runs, len(position)))
@@ -254,7 +254,7 @@ def noise_figures(runs: int, seed: int) -> list[report.Figure]:
 
 
 def claims_of_accuracy(errors):
-    """Of section 5."""
+    """Claims of section 5."""
     told, level, better = [], [], []
     for scene in study.SCENES:
         plain, coarse = rms(errors[scene, CS]), block_mean(errors[scene, COARSE])
@@ -274,7 +274,9 @@ def claims_of_accuracy(errors):
 
 
 def claims_of_equations(errors, literal: study.Literal, at_sea_m: float):
-    """Of eq 13 to 15; literal: taken so in the turns at sea, with the error at_sea_m."""
+    """Claims of eq 13 to 15. literal: the equations as printed, in the turns at sea; at_sea_m: its
+    error there.
+    """
     bias = {
         name: [
             float(np.abs(errors[scene, name][:, SETTLED:, 0].mean(0)).mean())
@@ -309,7 +311,7 @@ def claims_of_equations(errors, literal: study.Literal, at_sea_m: float):
 
 
 def claim_at_sea(sea, sea_imm) -> report.Claim:
-    """Our own."""
+    """A claim of this project."""
     ours, plain = (sea[name, 1.0] for name in (CAUSAL, CS))
     return report.Claim(
         'this project',

@@ -1,4 +1,4 @@
-"""The noise of a series found in its finest wavelet details, while it runs."""
+"""Estimates the noise of a running series from its finest wavelet details."""
 
 import numpy as np
 import pywt
@@ -12,9 +12,9 @@ NORMAL = 0.6745  # median of |z| of a normal z of deviation 1
 def noise_deviation(series, wavelet: str = 'db2') -> Array:
     """Deviation [...] of the white noise in evenly spaced series [..., K], e.g. ranges in m.
 
-    The finest details of a smooth motion are noise; their median size is not moved by a few wild
-    plots, as a mean of squares is (Donoho and Johnstone 1994). ValueError where K is shorter than
-    the wavelet's filter.
+    The finest details of a smooth motion are noise. Their median size is robust: a few wild plots
+    do not change it, unlike a mean of squares (Donoho and Johnstone 1994). ValueError if K is
+    shorter than the wavelet's filter.
     """
     high = np.array(pywt.Wavelet(wavelet).dec_hi)
     if np.shape(series)[-1] < len(high):

@@ -65,9 +65,10 @@ def test_a_danger_is_raised_acknowledged_and_over(bridge, sea):
     here.awaits(danger, NORMAL)
     assert here.rows()[name]['level'] == DiagnosticStatus.OK
 
-    # Raised again, by the other limit; by its number acknowledged.
+    # Raised again, by the other limit, once the encounter has clearly ended; by its number
+    # acknowledged.
     assert here.set(cpa_limit_nm=0.5, tcpa_limit_min=1.0)[0].successful
-    here.sail(6)
+    here.sail(30)
     assert here.standing() == {danger: NORMAL}
     assert here.set(tcpa_limit_min=12.0)[0].successful
     here.sail(3)
@@ -79,6 +80,7 @@ def test_a_danger_is_raised_acknowledged_and_over(bridge, sea):
     here.set(cpa_limit_nm=0.05)
     here.sail(7)
     here.awaits(danger, NORMAL)
+    here.sail(26)
     here.set(cpa_limit_nm=0.5)
     here.sail(3)
     here.awaits(danger, ACTIVE)

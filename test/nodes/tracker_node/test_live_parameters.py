@@ -1,6 +1,8 @@
 """Parameters that change while the node runs, and what it says of itself each second."""
 
+import struct
 import time
+import zipfile
 
 import pytest
 
@@ -38,6 +40,49 @@ def test_a_live_change_keeps_every_track(rig, clean):
     used = {pair.value for pair in here.targets[12].status[0].values if pair.key == 'estimator'}
     assert used == {'cs_kalman'}
     assert not here.tracker.failures.counts
+
+
+def wrong_weights(file, header):
+    """A weights file, one of whose arrays has this for its header."""
+    with zipfile.ZipFile(file, 'w') as archive:
+        text = header.encode() + b'\n'
+        archive.writestr('w.npy', b'\x93NUMPY\x01\x00' + struct.pack('<H', len(text)) + text)
+    return str(file)
+
+
+def test_a_live_change_that_cannot_be_read_is_refused_by_name_and_tracks_go_on(
+    rig, clean, tmp_path
+):
+    here = rig()
+    here.play(clean[0][:12])
+    before = here.names()
+    assert len(before) == 6
+    zones = (
+        '[' * 7_300,
+        '{a: ' * 4_100,
+        '- ' * 6_000,
+        '[' * 900 + ']' * 900,
+        '&a [*a]',
+        '!!set {7}',
+    )
+    weights = (
+        wrong_weights(tmp_path / 'old.npz', "{'descr': '<f8', 'shape': (2L, 3L"),
+        wrong_weights(tmp_path / 'deep.npz', '(' * 3_000),
+        str(tmp_path),
+        '/dev/null',
+    )
+    changes = [('zones', value) for value in zones] + [('gwnn_weights', file) for file in weights]
+    for k, (name, value) in enumerate(changes):
+        (answer,) = here.set(**{name: value})
+        assert not answer.successful
+        assert name in answer.reason and len(answer.reason.splitlines()) == 1
+        assert len(answer.reason) < 400
+        here.play(clean[0][12 + k : 13 + k])
+        assert here.names() == before
+        assert all(entry.message == 'TRACKING' for entry in here.targets[-1].status)
+    assert here.set(zones='[{name: bow, kind: guard, range_nm: [1.5, 2.5]}]')[0].successful
+    here.play(clean[0][30:32])
+    assert here.names() == before
 
 
 def test_diagnostics_come_each_second_with_names_and_hardware_ids(rig, clean):

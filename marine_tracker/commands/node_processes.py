@@ -1,0 +1,66 @@
+"""Runs nodes of this package as child processes of a command."""
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, Any, NamedTuple
+
+from ..processes import closing, end_with_parent
+
+STOP_S = 4.0  # s for the nodes to end by themselves after SIGINT, then after SIGTERM
+
+
+class Child(NamedTuple):
+    """A node as a process. Its output goes into `log`."""
+
+    name: str
+    process: subprocess.Popen
+    log: IO[bytes]
+
+
+@contextlib.contextmanager
+def children_of(nodes: dict[str, dict[str, Any]]) -> Iterator[list[Child]]:
+    """The nodes, by name with their parameters, as processes. All end with the context."""
+    with contextlib.ExitStack() as logs:
+        children: list[Child] = []
+        try:
+            for name, parameters in nodes.items():
+                log = logs.enter_context(tempfile.TemporaryFile())
+                children.append(Child(name, _start(name, parameters, log), log))
+            yield children
+        finally:
+            closing()
+            for ask in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+                for child in children:
+                    if ask == signal.SIGKILL and child.process.poll() is None:
+                        print(f'{child.name} does not end, and is killed', file=sys.stderr)
+                    child.process.send_signal(ask)  # no effect if it has ended
+                until = time.monotonic() + STOP_S
+                for child in children:
+                    with contextlib.suppress(subprocess.TimeoutExpired):
+                        child.process.wait(max(until - time.monotonic(), 0.0))
+
+
+def _start(name: str, parameters: dict[str, Any], log: IO[bytes]) -> subprocess.Popen:
+    arguments = [sys.executable, '-P', '-m', 'marine_tracker.nodes.run', name, '--ros-args']
+    for key, value in parameters.items():
+        arguments += ['-p', f'{key}:={json.dumps(value)}']
+    package_home = os.fspath(Path(__file__).resolve().parents[2])
+    search = os.pathsep.join(filter(None, [package_home, os.environ.get('PYTHONPATH')]))
+    # A session of its own: Ctrl-C reaches only this command, which then ends its children.
+    return subprocess.Popen(
+        arguments,
+        stdin=subprocess.DEVNULL,
+        stdout=log,
+        stderr=log,
+        start_new_session=True,
+        env={**os.environ, 'PYTHONPATH': search},
+        preexec_fn=end_with_parent,
+    )

@@ -1,0 +1,1 @@
+"""How often the alarm of danger sounds, and how often it should."""
