@@ -9,6 +9,7 @@ from ..arpa.stabilisation import LOG, NO_HEADING, NONE, POSITIONS, SEA
 from ..geometry import KNOT, to_range_bearing
 from ..parameters import ArpaParameters
 from ..tracking import own_ship
+from .own_sensors import SensorsInput
 from .targets_message import degrees, figure
 
 PLACED = {
@@ -19,18 +20,23 @@ PLACED = {
 
 
 def sources(
-    picture: Picture | None, heard: float, velocity: str, fallback: str, p: ArpaParameters, offsets: bool
+    picture: Picture | None,
+    sensors: SensorsInput,
+    velocity: str,
+    fallback: str,
+    p: ArpaParameters,
+    offsets: bool,
 ) -> tuple[list[str], dict[str, str]]:
     """What is to worry about, and the values, as they were in the last scan.
 
-    heard     rad, the last heading that was told; nan for none
+    sensors   own ship's, as heard
     velocity  what tells the velocity, where the positions are heard
     fallback  of own ship's place in the scan (own_ship.own_ship_for)
     offsets   whether the parameters give offsets of antennas
     """
     if picture is None:
         return [], {}
-    own, against = picture.own, picture.stabilised
+    own, against, heard = picture.own, picture.stabilised, sensors.heading
     values = {
         'position from': PLACED.get(fallback, 'odometry'),
         'velocity from': velocity,
@@ -66,6 +72,7 @@ def sources(
         'last_heading_deg': degrees_of(heard),
         'course_deg': degrees_of(float(course)) if known and own.north and speed > 0 else '',
         'speed_kn': figure(float(speed) / KNOT, 2) if known else '',
+        'water_speed_kn': figure(float(np.hypot(*sensors.way(p)[0])) / KNOT, 2),
         'stabilised': against.reference,
         'stabilised by': against.by,
         'set_deg': degrees_of(float(set_)) if drifts and own.north and drift > 0 else '',

@@ -151,10 +151,10 @@ class TrackerNode(RunnableNode):
         scan, self._fallback, self._own_log = found
         end_ns = int(self._stamps(heard, scan.end))
         output = self._operator.step(scan, end_ns, self._fallback)
+        self._to_state.publish(diagnostics.array(end_ns, [self._own_ship_status(time.monotonic())]))
         self._output.publish(
             self._operator.service, output, heard.period, partial(self._stamps, heard)
         )
-        self._to_state.publish(diagnostics.array(end_ns, [self._own_ship_status(time.monotonic())]))
         self._status_count = np.bincount(output.report.tracks.status, minlength=4)
         self._standing = output.standing
         now = self.get_clock().now().nanoseconds
@@ -264,7 +264,7 @@ class TrackerNode(RunnableNode):
             worries.append(f'twist is {off:.1f} m/s off the positions: velocity from {source}')
         more, known = sources(
             self._operator.picture,
-            self._sensors.heading,
+            self._sensors,
             source,
             self._fallback,
             self._operator.arpa.parameters,
