@@ -89,7 +89,7 @@ def read_targets(message: DiagnosticArray) -> Targets:
 
 
 def frame_of(message: DiagnosticArray) -> tuple[bool, int]:
-    """Of a message on `targets`: whether bearings count from the bow, for want of a heading; and the
+    """Of a message on `targets`: whether bearings count from the bow, without a heading; and the
     number of the stationary target that tells the motion of the ground, 0 for none.
     """
     relative, reference = False, 0
