@@ -23,7 +23,7 @@ setup(
     maintainer_email='maintainers@marine-tracker.example',
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={NAME: ['py.typed', 'networks/weights/*']},
+    package_data={NAME: ['py.typed', 'networks/weights/*', 'display/static/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
@@ -51,6 +51,8 @@ setup(
             'ros-jazzy-domain-coordinator',
             'setuptools>=64',
         ],
+        # The PPI in a browser: node ppi_display.
+        'display': ['aiohttp>=3.9'],
         'parallel': ['pytest-xdist>=3.3'],
         # Parts of experiments on other machines: --scheduler.
         'cluster': ['distributed>=2024.1', 'threadpoolctl>=3.1'],
@@ -62,6 +64,7 @@ setup(
         'console_scripts': [
             'marine_tracker = marine_tracker.cli:main',
             'nmea_output = marine_tracker.nodes.run:nmea_output',
+            'ppi_display = marine_tracker.nodes.run:ppi_display',
             'radar_simulator = marine_tracker.nodes.run:radar_simulator',
             'recording_player = marine_tracker.nodes.run:recording_player',
             'tracker = marine_tracker.nodes.run:tracker',

@@ -1,7 +1,7 @@
-"""Places on Earth and the local plane, and back: the only home of latitude and longitude.
+"""Places on Earth and the local plane, and back. All use of latitude and longitude is here.
 
 Degrees on WGS 84, north and east positive. Longitudes go in as -180 to 180 and come out in
-[-180, 180). Those of 180 to 360 are refused: in AIS reports 181 means "not known".
+[-180, 180). Those of 180 to 360 are refused, because in AIS reports 181 means "not known".
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ FARTHEST = 2.0e7  # m: half way round the Earth, less 4 km
 
 @cache
 def _earth() -> Any:
-    """WGS 84. pyproj is loaded when the first place is asked for: a tracker alone needs none."""
+    """WGS 84. pyproj is loaded on first use, because a tracker alone does not need it."""
     from pyproj import Geod
 
     return Geod(ellps='WGS84')
@@ -38,19 +38,19 @@ class LocalFrame:
 
     latitude, longitude  deg, of the plane's [0, 0]; or many origins [...], a frame each
 
-    A place lies in the plane as far from the origin, and in the direction, as the shortest way over
-    the Earth (the geodesic) leaves the origin. So range and bearing from the origin are true at any
-    distance. A tangent plane (east, north, up) would show 50 NM as 3 m too short.
+    A place has the distance and direction from the origin that the geodesic has, the shortest way
+    over the Earth. So range and bearing from the origin are true at any distance. A tangent plane
+    (east, north, up) would show 50 NM as 3 m too short.
 
     Between two places that are both far from the origin, the plane is stretched across the line of
     sight by d^2 / (6 R^2): 35 parts in a million at d = 50 NM, with R the Earth's radius.
 
-    y is true north at the origin and on its meridian only. At e m east of it the meridians lean
+    y is true north only at the origin and on its meridian. At e m east of it the meridians lean
     towards it by e tan(latitude) / R rad: 0.5 deg at 22 NM and 54 N, 2 deg at 22 NM and 80 N. So a
-    bearing that was taken on board (true north there) is right in the frame about own ship, not in
-    one about a far origin.
+    bearing that was measured on board (true north there) is right in the frame about own ship, but
+    not in a frame about a far origin.
 
-    ValueError where an origin is no place on Earth.
+    ValueError if an origin is not a place on Earth.
     """
 
     latitude: ArrayLike
@@ -60,7 +60,7 @@ class LocalFrame:
         _refuse_elsewhere(self.latitude, self.longitude)
 
     def to_local(self, latitude: ArrayLike, longitude: ArrayLike) -> Array:
-        """East and north [..., 2] m of places [...] deg. ValueError for no place on Earth."""
+        """East and north [..., 2] m of places [...] deg. ValueError if one is not on Earth."""
         _refuse_elsewhere(latitude, longitude)
         bearing_deg, _, distance = _each(
             _earth().inv, self.longitude, self.latitude, longitude, latitude

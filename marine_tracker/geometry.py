@@ -1,4 +1,4 @@
-"""Range and bearing to east and north, and back: the only home of bearing mathematics.
+"""Range and bearing to east and north, and back. All bearing mathematics is here.
 
 Bearings are radians clockwise from true north; vectors are [east, north].
 """
@@ -78,10 +78,10 @@ def polar_to_position(
     range_, bearing  [M] m, rad; range_sigma m; bearing_sigma rad (scalars or [M]).
     Returns position [M, 2] m and covariance [M, 2, 2] m^2.
 
-    Bearing noise pulls the mean of r (sin b, cos b) in by exp(-sigma_b^2 / 2); dividing by it
-    leaves no bias. The covariance is that of the truth given the measurement, second-order terms
-    included, which matter at long range (Longbin, Xiaoquan, Yiyu, Kang, Bar-Shalom, "Unbiased
-    converted measurements for tracking", IEEE T-AES 34(3), 1998, eq 11).
+    Bearing noise shortens the mean of r (sin b, cos b) by the factor exp(-sigma_b^2 / 2). Dividing
+    by it removes the bias. The covariance is that of the truth given the measurement, including
+    second-order terms, which matter at long range (Longbin, Xiaoquan, Yiyu, Kang, Bar-Shalom,
+    "Unbiased converted measurements for tracking", IEEE T-AES 34(3), 1998, eq 11).
     """
     shrink = np.exp(-0.5 * bearing_sigma**2)
     unit = unit_vector(bearing)
@@ -99,7 +99,7 @@ def polar_to_position(
 def own_ship_at(own_ship: OwnShip, time: float | Array) -> tuple[Array, Array]:
     """Own ship's position [..., 2] m and velocity [..., 2] m/s at the times [...].
 
-    Linear between samples; beyond the first and last one the ship holds its velocity.
+    Linear between samples. Before the first and after the last one the ship keeps its velocity.
     """
     at = own_ship.time
     if len(at) == 1:
@@ -115,9 +115,9 @@ def own_ship_at(own_ship: OwnShip, time: float | Array) -> tuple[Array, Array]:
 
 
 def locate(polar: PolarPlots, own_ship: OwnShip, range_sigma: float, bearing_sigma: float) -> Plots:
-    """Polar plots [M] placed in the ground-stabilised frame, each by own ship at its own time.
+    """Places polar plots [M] in the ground-stabilised frame, each by own ship at its own time.
 
-    range_sigma m and bearing_sigma rad are the radar's standard deviations; plots that tell their
+    range_sigma m and bearing_sigma rad are the radar's standard deviations. Plots that have their
     own covariance keep it.
     """
     origin, _ = own_ship_at(own_ship, polar.time)

@@ -1,10 +1,11 @@
-"""What processes of this package ask of the operating system."""
+"""The requests of this package's processes to the operating system."""
 
 import contextlib
 import ctypes
 import faulthandler
 import fcntl
 import os
+import resource
 import signal
 import sys
 from typing import NoReturn
@@ -12,13 +13,13 @@ from typing import NoReturn
 PR_SET_PDEATHSIG = 1  # sys/prctl.h
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h of the GNU C library
 KEEP = 64 * 1024 * 1024  # bytes
-GRACE_S = 10  # to close in order, after a signal
-LATE = int(signal.SIGALRM)  # exit code of a process that did not
+GRACE_S = 10  # s to close in order, after a signal
+LATE = int(signal.SIGALRM)  # exit code of a process that did not close in time
 THREADS = ('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS', 'MKL_NUM_THREADS')
 
 
 def end_with_parent() -> None:
-    """In a child: be told to end should the parent be killed. Linux only; elsewhere nothing."""
+    """In a child process: end it if the parent is killed. Linux only; elsewhere no effect."""
     with contextlib.suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
@@ -26,14 +27,14 @@ def end_with_parent() -> None:
 def end_in_time() -> None:
     """From now on the process ends within GRACE_S of a signal that a Python handler takes.
 
-    It ends with the exit code LATE, and says on stderr where each thread stood. No line of Python
-    runs for that: a call into a library that never returns may hold the interpreter's lock, and
-    then no handler and no thread of Python ever runs again. Python's own handler, in C, writes the
-    signal's number into a pipe. The kernel answers with the signal number 10, which stands for
-    nothing (SIGUSR1). Its handler is `alarm` of the C library: called with that 10, it asks for
-    SIGALRM in 10 s, which shows the threads and calls `_exit` with its own number, 14.
+    It ends with the exit code LATE, and stderr shows where each thread was. No line of Python runs
+    for that. A call into a library that never returns may hold the interpreter's lock, and then no
+    handler and no thread of Python runs. Python's own handler, in C, writes the signal's number
+    into a pipe. The kernel answers with signal number 10, which has no other use (SIGUSR1). Its
+    handler is `alarm` of the C library. Called with that 10, it asks for SIGALRM in 10 s. That
+    signal shows the threads and calls `_exit` with its own number, 14.
 
-    Where SIGUSR1 is another number, as on macOS, Python's handler has to run and call `closing`.
+    If SIGUSR1 has another number, as on macOS, Python's handler must run and call `closing`.
     """
     library = ctypes.CDLL(None)
     library.signal.argtypes = ctypes.c_int, ctypes.c_void_p
@@ -52,7 +53,7 @@ def end_in_time() -> None:
 
 
 def stop_on_sigterm() -> None:
-    """From now on SIGTERM raises SystemExit, so that what was begun is put in order."""
+    """From now on SIGTERM raises SystemExit, so that everything is cleaned up."""
 
     def stop(*_: object) -> NoReturn:
         raise SystemExit(128 + signal.SIGTERM)
@@ -61,9 +62,9 @@ def stop_on_sigterm() -> None:
 
 
 def closing() -> None:
-    """To be called once the process is about to end, by a signal or by itself.
+    """Call this when the process is about to end, by a signal or by itself.
 
-    Another signal gives no more time from here on; where none came, the time begins now.
+    From here on another signal gives no more time. If no signal came, the time starts now.
     """
     signal.set_wakeup_fd(-1)
     left = signal.alarm(GRACE_S)
@@ -72,19 +73,20 @@ def closing() -> None:
 
 
 def one_thread() -> None:
-    """Linear algebra in one thread, unless the user says otherwise; before numpy is imported.
+    """Linear algebra in one thread, unless the user sets something else. Call before importing
+    numpy.
 
-    The matrices here are small: a second thread doubles the CPU time and saves none (measured).
+    The matrices here are small: a second thread doubles the CPU time and saves nothing (measured).
     """
     for name in THREADS:
         os.environ.setdefault(name, '1')
 
 
 def keep_freed_memory() -> bool:
-    """Ask the C library to keep up to 64 MB of freed memory for reuse; False where it cannot.
+    """Asks the C library to keep up to 64 MB of freed memory for reuse. False if it cannot.
 
-    A scan frees a few megabytes of arrays and the next one asks for them again. Given back to the
-    kernel in between, and faulted in anew, they double the time of a scan of 1,000 tracks
+    A scan frees a few megabytes of arrays, and the next scan asks for them again. If they go back
+    to the kernel in between and must be mapped again, a scan of 1,000 tracks takes twice the time
     (measured). Every process that runs trackers calls this once.
     """
     try:
@@ -92,3 +94,8 @@ def keep_freed_memory() -> bool:
     except (AttributeError, OSError):  # not the GNU C library
         return False
     return bool(mallopt(M_TRIM_THRESHOLD, KEEP) and mallopt(M_MMAP_THRESHOLD, KEEP // 2))
+
+
+def peak_memory_mb() -> float:
+    """MB: the most memory that this process has had so far. Linux counts in kB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

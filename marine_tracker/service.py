@@ -1,13 +1,13 @@
-"""The one way of the data: a scan in; tracks, sizes, targets and alarms out.
+"""The main path of the data: a scan in; tracks, sizes, targets and alarms out.
 
     service = Service(TrackerParameters(estimator='imm'), ArpaParameters())
     memory = service.start()
     for scan in scans:
         memory, output = service.step(memory, scan)
 
-Node, replay, scores, the IMO report and the examples all call `step`: what is certified is what
-runs. State goes in and comes out. A change of parameters is a new Service, which takes the memory
-of the old one over: `memory = new.adopt(memory, old)`; no track is lost by it.
+Node, replay, scores, the IMO report and the examples all call `step`, so the tests and reports run
+the same code as the product. Memory goes in and comes out. After a change of parameters, make a new
+Service and let it take over the memory: `memory = new.adopt(memory, old)`. No track is lost.
 """
 
 from collections.abc import Mapping
@@ -128,6 +128,7 @@ class Service:
         if seen is not None:
             known = extents.step(known, seen, report.tracks.id, report.time, report.plot, estimate)
             shapes = extents.shapes(known, seen, estimate)
+            report = report._replace(left_out=report.left_out + seen.left_out)
         return (
             memory._replace(tracker=tracks, extents=known),
             Tracking(scan, report, estimate, shapes),

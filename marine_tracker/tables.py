@@ -30,7 +30,7 @@ class Table(NamedTuple):
         return len(self.line)
 
     def where(self, row: int) -> str:
-        """The row's place, as an error names it."""
+        """The row's place, for an error message."""
         return f'{shortened(self.path)}, line {self.line[row]}'
 
     def numbers(
@@ -39,7 +39,7 @@ class Table(NamedTuple):
         """A column [R] as finite numbers between `low` and `high`.
 
         missing  an empty cell, or `nan`, is allowed and becomes nan
-        Raises ValueError for the first cell that is none.
+        Raises ValueError for the first cell that is not such a number.
         """
         cells = self.columns[name]
         values = np.empty(len(cells))
@@ -79,8 +79,8 @@ class Table(NamedTuple):
 class Rows(NamedTuple):
     """A CSV file that is being read.
 
-    names  of the columns, without blanks around them, as those of the cells
-    rows   (line of the file, cells), each when it is asked for; blank lines are passed over
+    names  of the columns, without blanks around them; so are the cells
+    rows   (line of the file, cells), read on demand; blank lines are skipped
     """
 
     names: list[str]
@@ -90,8 +90,8 @@ class Rows(NamedTuple):
 def rows(path: Place, *, broken: str = 'strict') -> Rows:
     """The rows of a CSV file, one by one: UTF-8, with or without byte order mark, or UTF-16.
 
-    broken  what is made of bytes that are no text: an error, or with 'replace' a sign for each
-    Raises ValueError for a file that is missing, empty, no regular file or not text, and for a
+    broken  for bytes that are not text: 'strict' is an error, 'replace' puts a sign for each
+    Raises ValueError for a file that is missing, empty, not a regular file or not text, and for a
     column named twice.
     """
     path = Path(path)

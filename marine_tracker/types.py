@@ -1,7 +1,7 @@
 """The arrays that flow through the tracker: one leading axis, one row a plot or a track.
 
-Every type is a NamedTuple of numpy arrays. `take`, `append` and `where` drop, add and choose rows
-of any of them (and of an estimator's state, which may nest them), so no code loops over tracks.
+Every type is a NamedTuple of numpy arrays. `take`, `append` and `where` select, add and choose rows
+of any of them (and of an estimator's state, which may nest them). So no code loops over tracks.
 
 Axes: M plots, N tracks, K own-ship samples. Positions are [east, north] in metres in the
 ground-stabilised frame `map`; times are seconds; bearings are radians clockwise from true north.

@@ -1,18 +1,20 @@
-"""The alarms of the ARPA: what raises each of them, and what it says.
+"""The alarms of the ARPA: their causes, and the values for their texts.
 
-What an alert is and how it lives: alerts.py. Here are the kinds and their causes:
+alerts.py has the states of an alert. These are the kinds and their causes:
 
-    danger           CPA and TCPA of a target below the limits, or likely so (situation.danger).
-                     Only a scan in which the target shows raises it: a track that clutter began
-                     does not show again. Once acknowledged: see encounters.py
-    lost target      its track ended for want of plots; not one that left by range, was merged,
-                     cancelled, lay in an exclusion zone, or had hardly been acquired
-    new target       a confirmed track in a guard zone, whether it entered or was first seen there,
-                     target already or not; one alert for each zone
-    near capacity    NEARLY_FULL of the targets that may be
-    capacity         as many targets as may be
-    heading, position, plots, log missing    not heard for too long; plots of each radar; the log
-                     where it is asked for
+    danger           CPA and TCPA of a target are below the limits, or probably so
+                     (situation.danger). It is raised only in a scan with a plot of the target,
+                     because a track that clutter began gets no more plots. After an
+                     acknowledgement: see encounters.py
+    lost target      its track ended because plots were missing. Not if the target moved out of
+                     range, was merged, was cancelled, was in an exclusion zone, or was acquired
+                     only a short time before
+    new target       a confirmed track is in a guard zone, whether it entered or was first seen
+                     there, and whether it is a target already or not; one alert for each zone
+    near capacity    NEARLY_FULL of the largest number of targets
+    capacity         the largest number of targets
+    heading, position, plots, log missing    not received for too long; plots of each radar;
+                     the log if it is to be used
     fallback         at least a share of the confirmed targets have fallen back from their filter
     swap risk        the gate of a target overlaps that of another track
     own speed        what is told of own ship's velocity is not the way that her positions make
@@ -81,7 +83,7 @@ NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level th
 APART = 1.44  # overlap of gates (see swap_risk) that ends a swap risk
 
 
-Named = tuple[int, int, Causes]  # the kind of alert, its zone or radar, and what causes it
+Named = tuple[int, int, Causes]  # the kind of alert, its zone or radar, and its causes
 
 
 class AlarmSettings(NamedTuple):
@@ -104,9 +106,9 @@ class AlarmSettings(NamedTuple):
 
 
 class Tracking(NamedTuple):
-    """How the tracking of a scan fares.
+    """The state of the tracking in a scan.
 
-    capacity  most targets
+    capacity  largest number of targets
     fallen    confirmed targets that have fallen back from their filter
     overlap   [N]  of the gates and
     other     [N]  row of the track they overlap with, as swap_risk gives them
@@ -119,7 +121,7 @@ class Tracking(NamedTuple):
 
 
 class Silence(NamedTuple):
-    """For how long, s, each has not been heard; inf for never. plots: of each radar.
+    """Time, s, since each was last received; inf for never. plots: of each radar.
 
     speed_off  m/s, how far own ship's velocity as told is off that of her positions; 0: they agree
     log        s; 0 where it is not asked for
@@ -234,7 +236,7 @@ def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
 def _advance(
     alerts: Alerts, causes: list[Named], settings: AlarmSettings, now: float
 ) -> tuple[Alerts, Alerts]:
-    """Each kind and zone by itself; those without causes here stay as they are."""
+    """Each kind and zone separately. Those without causes here do not change."""
     by_kind, parts, changes = rules(settings), [], [machine.begin()]
     rest = np.ones(len(alerts.kind), bool)
     for kind, zone, cause in causes:
@@ -251,7 +253,7 @@ def _advance(
 def _in_guard_zones(
     alerts: Alerts, situation: Situation, acquisition: Acquisition, zones: Zones
 ) -> list[Named]:
-    """Causes of `new target`, zone by zone; a zone that is no more has none."""
+    """Causes of `new target` for each zone. A zone that no longer exists has none."""
     cancelled = acquisition.barred.id[acquisition.barred.cancelled]
     rows = (
         (situation.number > 0)
@@ -273,7 +275,7 @@ def _in_guard_zones(
 def _of_tracks(
     situation: Situation, rows: IntArray, level: CodeArray | IntArray, *told: Array
 ) -> Causes:
-    """Causes of the tracks at the rows; level [N], and what else is told of each [N]."""
+    """Causes of the tracks at the rows; level [N], and the other numbers of each [N]."""
     values = np.full((len(rows), VALUES), np.nan)
     for column, value in enumerate((situation.range, situation.bearing, *told)):
         values[:, column] = value[rows]
@@ -287,7 +289,7 @@ def _of_tracks(
 
 
 def _single(value: float, limit: float, *told: float) -> Causes:
-    """The cause of a kind that concerns no track, there from a value of `limit` on."""
+    """The cause of a kind that concerns no track. It is present from a value of `limit` on."""
     return _causes(value >= limit, *told, keep=value >= NO_LONGER * limit)
 
 

@@ -7,14 +7,18 @@ States and transitions are those of bridge alert management (IEC 62923-1):
     active acknowledged     -- cause gone --> normal
     rectified               -- acknowledged --> normal, -- cause back --> active unacknowledged
 
-A cause must hold for a time before it raises and be gone for a time before it ends, and its level
-knows a middle that neither raises nor ends, nor interrupts what holds: hysteresis in time and in
-value. An acknowledgement may hold for some time only. Of kinds that are remembered it outlives the
-alert: a cause that comes back raises it as acknowledged, until the cause has been clearly gone for
-a time; one that has become clearly worse raises it anew. Cautions need no acknowledgement: they are
-raised as acknowledged. An alert on something momentary (a loss) has no
-cause that could end: it stays active until acknowledged. What nobody acknowledges, as in a tracker
-without an operator, lapses some time after its cause, or alerts would pile up for ever.
+There is hysteresis in time and in value. A cause must last for a time before it raises an alert,
+and it must be gone for a time before the alert ends. Between the level that raises and the level
+that ends there is a middle level: it does neither, and it does not interrupt either.
+
+An acknowledgement may have a time limit. For kinds that are remembered, it lasts longer than the
+alert: a cause that comes back raises the alert as acknowledged, until the cause has been clearly
+gone for a time. A cause that becomes clearly worse raises the alert again. Cautions need no
+acknowledgement: they are raised as acknowledged.
+
+An alert on a momentary event (a loss) has no cause that could end. It stays active until it is
+acknowledged. An alert without a cause that is never acknowledged lapses after some time. Otherwise
+alerts would pile up in a tracker without an operator.
 """
 
 from typing import NamedTuple
@@ -25,28 +29,28 @@ from ..types import Array, BoolArray, CodeArray, IntArray, append, row_of, take
 
 NORMAL, ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED = range(4)
 STATES = ('normal', 'active unacknowledged', 'active acknowledged', 'rectified unacknowledged')
-VALUES = 5  # numbers that an alert tells
+VALUES = 5  # numbers that an alert has for its text
 # Levels of a cause: clearly gone, gone, not enough to raise, there, worse than acknowledged.
 CLEAR, OFF, KEEP, ON, WORSE = range(-1, 4)
 
 
 class Alerts(NamedTuple):
-    """All alerts that are not normal, and causes that have not held long enough; one row each.
+    """All alerts that are not normal, and causes that have not lasted long enough; one row each.
 
     kind      [A]     what it is about, index of alarms.NAMES
-    zone      [A]     key of the zone (zones.Zones.key), 0 for none; where plots are missing the
-                      radar, counted from 0
+    zone      [A]     key of the zone (zones.Zones.key), 0 for none; for missing plots the radar,
+                      counted from 0
     id        [A]     of the track, 0 for none
     number    [A]     of the target, 0 for none
-    state     [A]     index into STATES; a cause that still has to hold stands here as NORMAL
+    state     [A]     index into STATES; a cause that must still last is here as NORMAL
     since     [A]     s, when the state began
-    turn      [A]     s, since when the cause has called for a change of state; nan: it does not
+    turn      [A]     s, since when the cause asks for a change of state; nan: it does not
     position  [A, 2]  m, of the target when the state began; nan for none
-    values    [A, 5]  what the text tells, at that time; see alarms.py
-    until     [A]     s, until when it is acknowledged; inf: until its cause has ended; nan: it is
-                      not, or needs no acknowledgement. In state NORMAL: the cause that comes back
-                      is acknowledged already
-    mark      [A, 2]  what would be clearly worse, see encounters.py; nan: not looked at yet
+    values    [A, 5]  numbers for the text at that time; see alarms.py
+    until     [A]     s, end of the acknowledgement; inf: until its cause has ended; nan: it is not
+                      acknowledged, or needs no acknowledgement. In state NORMAL: a cause that comes
+                      back is acknowledged already
+    mark      [A, 2]  what would be clearly worse, see encounters.py; nan: not checked yet
     """
 
     kind: CodeArray
@@ -63,7 +67,7 @@ class Alerts(NamedTuple):
 
 
 class Causes(NamedTuple):
-    """What may raise alerts of one kind: one row a subject; a subject not there has gone away.
+    """What may raise alerts of one kind: one row a subject. A subject without a row has gone away.
 
     id, number  [S]     as in Alerts
     level       [S]     CLEAR, OFF, KEEP, ON or WORSE
@@ -79,14 +83,15 @@ class Causes(NamedTuple):
 
 
 class Rule(NamedTuple):
-    """How a kind of alert behaves: raised and ended after its cause held or was gone for so long.
+    """How a kind of alert behaves. It is raised, and it ends, after its cause lasted, or was gone,
+    for a time.
 
     raise_after, end_after, lapse_after  s
     caution       needs no acknowledgement
     momentary     active until acknowledged
-    remembered    the acknowledgement outlives the alert ...
-    forget_after  s, ... until the cause has been CLEAR for so long
-    worse_after   s, how long the cause must be WORSE to end the acknowledgement
+    remembered    the acknowledgement lasts longer than the alert ...
+    forget_after  s, ... until the cause has been CLEAR for this time
+    worse_after   s, time that the cause must be WORSE to end the acknowledgement
     """
 
     raise_after: float = 0.0
@@ -111,9 +116,9 @@ def begin() -> Alerts:
 def advance(
     alerts: Alerts, kind: int, zone: int, causes: Causes, rule: Rule, now: float
 ) -> tuple[Alerts, Alerts]:
-    """The alerts, all of this kind and zone, after a look at their causes; and those changed.
+    """The alerts, all of this kind and zone, after a check of their causes; and those that changed.
 
-    A change to NORMAL is among the changed rows only.
+    A change to NORMAL is only in the changed rows.
     """
     row = row_of(causes.id, alerts.id)
     level = np.append(causes.level, OFF)[row]  # -1, gone away: the last
@@ -198,15 +203,16 @@ def acknowledge(
     until: float = np.inf,
     remembered: BoolArray | None = None,
 ) -> tuple[Alerts, Alerts]:
-    """The operator has seen the alerts of this kind and target number; None stands for all.
+    """Acknowledges the alerts of this kind and target number for the operator; None means all.
 
-    momentary   [kinds]  which kinds have no cause that lasts
-    until       s, when the acknowledgement ends if the cause lasts; inf: not before the cause
-    remembered  [kinds]  which acknowledgements outlive the alert (Rule); None: of no kind
+    momentary   [kinds]  kinds whose cause does not last
+    until       s, when the acknowledgement ends if the cause lasts; inf: not before the cause ends
+    remembered  [kinds]  kinds whose acknowledgement lasts longer than the alert (Rule); None: no
+    kind
 
-    Returns the alerts and those changed. What was acknowledged already stays as it is, but that of
-    a target that is named is then acknowledged until `until`. ValueError where kind or number are
-    given and there is no such alert.
+    Returns the alerts and those that changed. An alert that is acknowledged already does not
+    change. But if its target is named, it is then acknowledged until `until`. ValueError if kind or
+    number are given and there is no such alert.
     """
     chosen = alerts.state != NORMAL
     for value, column in ((kind, alerts.kind), (number, alerts.number)):
@@ -237,7 +243,7 @@ def acknowledge(
 
 
 def dismiss(alerts: Alerts, ids: IntArray, now: float) -> tuple[Alerts, Alerts]:
-    """All alerts of these tracks are normal: the operator has cancelled them. As `acknowledge`."""
+    """All alerts of these tracks become normal, as the operator cancels them. As `acknowledge`."""
     chosen = np.isin(alerts.id, ids) & (alerts.id > 0)
     return _change(
         alerts._replace(
@@ -257,6 +263,6 @@ def _change(alerts: Alerts, state: CodeArray, now: float) -> tuple[Alerts, Alert
 
 
 def _alive(alerts: Alerts) -> BoolArray:
-    """Mask of the rows worth keeping: not normal, about to be raised, or acknowledged."""
+    """Mask of the rows to keep: not normal, about to be raised, or acknowledged."""
     found: BoolArray = (alerts.state != NORMAL) | np.isfinite(alerts.turn) | ~np.isnan(alerts.until)
     return found

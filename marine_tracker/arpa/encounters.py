@@ -1,19 +1,20 @@
-"""A danger that was acknowledged: has the encounter ended, or become worse than what was seen?
+"""A danger that was acknowledged: has the encounter ended, or has it become worse since then?
 
-It has clearly ended once, for alerts.Rule.forget_after, the target is farther off than ENDED times
-the CPA limit and its closest approach is past, or CPA or TCPA are ENDED times beyond their limit
-with a probability of danger below REMOTE; or own ship lies at anchor and the target does not come
-nearer.
+It has clearly ended when, for alerts.Rule.forget_after, one of these holds:
 
-It has clearly become worse when for alerts.Rule.worse_after it is a danger and
+    the target is farther away than ENDED times the CPA limit, and its closest approach is past;
+    CPA or TCPA are ENDED times beyond their limit, with a probability of danger below REMOTE;
+    own ship is at anchor and the target does not come nearer.
 
-    the CPA is below what was acknowledged by NEARER of the CPA limit, or the closest approach comes
-    sooner than was acknowledged by SOONER of the TCPA limit. Both are taken only where they are no
-    guess, SURELY of their deviations being no more than that; or
-    the target was no danger any more and, still as near as ENDED times the CPA limit, comes back:
-    to less than BACK of the distance.
+It has become worse when, for alerts.Rule.worse_after, it is a danger and one of these holds:
 
-Between the two the operator knows of it already.
+    the CPA is below the acknowledged one by NEARER of the CPA limit, or the closest approach comes
+    sooner than the acknowledged one by SOONER of the TCPA limit; a value is used only if SURELY
+    times its deviation is at most that much, because otherwise it is a guess;
+    the target was no longer a danger and comes back, while it is still nearer than ENDED times the
+    CPA limit: to less than BACK of the distance.
+
+Between the two the operator knows of the danger already.
 """
 
 import numpy as np
@@ -30,9 +31,9 @@ NEARER, SOONER, SURELY, BACK = 0.5, 0.25, 2.0, 0.5
 def marked(
     alerts: Alerts, dangers: NDArray[np.bool_], situation: Situation, limits: Limits, now: float
 ) -> Alerts:
-    """The alerts; of the dangers [A] acknowledged, those not marked yet with what would be worse.
+    """The alerts. Acknowledged dangers [A] without a mark get the marks of a worse danger.
 
-    That is a CPA, m, and a time of the closest approach, s; each is nan while it were a guess.
+    The marks are a CPA, m, and a time of the closest approach, s; each is nan while it is a guess.
     """
     row = row_of(situation.id, alerts.id)
     new = dangers & ~np.isnan(alerts.until) & (row >= 0)

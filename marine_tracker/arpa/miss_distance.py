@@ -77,8 +77,8 @@ def _dangerous(
     of: Round, position: Array, covariance: Array, cpa_limit: float
 ) -> tuple[Array, Array]:
     """Range [N] to [N], rad from the mean of z, of the velocities that may lead to danger."""
-    # The directions that pass own ship within the limit and are not away from it, position errors
-    # allowed for.
+    # Directions that pass own ship within the limit and do not lead away from it, with a margin for
+    # position errors.
     distance = np.maximum(np.hypot(*position.T), 1e-300)
     blur = WIDE * np.sqrt(np.trace(covariance[:, :2, :2], axis1=1, axis2=2)) / distance
     wide = cpa_limit / distance + blur

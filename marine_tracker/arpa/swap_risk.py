@@ -24,7 +24,8 @@ def swap_risk(
     overlap; inf and -1 if no other track is near. It is the maximum of l (1 - l) d' [(1 - l) A + l
     B]^-1 d over 0 < l < 1 (Perram and Wertheim 1985, "Statistical mechanics of hard ellipsoids", J.
     Comput. Phys. 58). The maximum is taken on a grid, so the result is at most some per cent too
-    small: on the safe side.
+    small: on the safe side. In a crowd only the nearest others are looked at
+    (tracking.pair_budget).
     """
     count = len(position)
     overlap, other = np.full(count, np.inf), np.full(count, -1)
@@ -36,7 +37,9 @@ def swap_risk(
     half_width = np.where(
         far < distance, np.arcsin(np.minimum(far / np.maximum(distance, 1e-9), 1.0)), np.pi
     )
-    one, two = window_pairs(distance - far, distance + far, bearing, half_width, distance, bearing)
+    one, two, _ = window_pairs(
+        distance, distance - far, distance + far, bearing, half_width, distance, bearing
+    )
     apart = position[one] - position[two]
     close = np.hypot(*apart.T) < EASE * (reach[one] + reach[two])
     close &= (reach[one] > reach[two]) | ((reach[one] == reach[two]) & (one < two))

@@ -1,18 +1,18 @@
-"""Own ship's course behind her yaw: how she goes on the whole, once she does nothing but swing.
+"""Own ship's mean course and speed while she yaws.
 
-In a seaway own ship's course swings by some degrees every half a minute. Extrapolated over the
-TCPA limit, each swing would move the CPA of every target by a good part of a mile. So her velocity
+In a seaway own ship's course swings by some degrees about every half minute. Extrapolated over the
+TCPA limit, each swing would move the CPA of every target by a large part of a mile. So her velocity
 is averaged over the longest time, up to HISTORY, in which
 
-    it kept within SWING times its own RMS deviation of its mean (no leg with another course),
-    a straight line in time explains no more than TREND of its variance (no turn, no slow drift),
-    that deviation is no more than WIDE of the speed (no zigzag on purpose).
+    it stayed within SWING times its own RMS deviation of its mean (no leg with another course),
+    a straight line in time explains at most TREND of its variance (no turn, no slow drift),
+    that deviation is at most WIDE of the speed (no deliberate zigzag).
 
-A manoeuvre breaks the first two as soon as it leaves the swing that yaw has shown: averaging then
-ends at once, and begins anew when she has gone on for LEAST without it. A ship that does not yaw
-leaves it within a degree or two of course.
+A manoeuvre breaks the first two conditions as soon as it leaves the range of the yaw so far. The
+averaging then stops at once. It starts again after LEAST without a manoeuvre. For a ship that does
+not yaw, a change of course of one or two degrees is enough.
 
-The average has Hann's weights, which leave less than 3 % of any swing that fits in twice.
+The average has Hann's weights. They leave less than 3 % of any swing of which two fit in.
 """
 
 import numpy as np
@@ -22,16 +22,13 @@ from ..types import Array, OwnShip
 HISTORY, LEAST = 120.0, 30.0  # s
 STEP = 2.0  # s that one mean of samples covers
 SWING, TREND, WIDE = 2.0, 0.15, 0.3
-SMALL = 0.05  # m/s, deviations that are no swing but noise
-GAP = 5  # steps without a sample, after which what was before does not count
-FEW = 10  # means of samples, fewer of which do not show a yaw
+SMALL = 0.05  # m/s; smaller deviations are noise, not a swing
+GAP = 5  # steps without a sample; after a longer gap, older samples are not used
+FEW = 10  # means of samples; fewer cannot show a yaw
 
 
 def mean_velocity(samples: OwnShip, time: float) -> tuple[Array, Array] | None:
-    """Velocity [2] m/s that own ship makes good at `time`, s, and its covariance [2, 2].
-
-    None where she manoeuvres, or has not gone on for long enough to tell.
-    """
+    """Mean velocity [2] m/s of own ship at `time`, s, and its covariance [2, 2]."""
     velocity, age = _means(samples, time)
     count = np.arange(1, len(age) + 1)
     some = (count >= FEW) & (age >= LEAST - STEP)

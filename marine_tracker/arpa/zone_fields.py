@@ -20,7 +20,7 @@ FARTHEST = 200 * NAUTICAL_MILE  # m, limit of ranges and corners
 
 
 def name_of(item: Any, index: int, taken: list[str]) -> str:
-    """The zone's name, which none before it has; its keys are known ones."""
+    """The zone's name, which no zone before it may have. Its keys must be known."""
     if not isinstance(item, dict):
         raise ValueError(
             f'zone {index + 1} is {shown(item)}; it must be a mapping with name, '
@@ -48,7 +48,7 @@ def name_of(item: Any, index: int, taken: list[str]) -> str:
 def choice_of(
     name: str, item: dict[str, Any], key: str, choices: tuple[str, ...], default: str = ''
 ) -> str:
-    """One of the stated words."""
+    """One of the allowed words."""
     value = item.get(key, default)
     if value not in choices:
         raise ValueError(

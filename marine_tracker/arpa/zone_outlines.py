@@ -12,8 +12,8 @@ ARC_STEP = np.radians(5)
 def outlines(zones: Zones, guard: bool, own_position: Array, heading: float) -> Array:
     """Segments [S, 2, 2] m, east and north, of all guard zones, or of all exclusion zones.
 
-    own_position [2] m; heading rad, true. With a heading of nan those that turn with own ship
-    are left out, but for full rings.
+    own_position [2] m; heading rad, true. If the heading is nan, zones that turn with own ship are
+    left out, except full rings.
     """
     parts = [np.zeros((0, 2, 2))]
     sectors = zones.sectors

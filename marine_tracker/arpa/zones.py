@@ -65,7 +65,7 @@ class Zones(NamedTuple):
 
     name      their names, all different
     guard     [Z]  guard zone, else exclusion zone
-    key       [Z]  what the zone is in one number: the same name, kind and outline, the same key
+    key       [Z]  a number for the zone: the same name, kind and outline give the same key
     sectors, polygons   their outlines
     """
 
@@ -120,11 +120,11 @@ def parse(text: str) -> Zones:
 
 
 def inside(zones: Zones, position: Array, own_position: Array, heading: float) -> BoolArray:
-    """Mask [N, Z]: which positions [N, 2] m lie in which zones.
+    """Mask [N, Z]: which positions [N, 2] m are in which zones.
 
-    own_position [2] m; heading rad, true. With a heading of nan nothing lies in a zone that
-    depends on it; full rings and zones fixed to the ground go on. The sides of a sector belong
-    to it; of two polygons with a side in common a position is in one.
+    own_position [2] m; heading rad, true. If the heading is nan, no position is in a zone that
+    depends on it; full rings and zones fixed to the ground still work. The sides of a sector belong
+    to it. If two polygons share a side, a position belongs to only one of them.
     """
     sectors = zones.sectors
     mask = np.zeros((len(position), len(zones.name)), bool)
@@ -133,7 +133,7 @@ def inside(zones: Zones, position: Array, own_position: Array, heading: float) -
     if len(sectors.zone):
         ring = np.isinf(sectors.width)
         turned = wrap_bearing(bearing[:, None] - heading - sectors.start)
-        # HAIR: a bearing on the first side may come out a rounding error short of a whole turn.
+        # HAIR: rounding may put a bearing on the first side just below a whole turn.
         within = ring | (turned <= sectors.width + HAIR) | (turned >= 2 * np.pi - HAIR)
         mask[:, sectors.zone] = (
             within & (distance[:, None] >= sectors.near) & (distance[:, None] <= sectors.far)

@@ -1,4 +1,6 @@
-"""Runs simulator (or recorded radar) and tracker over ROS 2, as two processes, and shows a table.
+"""Runs simulator (or recorded radar), tracker and PPI over ROS 2, as processes; shows a table.
+
+The address of the PPI is printed. On a desktop the page opens by itself.
 
 Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
 """
@@ -21,6 +23,7 @@ from ..parameters import (
     from_mapping,
 )
 from ..processes import closing, end_in_time
+from . import demo_page
 from .node_processes import Child, children_of
 
 HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
@@ -43,6 +46,7 @@ STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
 DANGEROUS = 'bold red'
 MOST_ALARMS = 8  # listed below the table on a terminal; others are only counted
 PLAIN_EVERY_S = 2.0  # s between two tables if there is no terminal
+PPI = 'ppi_display'
 
 
 def add_arguments(parser) -> None:
@@ -71,6 +75,7 @@ def add_arguments(parser) -> None:
     )
     parser.add_argument('--seed', type=int, default=1, help='seed of the simulator (default: 1)')
     parser.add_argument('--duration', type=float, metavar='S', help='end after so many seconds')
+    parser.add_argument('--no-display', action='store_true', help='no page with the radar picture')
     parser.add_argument(
         '--domain', type=int, metavar='ID', help='ROS domain (default: one that is free)'
     )
@@ -114,9 +119,13 @@ def _demo(args, stop: threading.Event) -> int:
             number = context.enter_context(domain.free_domain())
         domain.set_local(os.environ, number)
         last = context.enter_context(contextlib.ExitStack())
-        children = context.enter_context(
-            children_of({'tracker': tracker_parameters, source: source_parameters})
-        )
+        nodes = {'tracker': tracker_parameters, source: source_parameters}
+        if demo_page.wanted(args.no_display):
+            nodes[PPI] = {
+                'address': f'127.0.0.1:{demo_page.free_port()}',
+                'use_sim_time': args.rate != 1,
+            }
+        children = context.enter_context(children_of(nodes))
         listener = TargetsListener()
         last.callback(listener.close)  # after the children have ended: it may hang
         title = Path(args.recording).name if args.recording else args.scenario
@@ -159,11 +168,15 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
 def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:
     """Shows the targets until the end. Returns the exit code."""
     began, ended = time.monotonic(), None
+    page = next((child for child in children if child.name == PPI), None)
     with _display() as show:
         while not stop.is_set() and ended is None:
             if duration is not None and time.monotonic() - began >= duration:
                 break
             listener.spin(0.1)
+            if page and (address := demo_page.address_of(page)):
+                page = None
+                demo_page.show(address)
             show(listener.picture, f'{title}, ROS domain {domain}')
             ended = next((child for child in children if child.process.poll() is not None), None)
         if ended is None:

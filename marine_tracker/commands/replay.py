@@ -1,4 +1,4 @@
-"""Track a recording or a scenario in process, faster than real time, into a track file."""
+"""Tracks a recording or a scenario in process, faster than real time, into a track file."""
 
 import contextlib
 import sys
@@ -16,7 +16,7 @@ HELP = 'track a recording or a scenario into a CSV file, without ROS'
 
 
 def add_arguments(parser) -> None:
-    """The command line of `replay`."""
+    """Adds the command line of `replay`."""
     parser.add_argument(
         'source',
         metavar='SOURCE',
@@ -38,7 +38,7 @@ def add_arguments(parser) -> None:
 
 
 def run(args) -> int:
-    """Write the track file and say in one line what was tracked."""
+    """Writes the track file and prints one line about what was tracked."""
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
     keep_freed_memory()
@@ -55,9 +55,10 @@ def run(args) -> int:
         if args.alarms:
             alarm_file = stack.enter_context(written(args.alarms, newline=''))
         summary = write_tracks(Service(parameters), scans, file, alarm_file)
+    left_out = f', {summary.left_out} pairs left out' if summary.left_out else ''
     print(
         f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '
-        f'{summary.cpu_ms:.2f} ms CPU a scan',
+        f'{summary.cpu_ms:.2f} ms CPU a scan{left_out}',
         file=sys.stderr if args.out == '-' else sys.stdout,
     )
     if parameters.estimator in WANT_DOPPLER and not summary.doppler:
@@ -71,7 +72,7 @@ def run(args) -> int:
 def _with_progress(
     scans: Iterable[tuple[int, Scan]], total: int | None
 ) -> Iterator[tuple[int, Scan]]:
-    """The same scans, with a progress bar where a person watches."""
+    """The same scans, with a progress bar if the output is a terminal."""
     if not sys.stderr.isatty():
         yield from scans
         return

@@ -1,7 +1,8 @@
-"""List, check, show or write scenarios: what the radar simulator plays.
+"""List, check, show or write scenarios, which the radar simulator plays.
 
-A scenario is named, when it is shipped, or is a YAML file of your own; `scenario show` on a shipped
-one, and its file in config/scenarios, tell how one is written."""
+A scenario is the name of a shipped one, or a YAML file of your own. For the form of a file, use
+`scenario show` on a shipped scenario, or see its file in config/scenarios.
+"""
 
 import sys
 from typing import Any
@@ -16,7 +17,7 @@ HELP = 'list, check, show or write scenarios'
 
 
 def add_arguments(parser):
-    """The sub-commands and what each takes."""
+    """Adds the sub-commands and their options."""
     commands = parser.add_subparsers(title='what to do', metavar='ACTION', required=True)
     listed = commands.add_parser('list', help='the shipped scenarios')
     listed.set_defaults(action=_list)
@@ -35,7 +36,7 @@ def add_arguments(parser):
 
 
 def run(args) -> int:
-    """Do what was asked; 1 where a checked file is wrong."""
+    """Runs the sub-command. Returns 1 if a checked file is wrong."""
     return args.action(args)
 
 
@@ -110,7 +111,7 @@ def _write(args):
 
 
 def _notes(loaded):
-    """How `score` is to judge tracks: what counts as near, where the radar is least exact."""
+    """Notes for `score`: the cutoffs for this scenario, from where the radar is least accurate."""
     sigma = np.radians(loaded.tracker_parameters()['bearing_sigma_deg']) * loaded.radar.max_range
     near = float(round(max(50.0, 2 * sigma)))
     notes: dict[str, Any] = {'seen_within_m': near, 'cutoff_m': 2 * near, 'uncooperative': False}

@@ -4,10 +4,9 @@ FOLDER is a recording with truth.csv (or what `marine_tracker scenario write` ma
 at least the columns time_s, track, status, north_m, east_m, vel_north_mps, vel_east_mps; what
 `marine_tracker replay` writes, or another tracker's output in this form.
 
-With --ais the ships' own reports are the truth, and several track files, runs on the same scans,
-may be given. The recording then needs no truth.csv; its notes.json may tell the latitude and
-longitude of the frame's zero ("origin": [55.0, 7.0]), as that of a scenario with AIS does that
-`scenario write` has made.
+With --ais the ships' own reports are the truth. Several track files (runs on the same scans) may be
+given. The recording then needs no truth.csv. Its notes.json may give the latitude and longitude of
+the frame's zero ("origin": [55.0, 7.0]). `scenario write` writes them for a scenario with AIS.
 """
 
 import sys
@@ -21,7 +20,7 @@ HELP = 'tell how good a track file is on a recording'
 
 
 def add_arguments(parser) -> None:
-    """The command line of `score`."""
+    """Adds the command line of `score`."""
     parser.add_argument('folder', metavar='FOLDER', help='recording with truth.csv')
     parser.add_argument('tracks', metavar='TRACKS.csv', nargs='+', help='track file to score')
     parser.add_argument(
@@ -90,7 +89,7 @@ def add_arguments(parser) -> None:
 
 
 def run(args) -> int:
-    """Print the figures; always 0, for nothing is demanded."""
+    """Prints the figures. Always returns 0, because there are no limits."""
     recording, remarks = screened.read(args.folder)
     for remark in remarks:
         print(remark, file=sys.stderr)

@@ -45,13 +45,14 @@ class Source(NamedTuple):
 
 class Summary(NamedTuple):
     """Number of scans; number of tracks ever confirmed; the service's mean CPU time a scan in ms;
-    whether any plots had radial speeds.
+    whether any plots had radial speeds; pairs left out in crowds (tracking/pair_budget.py).
     """
 
     scans: int
     confirmed: int
     cpu_ms: float
     doppler: bool
+    left_out: int
 
 
 def open_source(name: str, seed: int = 1) -> Source:
@@ -109,7 +110,7 @@ def write_tracks(
     One row a track; in `alarm_file` one row for each alert that changes.
     """
     confirmed: set[int] = set()
-    count, cpu, doppler = 0, 0.0, False
+    count, cpu, doppler, left_out = 0, 0.0, False, 0
     memory = service.start()
     track_file.write_header(file)
     if alarm_file:
@@ -118,6 +119,7 @@ def write_tracks(
         began = time.process_time()
         memory, output = service.step(memory, scan)
         cpu += time.process_time() - began
+        left_out += output.report.left_out
         tracks = output.report.tracks
         track_file.write_scan(
             file,
@@ -136,7 +138,7 @@ def write_tracks(
         confirmed.update(tracks.id[tracks.status == CONFIRMED].tolist())
         count += 1
         doppler |= scan.plots.radial_speed is not None
-    return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1), doppler)
+    return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1), doppler, left_out)
 
 
 def target_columns(output: Output) -> TargetColumns:

@@ -12,7 +12,7 @@ from ..types import Array, OwnShip, PolarPlots, Scan, take
 
 
 def read(folder: str | Path) -> tuple[Recording, tuple[str, ...]]:
-    """A recording without what the screen of live data rejects, and in a line what that was, if any."""
+    """A recording without what the live screen rejects, and in a line what that was, if any."""
     recording, counts = screened(csv_folder.read(folder))
     if not counts:
         return recording, ()

@@ -23,6 +23,8 @@ LINK = 1.5  # range resolutions, and beam widths
 GAP = 40.0  # m
 TURN = 2 * np.pi
 REACH = 225.0  # m from a hull's middle; touching cells up to here still belong to the hull
+LINKS = 500_000  # pairs of cells that touch; where there are more, not all are listed
+AT_ONCE = 1_000_000  # pairs of a gate and a cell that are looked at together
 
 Number = TypeVar('Number', np.float64, np.int64, np.bool_)
 
@@ -97,18 +99,23 @@ class Place(NamedTuple):
     land: BoolArray
 
 
-def cluster(cells: Plots, range_resolution: float, beam_width: float, place: Place) -> Clusters:
-    """The clusters of one scan's cells [M]; range_resolution m, beam_width rad."""
-    first, second = _links(cells, range_resolution, beam_width)
+def cluster(
+    cells: Plots, range_resolution: float, beam_width: float, place: Place
+) -> tuple[Clusters, int]:
+    """The clusters of one scan's cells [M]; range_resolution m, beam_width rad. And how many pairs
+    of cells were not compared (see `_touching`)."""
+    first, second, left_out = _links(cells, range_resolution, beam_width, place.gate)
     group, crowded = _groups(first, second, place)
     _, group = np.unique(group, return_inverse=True)
-    return _summary(cells, group, crowded, place, range_resolution, beam_width)
+    return _summary(cells, group, crowded, place, range_resolution, beam_width), left_out
 
 
-def _links(cells: Plots, range_resolution: float, beam_width: float) -> IntArray:
-    """All pairs of cells that touch, [P] each, also across north."""
+def _links(
+    cells: Plots, range_resolution: float, beam_width: float, gate: IntArray
+) -> tuple[IntArray, IntArray, int]:
+    """Pairs of cells that touch, [P] each, also across north; and how many more there were."""
     if len(cells.range) < 2:
-        return np.zeros((2, 0), np.int64)
+        return *np.zeros((2, 0), np.int64), 0
     turn = TURN / (LINK * beam_width)
     places = np.column_stack(
         [
@@ -116,14 +123,33 @@ def _links(cells: Plots, range_resolution: float, beam_width: float) -> IntArray
             np.minimum(cells.bearing * (turn / TURN), np.nextafter(turn, 0)),
         ]
     )
-    tree = cKDTree(places, boxsize=[0, turn], balanced_tree=False)
-    near = cKDTree(cells.position, balanced_tree=False)
-    return np.concatenate(
-        [
-            tree.query_pairs(1.0 + 1e-9, p=np.inf, output_type='ndarray'),
-            near.query_pairs(GAP, output_type='ndarray'),
-        ]
-    ).T
+    boxes, of_boxes = _touching(places, 1.0 + 1e-9, np.inf, [0, turn], gate)
+    near, of_near = _touching(cells.position, GAP, 2, None, gate)
+    return *np.concatenate([boxes, near]).T, of_boxes + of_near
+
+
+def _touching(
+    places: Array, reach: float, norm: float, turn: list[float] | None, gate: IntArray
+) -> tuple[IntArray, int]:
+    """Pairs [P, 2] of the places [M, 2] within reach of each other; how many more there were.
+
+    More than LINKS are not listed. Then places are put into squares an eighth of the reach wide, of
+    each gate [M] those of its own. All places in a square touch; of each square one, the first,
+    is compared with those of other squares.
+    """
+    tree, count = cKDTree(places, boxsize=turn, balanced_tree=False), len(places)
+    if count * (count - 1) <= 2 * LINKS:
+        return tree.query_pairs(reach, p=norm, output_type='ndarray'), 0
+    every = (tree.count_neighbors(tree, reach, p=norm) - count) // 2
+    if every <= LINKS:
+        return tree.query_pairs(reach, p=norm, output_type='ndarray'), 0
+    square = np.floor(places * (8 / reach)).astype(np.int64)
+    square = np.column_stack([gate, square])
+    _, first, of = np.unique(square, axis=0, return_index=True, return_inverse=True)
+    own = np.column_stack([first[of.reshape(-1)], np.arange(count)])
+    tree = cKDTree(places[first], boxsize=turn, balanced_tree=False)
+    pairs = np.concatenate([own, first[tree.query_pairs(reach, p=norm, output_type='ndarray')]])
+    return pairs, int(every - len(pairs))
 
 
 def in_gates(cells: Plots, gates: Gates) -> Place:
@@ -131,17 +157,22 @@ def in_gates(cells: Plots, gates: Gates) -> Place:
     dry = np.zeros(len(cells.time), bool)
     if not len(gates.time):
         return Place(np.full(len(dry), -1), np.full(len(dry), np.inf), dry)
+    inverse, _ = invert_2x2(gates.area)
+    parts = np.array_split(np.arange(len(dry)), 1 + len(gates.time) * len(dry) // AT_ONCE)
+    gate, off = zip(*(_nearest_gate(take(cells, rows), gates, inverse) for rows in parts))
+    return Place(np.concatenate(gate), np.concatenate(off), dry)
+
+
+def _nearest_gate(cells: Plots, gates: Gates, inverse: Array) -> tuple[IntArray, Array]:
+    """The gate that each of M cells is in, or -1; m from the middle of that, or of the nearest."""
     later = cells.time - gates.time[:, None]
     offset = (
         cells.position - gates.middle[:, None] - later[..., None] * gates.velocity[:, None]
     )  # [H, M, 2]
-    inverse, _ = invert_2x2(gates.area)
     depth = squared_distance(offset, inverse[:, None])
     nearest = depth.argmin(0)
     every = np.arange(len(nearest))
-    return Place(
-        np.where(depth[nearest, every] <= 1, nearest, -1), np.hypot(*offset[nearest, every].T), dry
-    )
+    return (np.where(depth[nearest, every] <= 1, nearest, -1), np.hypot(*offset[nearest, every].T))
 
 
 def _groups(first: IntArray, second: IntArray, place: Place) -> tuple[IntArray, BoolArray]:

@@ -13,6 +13,7 @@ An echo that is longer than any ship and stays in place is land. Its clusters gi
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import locate, own_ship_at, polar_to_position, to_range_bearing, unit_vector
@@ -64,6 +65,7 @@ class Seen(NamedTuple):
     shores    number of clusters that were land
     own       [2] m, own ship in the middle of the scan
     map       of the land, this scan included
+    left_out  pairs of cells that were not compared, because a crowd has too many
     """
 
     cells: Plots
@@ -72,6 +74,7 @@ class Seen(NamedTuple):
     shores: int
     own: Array
     map: LandMap
+    left_out: int
 
 
 class Extents:
@@ -117,7 +120,7 @@ class Extents:
         along = unit_vector(cells.bearing)
         width = (self.beam_width * cells.range)[:, None] * np.stack([along[:, 1], -along[:, 0]], -1)
         land = land_map.learn(memory.land, cells.position, width)
-        found = cluster(
+        found, left_out = cluster(
             cells,
             p.range_resolution_m,
             self.beam_width,
@@ -126,7 +129,8 @@ class Extents:
         dry = found.land | ((found.size > LONGEST) & (found.gate < 0))
         chosen = (~dry).nonzero()[0]
         plots = self._plots(memory, take_clusters(found, chosen), row, scan)
-        return scan._replace(plots=plots), Seen(cells, found, chosen, int(dry.sum()), own, land)
+        seen = Seen(cells, found, chosen, int(dry.sum()), own, land, left_out)
+        return scan._replace(plots=plots), seen
 
     def step(
         self,
@@ -241,24 +245,30 @@ def one_a_ship(
     covariances [H, 2, 2] m^2/s^2. They stay two if both tracks are old; young [H] tells which are
     not. The gate of the older track comes first and grows over both. The other gets no more plots.
     """
-    apart = gates.middle[:, None] - gates.middle
-    way = np.hypot(*np.moveaxis(apart, -1, 0))
-    inverse, _ = invert_2x2(gates.area)
-    # Distance from the middle of each row's gate to its edge, in the direction of each column's
-    # gate.
-    edge = way / np.sqrt(np.maximum(squared_distance(apart, inverse[:, None]), 1e-12))
-    differ = gates.velocity[:, None] - gates.velocity
-    certain, _ = invert_2x2(velocity_covariance[:, None] + velocity_covariance)
-    one = np.triu(
-        (way <= edge + edge.T)
+    area = gates.area.copy()
+    if len(area) < 2:
+        return gates, np.arange(len(area))
+    farthest = 2 * np.sqrt(np.linalg.eigvalsh(area)[:, -1].max())
+    pairs = cKDTree(gates.middle).query_pairs(farthest * (1 + 1e-9), output_type='ndarray')
+    older, younger = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))].T
+    apart = gates.middle[older] - gates.middle[younger]
+    way = np.hypot(*apart.T)
+    inverse, _ = invert_2x2(area)
+    # Distance from the middle of each one's gate to its edge, in the direction of the other's.
+    edge, others = (
+        way / np.sqrt(np.maximum(squared_distance(apart, inverse[rows]), 1e-12))
+        for rows in (older, younger)
+    )
+    differ = gates.velocity[older] - gates.velocity[younger]
+    certain, _ = invert_2x2(velocity_covariance[older] + velocity_covariance[younger])
+    one = (
+        (way <= edge + others)
         & (squared_distance(differ, certain) < ALIKE)
         & (np.square(differ).sum(-1) < DRIFT**2)
-        & (young[:, None] | young),
-        1,
-    )
-    area = gates.area.copy()
-    for older, younger in zip(*one.nonzero()):
-        reach = 1 + edge[younger, older] / max(way[older, younger], 1.0)
-        area[older] += reach**2 * np.outer(apart[older, younger], apart[older, younger])
-    kept = (~one.any(0)).nonzero()[0]
+        & (young[older] | young[younger])
+    ).nonzero()[0]
+    for pair in one:
+        reach = 1 + others[pair] / max(way[pair], 1.0)
+        area[older[pair]] += reach**2 * np.outer(apart[pair], apart[pair])
+    kept = np.setdiff1d(np.arange(len(area)), younger[one])
     return take(gates._replace(area=area), kept), kept

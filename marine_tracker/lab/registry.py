@@ -11,6 +11,7 @@ from . import marine_table
 from .alarms import alarms
 from .alpha_beta import alpha_beta
 from .compare import compare
+from .dense import dense
 from .extended import extended
 from .gwnn import gwnn, monte_carlo
 from .gwnn_paper import gwnn_paper
@@ -31,5 +32,6 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'extended': extended,
     'hulls': hulls,
     'compare': compare,
+    'dense': dense,
     'alarms': alarms,
 }

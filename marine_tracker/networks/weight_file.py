@@ -1,4 +1,4 @@
-"""A file of trained weights: arrays and what they are; damage is noticed."""
+"""A file of trained weights: arrays and their description. Damage is detected."""
 
 import hashlib
 import json
@@ -25,7 +25,7 @@ def checksum(arrays) -> str:
 
 
 def write(path: str | Path, arrays: dict[str, np.ndarray], manifest: dict[str, Any]) -> None:
-    """Write arrays of float32 and the manifest, which holds `format` and `checksum`."""
+    """Writes arrays of float32 and the manifest, which holds `format` and `checksum`."""
     with written(path, 'wb') as file:
         np.savez(file, manifest=np.array(json.dumps(manifest)), **arrays)  # type: ignore[arg-type]
 
@@ -33,17 +33,17 @@ def write(path: str | Path, arrays: dict[str, np.ndarray], manifest: dict[str, A
 def read(
     path: str | Path, kind: str, command: str, form: int, names: Iterable[str]
 ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """The arrays of the given names and the manifest.
+    """The arrays with the given names, and the manifest.
 
-    kind: what the weights are of; command: what writes such files; form: their format. Raises
-    ValueError for a file that cannot be read, is damaged, or is of another kind or format.
+    kind: what the weights are for; command: what writes such files; form: their format. Raises
+    ValueError if the file cannot be read, is damaged, or has another kind or format.
     """
     what = f'{kind} weights {shortened(path)}'
     try:
         arrays = array_file.read(path)
     except OSError as error:
         raise ValueError(f'{what} cannot be read: {error.strerror or error}') from error
-    except ValueError as error:  # a wrong bit anywhere, or another kind of file
+    except ValueError as error:  # a wrong bit, or another kind of file
         raise ValueError(
             f'{what}: this is no file of `{command}`, or it is damaged: {error}'
         ) from error

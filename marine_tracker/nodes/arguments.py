@@ -1,6 +1,6 @@
-"""The command line of a node, as far as it is not for ROS: nothing of it is passed over in silence.
+"""The command line of a node, without the part for ROS. Nothing in it is ignored silently.
 
-ROS reads what stands between `--ros-args` and `--`, and ignores all else.
+ROS reads what is between `--ros-args` and `--`, and ignores everything else.
 """
 
 import sys
@@ -13,12 +13,14 @@ ABOUT = {
     'radar_simulator': 'Plays a scenario as a radar and own ship would see it.',
     'recording_player': 'Plays a recorded folder.',
     'nmea_output': 'Sends targets and own ship as NMEA 0183 and Signal K.',
+    'ppi_display': 'Serves the radar picture (PPI) as a page for a browser.',
 }
 
 
 def answer(name: str, arguments: list[str]) -> int | None:
-    """The exit code where a node is not to start: 0 after help, 2 after an argument that is not
-    understood, told in one line on stderr. None: start.
+    """The exit code if a node must not start: 0 after help, 2 after an unknown argument.
+
+    An unknown argument is reported in one line on stderr. None: start.
 
     arguments  without the name of the program
     """
@@ -45,7 +47,7 @@ def answer(name: str, arguments: list[str]) -> int | None:
 
 def example(name: str) -> str:
     """How the node's first parameter is set to its default."""
-    from .. import parameter_files  # late: signals are not heard yet
+    from .. import parameter_files  # late import: signals are not handled yet
 
     field = parameter_files.fields(name)[0]
     return f'-p {field.name}:={parameter_files.yaml_value(field.default)}'

@@ -1,4 +1,6 @@
-"""`alarms` and `trial` as messages: one readable entry for each alert, for each target tried."""
+"""`alarms` and `trial` as messages: one readable entry for each alert, and for each target of a
+trial.
+"""
 
 from collections.abc import Sequence
 
@@ -26,7 +28,7 @@ TRIAL = 'T'  # stands for a trial, as on every radar screen
 def alarms_message(
     shown: Alerts, zones: Zones, radars: Sequence[str], now: float, time_ns: int, hardware_id: str
 ) -> DiagnosticArray:
-    """The alerts, in the order of their rows; now s, of the time that they are kept in."""
+    """The alerts, in the order of their rows; now s, in the same time as theirs."""
     targets = [
         name if id else '' for id, name in zip(shown.id.tolist(), label(shown.id, shown.number))
     ]
@@ -85,10 +87,10 @@ def _alert(
 def trial_message(
     arpa: Arpa, picture: Picture, elapsed: float, time_ns: int, hardware_id: str
 ) -> DiagnosticArray:
-    """What would come of the trial manoeuvre that was begun `elapsed` s ago.
+    """The effect of the trial manoeuvre that was begun `elapsed` s ago.
 
-    The first entry, T, has the trial itself, its countdown and the courses that are safe; one for
-    each target follows. Where nobody knows from which course own ship would turn, T says so.
+    The first entry, T, has the trial itself, its countdown and the safe courses. One entry for each
+    target follows. If own ship's course at the start of the turn is unknown, T says so.
     """
     p, limits, own = arpa.parameters, arpa.limits, picture.own
     lacking = ''

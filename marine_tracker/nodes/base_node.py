@@ -1,4 +1,4 @@
-"""What every node of this package is."""
+"""The base class of all nodes of this package."""
 
 import functools
 import time
@@ -17,12 +17,13 @@ from .diagnostics import FAILED, Tally, one_line
 
 
 class RunnableNode(Node):
-    """A node as run.py takes it. Its constructor raises ValueError where it cannot start.
+    """A node as run.py expects it. Its constructor raises ValueError if it cannot start.
 
-    No exception leaves a callback of its subscriptions, timers, services and parameters, those
-    that rclpy itself adds included. It is logged once for each kind and callback, and counted.
+    An exception never leaves a callback of its subscriptions, timers, services and parameters,
+    including those that rclpy itself adds. It is logged once for each kind and callback, and
+    counted.
 
-    failures  the exceptions counted, for /diagnostics
+    failures  the counted exceptions, for /diagnostics
     """
 
     def __init__(self, name: str, **node_arguments):
@@ -36,7 +37,7 @@ class RunnableNode(Node):
         return False
 
     def close(self) -> None:
-        """Last messages; called before the executor stops."""
+        """Sends the last messages. Called before the executor stops."""
 
     # -- callbacks, guarded ----------------------------------------------------------------------
 
@@ -51,13 +52,13 @@ class RunnableNode(Node):
         return super().create_timer(timer_period_sec, self._guarded(callback), *arguments, **named)
 
     def create_service(self, srv_type, srv_name, callback, **named):
-        """As in rclpy; where the callback fails, the answer is that it did."""
+        """As in rclpy. If the callback fails, the response says so."""
         return super().create_service(
             srv_type, srv_name, self._guarded(callback, _not_done), **named
         )
 
     def add_on_set_parameters_callback(self, callback):
-        """As in rclpy; where the callback fails, the change is refused."""
+        """As in rclpy. If the callback fails, the change is refused."""
         super().add_on_set_parameters_callback(self._guarded(callback, _refused))
 
     def add_post_set_parameters_callback(self, callback):
@@ -65,7 +66,7 @@ class RunnableNode(Node):
         super().add_post_set_parameters_callback(self._guarded(callback))
 
     def _guarded(self, callback: Callable, otherwise: Callable = lambda error, *_: None):
-        """The callback; otherwise(error, *its arguments) is returned where it raises."""
+        """The callback; if it raises, otherwise(error, *its arguments) is returned."""
         name = getattr(getattr(callback, 'func', callback), '__name__', 'a callback')
 
         @functools.wraps(callback)
@@ -85,7 +86,7 @@ class RunnableNode(Node):
     # -- how it fares ----------------------------------------------------------------------------
 
     def tell(self, reason: str, detail: str) -> None:
-        """Log the first of its kind; /diagnostics counts the rest."""
+        """Logs the first of its kind. /diagnostics counts the rest."""
         self.get_logger().warning(
             f'{reason}{": " + detail if detail else ""} (told once; counted on /diagnostics)'
         )
@@ -97,11 +98,11 @@ class RunnableNode(Node):
 
     @property
     def hardware_id(self) -> str:
-        """The radar that it belongs to, as in radar_1/radar."""
+        """The radar that the node belongs to, as in radar_1/radar."""
         return f'{self.get_namespace()}/radar'.strip('/')
 
     def watch_failures(self, clock) -> None:
-        """For a node that has nothing else to say on /diagnostics: failures, once there are any."""
+        """For a node with nothing else on /diagnostics: publishes failures if there are any."""
         self.create_timer(1.0, self._tell_failures, clock=clock)
 
     def _tell_failures(self) -> None:
@@ -133,8 +134,8 @@ class RunnableNode(Node):
     def publisher(self, kind, topic: str, quality) -> Publisher:
         """A publisher without event handlers.
 
-        rclpy looks at every handler each time it wakes; those of six publishers cost more than
-        the tracking of forty ships. A subscriber that asks for too much is told on its own side.
+        rclpy checks every handler each time it wakes. The handlers of six publishers cost more than
+        tracking forty ships. A subscriber that asks for too much is told on its own side.
         """
         return self.create_publisher(
             kind,
@@ -155,7 +156,7 @@ class RunnableNode(Node):
 
 
 def _why(error: Exception) -> str:
-    """A reason that names the kind of error, where its text is not written for users."""
+    """A reason that names the kind of error if its text was not written for users."""
     return one_line(error if isinstance(error, ValueError) else f'{type(error).__name__}: {error}')
 
 
@@ -168,7 +169,7 @@ def _refused(error: Exception, changed: list) -> SetParametersResult:
 
 
 def _not_done(error: Exception, request, response: Any) -> Any:
-    """Every request gets a response; those with room for a reason tell it."""
+    """Every request gets a response. If the response has a field for a reason, it is filled."""
     if hasattr(response, 'success') and hasattr(response, 'message'):
         response.success, response.message = False, _why(error)
     return response

@@ -39,6 +39,7 @@ PLOT_FIELDS = ('x', 'y', 'z', 'range', 'bearing', 'amplitude', 'time_offset')
 NEEDED = ('range', 'bearing', 'amplitude', 'time_offset')
 RADIAL_SPEED = 'radial_speed'  # of a radar with Doppler
 FLOATS = {PointField.FLOAT32: 'f4', PointField.FLOAT64: 'f8'}
+KINDS = {**FLOATS, PointField.UINT8: 'u1', PointField.UINT32: 'u4'}
 
 TRACK_TYPE = np.dtype(
     [('id', '<u4'), ('number', '<u4'), ('status', '<u4'), ('time_offset', '<f4')]
@@ -91,7 +92,7 @@ def header(time_ns: int, frame: str = FRAME) -> Header:
 
 def cloud_message(rows, time_ns: int) -> PointCloud2:
     """A PointCloud2 of a structured array [M] of little-endian fields."""
-    kinds = {'f4': PointField.FLOAT32, 'f8': PointField.FLOAT64, 'u4': PointField.UINT32}
+    kinds = {kind: datatype for datatype, kind in KINDS.items()}
     fields = []
     for name in rows.dtype.names:
         kind, offset = rows.dtype.fields[name]

@@ -25,11 +25,11 @@ WORDS = {bool: 'a bool', int: 'an integer', float: 'a double', str: 'a string'}
 
 
 def declare(node: Node, *kinds: type) -> tuple[Any, ...]:
-    """Declare every field of the dataclasses on the node; the values it was started with.
+    """Declares every field of the dataclasses on the node; returns the values it was started with.
 
-    ValueError names the parameter if one that was given (YAML file, command line, launch) is
-    unknown, has no value, has the wrong type or lies outside its limits. rclpy alone would pass
-    over unknown ones in silence.
+    ValueError names the parameter if a given one (YAML file, command line, launch) is unknown, has
+    no value, has the wrong type or is outside its limits. rclpy alone ignores unknown ones
+    silently.
     """
     fields = {field.name: field for kind in kinds for field in dataclasses.fields(kind)}
     # Parameters that rclpy itself declared (use_sim_time, ...) and QoS overrides are not ours.
@@ -51,7 +51,7 @@ def declare(node: Node, *kinds: type) -> tuple[Any, ...]:
 
 
 def descriptor(field) -> ParameterDescriptor:
-    """What a dataclass field says of itself, in ROS terms."""
+    """The descriptor of a dataclass field in ROS terms."""
     about = field.metadata
     described = ParameterDescriptor(
         name=field.name,
@@ -76,10 +76,11 @@ def descriptor(field) -> ParameterDescriptor:
 def follow(
     node: Node, kinds: Sequence[type], make: Callable[..., M], apply: Callable[[M], None]
 ) -> None:
-    """Whenever live parameters were changed, `apply` what `make` made of them, one object a kind.
+    """After each change of live parameters, calls `apply` with the result of `make`, one object a
+    kind.
 
     A change that a dataclass or `make` refuses with a ValueError is refused with that reason.
-    `make` must have no side effect: another callback may still refuse the same change.
+    `make` must have no side effect, because another callback may still refuse the same change.
     """
     made: list[M] = []  # of the last change that was accepted here
     names = [field.name for kind in kinds for field in dataclasses.fields(kind)]

@@ -1,4 +1,4 @@
-"""How the node fares, for /diagnostics: counters with names, and statuses from them."""
+"""The state of a node for /diagnostics: named counters, and statuses made from them."""
 
 import functools
 from collections import Counter, deque
@@ -17,13 +17,13 @@ OK, WARN, ERROR, STALE = (
 )
 FAILED = 'callbacks failed'
 LONGEST = 300  # characters of what somebody else wrote, in a log or a message
-FRESH_S = 10.0  # a fault counts as present for so long after it was last seen
+FRESH_S = 10.0  # s; a fault counts as present for this long after it was last seen
 
 
 class Tally:
-    """Counts by reason, and which reasons are fresh.
+    """Counts by reason, and which reasons are recent.
 
-    on_first(reason, detail) is called the first time a reason comes up; the detail is one line.
+    on_first(reason, detail) is called the first time a reason comes up. The detail is one line.
     """
 
     def __init__(self, reasons: Iterable[str], on_first: Callable[[str, str], None]):
@@ -39,12 +39,12 @@ class Tally:
         self._last[reason] = wall
 
     def fresh(self, wall: float) -> list[str]:
-        """The reasons seen lately."""
+        """The reasons seen recently."""
         return [reason for reason, last in self._last.items() if wall - last < FRESH_S]
 
 
 def answered(callback):
-    """A method that returns what to answer, as callback of a service with success and message."""
+    """Makes a method that returns its answer a callback of a service with success and message."""
 
     @functools.wraps(callback)
     def run_answered(self, request, response):
@@ -55,9 +55,9 @@ def answered(callback):
 
 
 def one_line(text: object, longest: int = LONGEST) -> str:
-    """What is said in a log or a message: one line of printable characters, cut in the middle.
+    """Text for a log or a message: one line of printable characters, cut in the middle.
 
-    Whoever sends a name of 100,000 characters fills neither the log nor the disk.
+    So a name of 100,000 characters fills neither the log nor the disk.
     """
     line = str(text)
     half = longest // 2
@@ -73,11 +73,11 @@ class Durations:
         self._last: deque[float] = deque(maxlen=count)
 
     def add(self, seconds: float) -> None:
-        """One more; the oldest goes."""
+        """Adds one; the oldest is removed."""
         self._last.append(seconds)
 
     def percentile(self, percent: float) -> float:
-        """s, of the last ones the nearest in rank; 0 when there are none yet."""
+        """s, the value nearest in rank among the last ones; 0 if there are none yet."""
         if not self._last:
             return 0.0
         return sorted(self._last)[round(percent / 100 * (len(self._last) - 1))]

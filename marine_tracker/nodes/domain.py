@@ -1,4 +1,4 @@
-"""A ROS domain of one's own, and an environment in which nodes find each other quickly."""
+"""A free ROS domain, and an environment in which nodes find each other quickly."""
 
 import contextlib
 import os
@@ -17,7 +17,7 @@ DOMAINS = range(1, 101)
 def free_domain() -> Iterator[int]:
     """A domain that no other process on this machine uses, held while the context lasts.
 
-    OSError when there is none.
+    OSError if there is none.
     """
     for domain in random.sample(DOMAINS, len(DOMAINS)):
         lock = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
@@ -34,7 +34,9 @@ def free_domain() -> Iterator[int]:
 
 
 def set_local(environment: MutableMapping[str, str], domain: int) -> None:
-    """Set the variables for nodes of one machine; what the user has set stays, but the domain."""
+    """Sets the variables for nodes on one machine. Variables set by the user stay, except the
+    domain.
+    """
     environment['ROS_DOMAIN_ID'] = str(domain)
     environment.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     environment.setdefault('FASTRTPS_DEFAULT_PROFILES_FILE', os.fspath(path('fastdds_local.xml')))

@@ -1,7 +1,7 @@
-"""What is on the ROS graph: who publishes and who listens, found without sending anything.
+"""The ROS graph: who publishes and who listens, found without sending anything.
 
-`python -m marine_tracker.nodes.graph SECONDS NAMESPACE` prints it as JSON: a process of its own,
-for a middleware that cannot start may end the process or hang instead of raising.
+`python -m marine_tracker.nodes.graph SECONDS NAMESPACE` prints it as JSON. It runs as a process of
+its own, because a middleware that cannot start may end the process or hang instead of raising.
 """
 
 import json
@@ -23,22 +23,22 @@ from . import log_folder, topics
 NODE = 'marine_tracker_doctor'
 NEEDED = (topics.PLOTS, topics.ODOMETRY, topics.TRACKS)
 CLOUD = 'sensor_msgs/msg/PointCloud2'
-NOT_YET_NAMED = '_NODE_NAME_UNKNOWN_'  # of an end whose node is still being discovered
+NOT_YET_NAMED = '_NODE_NAME_UNKNOWN_'  # of an endpoint whose node is not discovered yet
 
 
 class Ends(NamedTuple):
-    """How many publish a topic and how many listen to it."""
+    """Number of publishers and of listeners of a topic."""
 
     publishers: int
     subscribers: int
 
 
 class Graph(NamedTuple):
-    """What was seen.
+    """The graph as seen.
 
     middleware  the RMW implementation in use
     nodes       names of the other nodes, with their namespaces
-    topics      ends by the full names of the topics asked for
+    topics      endpoints by the full names of the requested topics
     """
 
     middleware: str
@@ -47,11 +47,11 @@ class Graph(NamedTuple):
 
 
 def look(seconds: float, namespace: str = '/', names: Iterable[str] = NEEDED) -> Graph:
-    """Listen until every topic has a publisher, at most `seconds`; discovery takes 0.1 to 3 s.
+    """Listens until every topic has a publisher, at most `seconds`; discovery takes 0.1 to 3 s.
 
-    namespace  where relative names stand; `/` for the root
-    names      `radar/plots` stands for whatever topics of plots a tracker there listens to
-    Raises what rclpy raises where no middleware can be started.
+    namespace  of relative names; `/` for the root
+    names      `radar/plots` means any topic of plots that a tracker there listens to
+    Raises the exceptions of rclpy if no middleware can be started.
     """
     context = Context()
     log_folder.provide()
@@ -102,7 +102,7 @@ def _full_names(node: Node, names: Iterable[str]) -> list[str]:
 
 
 def _heard_by_trackers(node: Node) -> list[str]:
-    """Topics of clouds that whoever publishes tracks listens to: one of each radar."""
+    """Cloud topics that the publishers of tracks listen to: one for each radar."""
     trackers = {
         _name(end)
         for end in node.get_publishers_info_by_topic(node.resolve_topic_name(topics.TRACKS))

@@ -1,4 +1,4 @@
-"""Where ROS writes its logs, on machines where it finds no place by itself."""
+"""A place for the logs of ROS, on machines where ROS finds none."""
 
 import os
 import tempfile
@@ -6,10 +6,10 @@ from collections.abc import MutableMapping
 
 
 def provide(environment: MutableMapping[str, str] = os.environ) -> None:
-    """Name a folder for logs where ROS would find none, or none that can be written.
+    """Sets a folder for logs if ROS would find none, or none that can be written.
 
-    ROS looks for ROS_LOG_DIR, then ROS_HOME/log, then HOME/.ros/log; a service or a container may
-    have none of them. One that ROS_LOG_DIR names stays as it is.
+    ROS looks for ROS_LOG_DIR, then ROS_HOME/log, then HOME/.ros/log. A service or a container may
+    have none of them. A folder set by ROS_LOG_DIR is not changed.
     """
     if environment.get('ROS_LOG_DIR'):
         return

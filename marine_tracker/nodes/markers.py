@@ -1,7 +1,7 @@
-"""`markers`: targets for RViz and Foxglove, after IMO SN.1/Circ.243 as far as markers go.
+"""`markers`: targets for RViz and Foxglove, like IMO SN.1/Circ.243 as far as markers allow.
 
-A few LINE_LIST and POINTS markers hold all targets: thousands of single markers would cost more
-than the tracking. Only the labels are one marker each; a lost target's label is deleted.
+A few LINE_LIST and POINTS markers hold all targets, because thousands of single markers would cost
+more than the tracking. Only each label is a marker of its own. A lost target's label is deleted.
 """
 
 import numpy as np
@@ -30,7 +30,7 @@ AMBER, MAGENTA = (1.0, 0.7, 0.1), (0.8, 0.3, 0.8)
 
 
 class MarkersWriter:
-    """Builds the message; remembers which labels are shown."""
+    """Builds the message. Remembers which labels are shown."""
 
     def __init__(self):
         self._labelled: set[int] = set()
@@ -38,7 +38,9 @@ class MarkersWriter:
     def message(
         self, seen: View, picture: Picture, zones: Zones, parameters: ArpaParameters, time_ns: int
     ) -> MarkerArray:
-        """All targets of a view: dangerous ones red, acquired ones that have no number yet grey."""
+        """All targets of a view. Dangerous ones are red; acquired ones without a number yet are
+        grey.
+        """
         alive = (seen.status != LOST) & np.isfinite(seen.motion.position).all(1)
         ids, position = seen.id[alive], seen.motion.position[alive]
         covariance = seen.motion.covariance[alive, :2, :2]
@@ -76,7 +78,7 @@ class MarkersWriter:
                 WHITE,
                 _outline(seen.motion.position[rows][:, None] + hulls),
             )
-            hull.lifetime.sec = 10  # gone some scans after extents were switched off
+            hull.lifetime.sec = 10  # removed some scans after extents were switched off
             markers.append(hull)
         for guard, color in ((True, AMBER), (False, MAGENTA)):
             markers.append(

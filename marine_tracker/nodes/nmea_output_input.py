@@ -185,7 +185,7 @@ class OwnShipInput:
         self._trust, self._timeout, self._gps, self._count = trust, timeout, gps, count
         self.log = own_ship.empty_log()
         self._base_ns: int | None = None  # the log's times are seconds after this
-        self.time_ns: int | None = None  # of the last odometry taken
+        self.time_ns: int | None = None  # of the last odometry
         self._heading = self._last_heading = math.nan
         self._fixed = -math.inf  # s of the wall, the last good fix
 
@@ -200,6 +200,7 @@ class OwnShipInput:
         except ConversionError as error:
             self._count(error.reason, str(error))
             return False
+        self.time_ns = time_ns
         if self._base_ns is None:
             self._base_ns = time_ns
         position, velocity = odometry_to_own_ship(message)
@@ -212,7 +213,6 @@ class OwnShipInput:
             self._count(named(reason), f'at {position}')
         if reason not in ('', own_ship.OWN_REBASED):
             return False
-        self.time_ns = time_ns
         self._heading = heading_of_odometry(message, doubtful=self.log.off > 0)
         if math.isfinite(self._heading):
             self._last_heading = self._heading

@@ -1,4 +1,4 @@
-"""Lines out over UDP and TCP, without ever waiting for anybody."""
+"""Sends lines over UDP and TCP, without ever waiting for a receiver."""
 
 import contextlib
 import errno
@@ -14,19 +14,20 @@ FAMILIES = (socket.AF_INET6, socket.AF_INET)
 
 
 class Endpoint(NamedTuple):
-    """A host:port as it was given, and what it stands for: addresses by family, as `socket` takes
-    them, each list in the order to try."""
+    """A host:port as given, and its addresses by family, as `socket` takes them. Each list is in
+    the order to try.
+    """
 
     text: str
     addresses: dict[socket.AddressFamily, list[tuple]]
 
 
 def endpoints(name: str, text: str) -> list[Endpoint]:
-    """What stands in the parameter `name`: host:port, several separated by blanks.
+    """The value of the parameter `name`: host:port, several separated by blanks.
 
-    A name has addresses in both families where it can: the resolver is asked for each by itself,
-    for asked at once it gives `localhost` no IPv4 address where the hosts file has `::1` alone.
-    ValueError names the parameter where one is no host:port, or cannot be resolved.
+    A name gets addresses of both families if possible. The resolver is asked for each family
+    separately: asked for both at once, it gives no IPv4 address for `localhost` if the hosts file
+    has only `::1`. ValueError names the parameter if one is not a host:port, or cannot be resolved.
     """
     return [Endpoint(word, _addresses(name, word)) for word in text.split()]
 
@@ -56,12 +57,12 @@ def _addresses(name: str, word: str) -> dict[socket.AddressFamily, list[tuple]]:
 class Datagrams:
     """Sends each line as one datagram to every destination of the parameter `name`.
 
-    A name with addresses in both families gets it in both: whether somebody listens in the one or
-    the other is not known for sure. In each family it goes to the first address that takes it.
+    A name with addresses in both families gets it in both, because it is not certain in which one a
+    program listens. In each family it goes to the first address that takes it.
 
     sent     datagrams that at least one address took
-    refused  datagrams that none took because nobody listens there, as far as hosts tell: the own
-             one at once, others after a moment, so that the first one counts as sent
+    refused  datagrams that no address took because no program listens there, as far as hosts report
+             it: the own host at once, others after a moment, so the first one counts as sent
     error    why the last one could not be sent
     """
 
@@ -72,7 +73,7 @@ class Datagrams:
         self._sockets: dict[tuple, socket.socket] = {}
 
     def send(self, lines: list[bytes]) -> int:
-        """How many could not be sent; those that were refused are not among them."""
+        """Returns how many could not be sent, without those that were refused."""
         failed = 0
         for destination in self.destinations:
             for line in lines:
@@ -90,13 +91,15 @@ class Datagrams:
         return failed
 
     def close(self) -> None:
-        """No more."""
+        """Closes all sockets."""
         for one in self._sockets.values():
             one.close()
         self._sockets.clear()
 
     def _send_to_first(self, family: int, addresses: list[tuple], line: bytes) -> int:
-        """To the first address that takes it: 0, else the error number of the last one."""
+        """Sends to the first address that takes it. Returns 0, else the error number of the last
+        one.
+        """
         for address in addresses:
             error = self._send(family, address, line)
             if error == 0:
@@ -113,13 +116,13 @@ class Datagrams:
             return one.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) or refused_before
         except OSError as error:
             if not isinstance(error, BlockingIOError) and address in self._sockets:
-                # This machine may have got another address: anew for the next line.
+                # The route of this machine may have changed: use a new socket for the next line.
                 self._sockets.pop(address).close()
             return error.errno or errno.EIO
 
 
 def _connected(family: int, address: tuple) -> socket.socket:
-    """A socket for datagrams to one address, which hears of it when they are refused there."""
+    """A datagram socket for one address. Connected, so it reports refused datagrams."""
     one = socket.socket(family, socket.SOCK_DGRAM)
     try:
         one.setblocking(False)
@@ -132,13 +135,13 @@ def _connected(family: int, address: tuple) -> socket.socket:
 
 
 class Clients:
-    """A TCP server whose clients all get every line; what they say is not read.
+    """A TCP server that sends every line to all its clients. It does not read what they send.
 
-    It listens on every address of its host:port; `[::]` is all networks, IPv4 included.
-    A client that takes its lines too slowly is dropped: it would get stale ones. One that comes
-    while CLIENTS are there is refused, after those that have left are let go.
+    It listens on every address of its host:port; `[::]` is all networks, IPv4 included. A client
+    that takes its lines too slowly is dropped, because it would get old ones. A new client is
+    refused while there are CLIENTS clients; clients that have left are removed first.
 
-    dropped, refused  how many
+    dropped, refused  number of clients
     """
 
     def __init__(self, name: str, text: str):
@@ -156,7 +159,8 @@ class Clients:
                 for address in addresses
                 if (error := self._listen(family, address)) is not None
             ]
-            # An address that this machine lacks may be missing, as IPv6 may; one in use may not.
+            # An address that this machine lacks may be missing, for example IPv6. One in use by
+            # another program is an error.
             taken = [error for error in errors if error.errno == errno.EADDRINUSE]
             if taken or not self._listeners:
                 self.close()
@@ -169,7 +173,7 @@ class Clients:
         return len(self._pending)
 
     def send(self, lines: list[bytes]) -> None:
-        """To all who are connected, those who have just come included."""
+        """Sends to all clients, including those that have just connected."""
         self.serve()
         data = b''.join(lines)
         for pending in self._pending.values():
@@ -178,9 +182,9 @@ class Clients:
         self.serve()
 
     def serve(self) -> None:
-        """Let new clients in and send what waits, as far as it goes at once."""
+        """Accepts new clients and sends what waits, as far as possible without waiting."""
         for listener in self._listeners:
-            with contextlib.suppress(OSError):  # nobody is waiting, or one has gone again
+            with contextlib.suppress(OSError):  # no client waits, or it has left again
                 while True:
                     client, _ = listener.accept()
                     self._let_in(client)
@@ -192,11 +196,11 @@ class Clients:
                 if len(pending) > PENDING:
                     self.dropped += 1
                     self._drop(client)
-            except OSError:  # it has gone
+            except OSError:  # it has left
                 self._drop(client)
 
     def close(self) -> None:
-        """Bid all farewell."""
+        """Closes all connections."""
         for client in list(self._pending):
             self._drop(client)
         for listener in self._listeners:
@@ -234,7 +238,9 @@ class Clients:
 
 
 def _has_left(client: socket.socket) -> bool:
-    """Whether it says no more: it has left, or at least may be spared where there is no room."""
+    """Whether the client has closed its side: it has left, or may at least be dropped if there is
+    no room.
+    """
     try:
         while client.recv(1 << 16):
             pass

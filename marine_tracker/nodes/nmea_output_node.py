@@ -1,8 +1,8 @@
 """NMEA 0183 out: `targets` and own ship as sentences on the topic `nmea`, over UDP and TCP.
 
-Each message on `targets` gives own ship's sentences first, then one TTM a target, all for the
-moment of its stamp; between scans own ship's come by themselves. A target that was lost or has
-gone gets one last TTM as lost. Nobody who listens slowly holds anything up.
+Each message on `targets` gives own ship's sentences first, then one TTM for each target, all for
+the moment of its stamp. Between scans, own ship's sentences are sent alone. A target that was lost
+or has gone is sent once more as lost. A slow receiver never delays the others.
 """
 
 import time

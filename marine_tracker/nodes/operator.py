@@ -1,11 +1,12 @@
 """The operator's side of the tracker node: targets, alarms, acquisition, trial manoeuvre.
 
-Commands come as topics and services. What they cannot do is told by the service, or logged once
-and counted on /diagnostics, a click in vain as well. They take effect at the next scan. `alarms` is
-published on change: every alert that is not normal, and those that have just become so.
+Commands come as topics and services. A service answers if a command is not possible. For a topic
+this is logged once and counted on /diagnostics; a click that finds no track is counted too.
+Commands take effect at the next scan. `alarms` is published on change: every alert that is not
+normal, and those that have just become normal.
 
-Time is that of the plots' stamps. It stands at the end of the last scan, and goes on by the wall
-once the next one is overdue: what is said in the meantime is stamped so.
+Time is that of the plots' stamps. It stops at the end of the last scan. If the next scan is late,
+it continues with the wall clock, so that messages in the meantime have a stamp.
 """
 
 import time

@@ -1,15 +1,15 @@
-"""Antenna revolutions published when they are due: what simulator and recording player share.
+"""Publishes antenna revolutions when they are due. Used by simulator and recording player.
 
-At rate 1 the stamps are the node's clock. At any other rate simulated time runs: the stamps are
-the scenario's or recording's own seconds (moved to begin at 1 s where they would begin earlier,
-for 0 means "no time yet" in ROS), `/clock` is published, and other nodes need use_sim_time.
+At rate 1 the stamps are the node's clock. At any other rate simulated time is used: the stamps are
+the scenario's or recording's own seconds, `/clock` is published, and other nodes need use_sim_time.
+Stamps before 1 s are moved to begin at 1 s, because 0 means "no time yet" in ROS.
 
-Due times are counted from the start, so nothing drifts. Where the machine is too slow for the
-rate, time runs slower; no revolution is left out. The first revolution waits a moment for someone
-to listen, so that a tracker started together with this node misses nothing.
+Due times are counted from the start, so nothing drifts. If the machine is too slow for the rate,
+time runs slower; no revolution is left out. The first revolution waits a moment for a listener, so
+a tracker started together with this node misses nothing.
 
-Two radars of one scene keep step where their nodes are told the stamp at which it begins. Then
-time never runs slower, and what is past when a node comes up is left out.
+Two radars of one scene stay in step if their nodes are given the stamp at which it begins. Then
+time never runs slower, and a node that starts late leaves out what is past.
 """
 
 import itertools

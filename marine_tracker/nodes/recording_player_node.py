@@ -1,8 +1,8 @@
-"""A recorded folder as a node: its plots, own ship and truth, in their own time.
+"""Plays a recorded folder as a node: its plots, own ship and truth, at their own times.
 
-Publishes what radar_simulator does, from plots.csv, own_ship.csv and truth.csv; own ship as often
-as it was recorded. Rate and `/clock`: see playback.py. The node ends when the recording has ended,
-unless it loops. What radar.yaml says belongs to the tracker: the tracker gets it as parameters.
+Publishes the same as radar_simulator, from plots.csv, own_ship.csv and truth.csv. Own ship comes as
+often as it was recorded. Rate and `/clock`: see playback.py. The node ends when the recording has
+ended, unless it loops. The values of radar.yaml are for the tracker; give them as its parameters.
 """
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from .playback import Playback, Revolution
 
 
 class RecordingPlayerNode(RunnableNode):
-    """Plays a recording. ValueError where the parameters or the recording are wrong."""
+    """Plays a recording. ValueError if the parameters or the recording are wrong."""
 
     def __init__(self, **node_arguments):
         super().__init__('recording_player', **node_arguments)

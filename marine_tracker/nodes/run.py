@@ -1,16 +1,16 @@
-"""The one main of all nodes: start, spin, stop.
+"""The main function of all nodes: start, spin, stop.
 
-`rclpy.spin` with rclpy's own signal handlers may hang on SIGTERM or exit with 1. Here the
-handlers only set an event; the loop ends within its time-out, and everything is closed in order.
-They stand before anything large is imported: a signal during the start ends the node as well.
-A node that has not closed 10 s after the signal is ended, whatever it is doing (processes.py).
+`rclpy.spin` with rclpy's own signal handlers may hang on SIGTERM or exit with 1. Here the handlers
+only set an event. The loop ends within its time-out, and everything is closed in order. The
+handlers are set before any large import, so a signal during the start ends the node as well. A node
+that has not closed 10 s after the signal is ended, whatever it is doing (processes.py).
 
 Exit codes, in doc/nodes.md for users:
 
-0   stopped as asked, or nothing left to do; closed in order
+0   stopped as requested, or nothing left to do; closed in order
 1   could not start, with one line on stderr; or failed, with a traceback or a warning on stderr
-14  not closed in time; stderr shows where each thread stood
-The signal itself (-2, -15; 130, 143 in a shell), or 1 of SIGINT, where it came while Python itself
+14  not closed in time; stderr shows where each thread was
+The signal itself (-2, -15; 130, 143 in a shell), or 1 for SIGINT, if it came while Python itself
 was starting, before the first line here.
 """
 
@@ -28,19 +28,20 @@ NODES = {
     'radar_simulator': 'RadarSimulatorNode',
     'recording_player': 'RecordingPlayerNode',
     'nmea_output': 'NmeaOutputNode',
+    'ppi_display': 'PpiDisplayNode',
 }
 LONGEST = 600  # characters of why a node cannot start
 ASKED = (signal.SIGINT, signal.SIGTERM)
 
 
 def on_signals(handler) -> None:
-    """From now on SIGINT and SIGTERM have this handler."""
+    """From now on this handler handles SIGINT and SIGTERM."""
     for number in ASKED:
         signal.signal(number, handler)
 
 
 def run(name: str) -> int:
-    """Run a node of NODES until it is done or SIGINT or SIGTERM comes.
+    """Runs a node of NODES until it is done, or until SIGINT or SIGTERM comes.
 
     The node is the class that NODES names, in the module `NAME_node`.
 
@@ -51,7 +52,7 @@ def run(name: str) -> int:
         return code
     on_signals(lambda *_: os._exit(0))  # nothing is open yet; imports take long on a busy machine
     end_in_time()
-    # ament looks packages up by this; a virtual environment is a prefix like any other.
+    # ament uses this to find packages. A virtual environment is a prefix like any other.
     os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
     log_folder.provide()
     import rclpy
@@ -97,7 +98,7 @@ def run(name: str) -> int:
         executor.shutdown()
         node.destroy_node()
         rclpy.try_shutdown()
-    on_signals(signal.SIG_IGN)  # none changes the exit code from here on
+    on_signals(signal.SIG_IGN)  # from here on no signal changes the exit code
     return 1 if node.done and node.failures.counts else 0
 
 
@@ -122,6 +123,11 @@ def recording_player() -> int:
 def nmea_output() -> int:
     """The exit code of the NMEA output."""
     return run('nmea_output')
+
+
+def ppi_display() -> int:
+    """The exit code of the PPI."""
+    return run('ppi_display')
 
 
 if __name__ == '__main__':

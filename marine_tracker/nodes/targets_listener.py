@@ -1,4 +1,4 @@
-"""Listens to `targets` and `alarms` for those who show them: what came last, as plain values."""
+"""Listens to `targets` and `alarms` and gives the last messages as plain values, to show them."""
 
 import math
 from typing import NamedTuple
@@ -30,10 +30,10 @@ class Picture(NamedTuple):
     time      s, stamp of the last one
     targets   one mapping a target: name, status, danger (DANGER or nothing), and the values of
               `targets`
-    alarms    what is the matter and whether it is acknowledged, one line an alarm
+    alarms    text and acknowledgement, one line an alarm
     plots     plots in the last revolution
-    own_ship  course and speed, in words
-    warnings  what /diagnostics says is not in order
+    own_ship  course and speed, as text
+    warnings  problems that /diagnostics reports
     """
 
     scans: int = 0
@@ -46,7 +46,7 @@ class Picture(NamedTuple):
 
 
 class TargetsListener:
-    """A node with a context of its own; the caller spins it and handles the signals."""
+    """A node with a context of its own. The caller spins it and handles the signals."""
 
     def __init__(self):
         self.picture = Picture()
@@ -69,7 +69,7 @@ class TargetsListener:
             self._node.create_subscription(kind, topic, callback, quality)
 
     def spin(self, seconds: float) -> None:
-        """Take in at most one message, waiting at most so long for it."""
+        """Takes at most one message; waits at most `seconds` for it."""
         self._executor.spin_once(timeout_sec=seconds)
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""`targets`: one entry for each target that reads like the row of a table."""
+"""`targets`: one entry for each target, which reads like the row of a table."""
 
 import math
 
@@ -98,7 +98,7 @@ class TargetsWriter:
 def table(seen: View, estimator: str, time: float) -> list[tuple[str, ...]]:
     """One row of texts for each target, in the order of COLUMNS; with hulls, their columns too."""
     motion, account = seen.motion, seen.account
-    # Who lies still has no course.
+    # A target at rest has no course.
     approach = seen.approach._replace(
         **{
             name: np.where(seen.approach.speed == 0, np.nan, getattr(seen.approach, name))
@@ -151,12 +151,12 @@ def table(seen: View, estimator: str, time: float) -> list[tuple[str, ...]]:
 
 
 def degrees(angle: float) -> str:
-    """000.0 to 359.9, as seamen write it; nothing where there is none."""
+    """000.0 to 359.9, as on a ship; empty for nan."""
     return f'{round(angle, 1) % 360:05.1f}' if math.isfinite(angle) else ''
 
 
 def figure(value: float, digits: int) -> str:
-    """So many decimals; nothing where there is no figure."""
+    """The value with `digits` decimals; empty for nan."""
     return f'{value:.{digits}f}' if math.isfinite(value) else ''
 
 

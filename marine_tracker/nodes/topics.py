@@ -16,6 +16,7 @@ TRACKS = 'tracks'
 EXTRAPOLATIONS = 'extrapolations'
 TRACKS_CLOUD = 'tracks_cloud'
 TARGETS = 'targets'
+TARGETS_CLOUD = 'targets_cloud'
 MARKERS = 'markers'
 NMEA = 'nmea'
 ALARMS = 'alarms'
@@ -34,14 +35,14 @@ BURST = 400  # messages published at once, one for each track or target
 
 
 def reliable(depth: int = 10) -> QoSProfile:
-    """Every message arrives, as long as no more than `depth` wait."""
+    """Every message arrives, if no more than `depth` wait."""
     return QoSProfile(
         depth=depth, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE
     )
 
 
 def latched(depth: int = 1) -> QoSProfile:
-    """Reliable, and who comes late still gets the last `depth` messages."""
+    """Reliable; late subscribers still get the last `depth` messages."""
     return QoSProfile(
         depth=depth,
         history=HistoryPolicy.KEEP_LAST,
@@ -51,7 +52,7 @@ def latched(depth: int = 1) -> QoSProfile:
 
 
 def best_available(depth: int = 10) -> QoSProfile:
-    """Reliable when all who publish at the moment are, else best effort."""
+    """Reliable if all present publishers are, else best effort."""
     return QoSProfile(
         depth=depth, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.BEST_AVAILABLE
     )

@@ -1,12 +1,12 @@
 """The tracker as a node: plots and own ship in, tracks out. The core does the work.
 
-What comes in is screened (tracking/intake.py): what is bad is rejected, counted by a named reason
-on /diagnostics and logged once; the tracks live on. See there for how jumps of the clock and of
-own ship are taken.
+Input is screened (tracking/intake.py). Bad input is rejected, counted on /diagnostics by a named
+reason, and logged once. The tracks stay. intake.py also describes how jumps of the clock and of own
+ship are handled.
 
-`tracks` and `extrapolations` show confirmed and coasting tracks, `tracks_cloud` all with their
-status. In `tracks` each is stamped with the time the beam passed it. `targets` and `markers` show
-those that were acquired (operator.py); a lost one stands once more in `targets`, as STALE.
+`tracks` and `extrapolations` show confirmed and coasting tracks; `tracks_cloud` shows all tracks
+with their status. In `tracks` each one has the time at which the beam passed it. `targets` and
+`markers` show acquired tracks (operator.py). A lost target is once more in `targets`, as STALE.
 """
 
 import time
@@ -52,6 +52,7 @@ class TrackerNode(RunnableNode):
         self._samples = 0
         self._status_count = np.zeros(4, int)
         self._standing = Standing({}, 0, '', np.zeros(0, bool))
+        self._left_out, self._left_out_lately = 0, 0  # pairs, in all scans and in the last
         self._processing, self._lateness = Durations(), Durations()
         self.inputs = [
             RadarInput(radar, place, partial(self._tell_of, radar.name))
@@ -157,6 +158,8 @@ class TrackerNode(RunnableNode):
         )
         self._status_count = np.bincount(output.report.tracks.status, minlength=4)
         self._standing = output.standing
+        self._left_out_lately = output.report.left_out
+        self._left_out += output.report.left_out
         now = self.get_clock().now().nanoseconds
         if now:  # 0: no /clock yet
             self._lateness.add((now - end_ns) * 1e-9)
@@ -226,6 +229,8 @@ class TrackerNode(RunnableNode):
         confirmed, (states, fallen, reason, _) = self._status_count[CONFIRMED], self._standing
         if fallen > 0.5 * confirmed:
             worries.append(f'{fallen} of {confirmed} targets have fallen back: {reason}')
+        if self._left_out_lately:
+            worries.append(f'a crowd of plots: {self._left_out_lately} pairs left out')
         if worries:
             level, message = WARN, '; '.join(worries)
         fresh = self.failures.fresh(wall)
@@ -242,6 +247,7 @@ class TrackerNode(RunnableNode):
             'tentative': self._status_count[TENTATIVE],
             **({} if parameters.extent == 'none' else {'clusters of land': memory.extents.shores}),
             'at max_tracks': len(memory.tracker.tracks.id) >= parameters.max_tracks,
+            'pairs left out': self._left_out,
             'processing_p50_ms': f'{1e3 * self._processing.percentile(50):.1f}',
             'processing_p99_ms': f'{1e3 * slow:.1f}',
             'lateness_p50_ms': f'{1e3 * self._lateness.percentile(50):.1f}',

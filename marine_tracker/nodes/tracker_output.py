@@ -1,6 +1,6 @@
-"""What the tracker node publishes after each scan: tracks, extrapolations, targets, markers.
+"""Publishes the results of each scan: tracks, extrapolations, targets, markers.
 
-Tracks that have no number yet are in `tracks_cloud` only. What nobody listens to is not made.
+Tracks that have no number yet are in `tracks_cloud` only. A message without listeners is not made.
 """
 
 from collections.abc import Callable
@@ -16,34 +16,22 @@ from ..geometry import wrap_bearing
 from ..service import Output, Service
 from ..tracking.lifecycle import LOST
 from ..types import Extrapolation, take
-from . import convert, topics
+from . import convert, targets_cloud, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
 from .markers import MarkersWriter
 from .targets_message import TargetsWriter
 
-COVARIANCE = {  # of [x, y, vx, vy]: row and column of each field of `tracks_cloud`
-    'xx': (0, 0),
-    'xy': (0, 1),
-    'yy': (1, 1),
-    'vxvx': (2, 2),
-    'vxvy': (2, 3),
-    'vyvy': (3, 3),
-    'xvx': (0, 2),
-    'xvy': (0, 3),
-    'yvx': (1, 2),
-    'yvy': (1, 3),
-}
-
 
 class TrackerOutput:
-    """Of one tracker node."""
+    """The publishers of one tracker node."""
 
     def __init__(self, node: RunnableNode, hardware_id: str):
         burst = topics.reliable(topics.BURST)
         self._to_tracks = node.publisher(Odometry, topics.TRACKS, burst)
         self._to_extrapolations = node.publisher(Odometry, topics.EXTRAPOLATIONS, burst)
         self._to_cloud = node.publisher(PointCloud2, topics.TRACKS_CLOUD, topics.reliable())
+        self._to_numeric = node.publisher(PointCloud2, topics.TARGETS_CLOUD, topics.latched())
         self._to_targets = node.publisher(DiagnosticArray, topics.TARGETS, topics.latched())
         self._to_markers = node.publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
         self._pool = OdometryPool()
@@ -53,7 +41,7 @@ class TrackerOutput:
     def publish(
         self, service: Service, output: Output, period: float, stamps: Callable[..., np.ndarray]
     ) -> None:
-        """All that a scan came to.
+        """Publishes the results of one scan.
 
         period  s, of the radar's revolution
         stamps  ns, on the radar's clock, of the tracker's times [N] s
@@ -66,6 +54,8 @@ class TrackerOutput:
         arpa = service.arpa
         seen = view(output.picture, output.report, service.tracker.estimator, output.shapes)
         self._to_targets.publish(self._targets.message(seen, name, output.scan.end, end_ns))
+        if self._to_numeric.get_subscription_count():
+            self._to_numeric.publish(targets_cloud.message(seen, output.picture.alerts, end_ns))
         if self._to_markers.get_subscription_count():
             self._to_markers.publish(
                 self._markers.message(seen, output.picture, arpa.zones, arpa.parameters, end_ns)
@@ -101,7 +91,7 @@ def _cloud(output: Output, start_ns: int) -> PointCloud2:
     rows['time_offset'] = estimate.time - output.scan.start
     rows['x'], rows['y'] = estimate.position.T
     rows['vx'], rows['vy'] = velocity.T
-    for name, (row, column) in COVARIANCE.items():
+    for name, (row, column) in targets_cloud.COVARIANCE.items():
         rows[name] = estimate.covariance[:, row, column]
     rows['course'] = wrap_bearing(np.arctan2(velocity[:, 0], velocity[:, 1]))
     rows['speed'] = np.hypot(velocity[:, 0], velocity[:, 1])

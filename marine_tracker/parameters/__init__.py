@@ -7,6 +7,7 @@ names the parameter, the value and the limit.
 
 from .arpa import ArpaParameters
 from .description import from_mapping, from_mappings
+from .display import PpiDisplayParameters
 from .sources_and_outputs import (
     NmeaOutputParameters,
     RadarSimulatorParameters,
@@ -19,6 +20,7 @@ NODES: dict[str, tuple[type, ...]] = {
     'radar_simulator': (RadarSimulatorParameters,),
     'recording_player': (RecordingPlayerParameters,),
     'nmea_output': (NmeaOutputParameters,),
+    'ppi_display': (PpiDisplayParameters,),
 }
 
 __all__ = [
@@ -28,6 +30,7 @@ __all__ = [
     'VESSEL_CLASSES',
     'ArpaParameters',
     'NmeaOutputParameters',
+    'PpiDisplayParameters',
     'RadarSimulatorParameters',
     'RecordingPlayerParameters',
     'TrackerParameters',

@@ -7,7 +7,7 @@ from .description import check, parameter
 
 @dataclass(frozen=True)
 class ArpaParameters:
-    """What the tracker node makes of the tracks: targets, their approach, alarms."""
+    """The parameters for targets, their approach and alarms."""
 
     cpa_limit_nm: float = parameter(
         0.5,
@@ -27,8 +27,8 @@ class ArpaParameters:
     )
     acknowledge_for_min: float = parameter(
         0.0,
-        'How long what you acknowledge stays acknowledged while its cause lasts; then it sounds '
-        'again. 0: until the cause has ended.',
+        'Time after which an acknowledged alarm sounds again if its cause still lasts. '
+        '0: it stays acknowledged until the cause has ended.',
         unit='min',
         low=0.0,
         high=120.0,
@@ -36,14 +36,14 @@ class ArpaParameters:
     )
     own_ship_status: str = parameter(
         'detected',
-        'Own ship at anchor raises no CPA alarms but for targets that surely come nearer. '
-        'detected: at anchor while she makes no way; anchored, under_way: as you say.',
+        'At anchor, only targets that certainly come nearer raise CPA alarms. detected: own ship '
+        'is at anchor while she makes no way; anchored, under_way: as set here.',
         choices=('detected', 'anchored', 'under_way'),
         live=True,
     )
     acquisition: str = parameter(
         'everywhere',
-        'Where confirmed tracks become targets by themselves: everywhere, in guard '
+        'Where confirmed tracks become targets automatically: everywhere, in guard '
         'zones, or nowhere (then by `acquire` only).',
         choices=('everywhere', 'zones', 'nowhere'),
         live=True,
@@ -52,11 +52,15 @@ class ArpaParameters:
         '', 'Guard and exclusion zones: a list in YAML, see doc/arpa.md; empty: none.', live=True
     )
     max_targets: int = parameter(
-        200, 'Most targets; the near and dangerous ones come first.', low=1, high=10000, live=True
+        200,
+        'Largest number of targets; near and dangerous ones come first.',
+        low=1,
+        high=10000,
+        live=True,
     )
     click_radius_m: float = parameter(
         500.0,
-        'How far from a clicked point its track may be.',
+        'Largest distance of a track from a clicked point.',
         unit='m',
         low=1.0,
         high=20000.0,
@@ -64,7 +68,7 @@ class ArpaParameters:
     )
     click_wait_s: float = parameter(
         20.0,
-        'How long a click waits for a track to appear there.',
+        'Time that a click waits for a track to appear there.',
         unit='s',
         low=0.0,
         high=600.0,
@@ -89,8 +93,8 @@ class ArpaParameters:
     )
     current_set_deg: float = parameter(
         0.0,
-        'Where the current sets, true; with a drift above 0 courses and speeds are through '
-        'the water (sea stabilised), else over ground.',
+        'Direction in which the current flows, true. With a drift above 0 courses and speeds '
+        'are through the water (sea stabilised), else over ground.',
         unit='deg',
         low=0.0,
         high=360.0,
@@ -161,7 +165,7 @@ class ArpaParameters:
     )
     sensor_timeout_s: float = parameter(
         10.0,
-        'An alarm tells when heading, position or plots are missing for so long.',
+        'An alarm is raised when heading, position or plots are missing for this time.',
         unit='s',
         low=0.5,
         high=600.0,

@@ -1,4 +1,4 @@
-"""How a parameter is described and checked, and how parameters are read from mappings."""
+"""Describes and checks parameters, and reads them from mappings."""
 
 import dataclasses
 import difflib
@@ -26,7 +26,7 @@ def parameter(
 
     low, high  inclusive limits of a number; choices  the values a string may take;
     live       may be changed while the node runs
-    old        words of earlier versions, and what stands for each now (YAML 1.1 makes some bools)
+    old        words of earlier versions, and their present values (YAML 1.1 turns some into bools)
     """
     return dataclasses.field(
         default=default,
@@ -43,7 +43,7 @@ def parameter(
 
 
 def check(parameters: Any) -> None:
-    """Raise ValueError for the first field with a wrong type, or outside its limits or choices."""
+    """Raises ValueError for the first field with a wrong type, or outside its limits or choices."""
     for field in dataclasses.fields(parameters):
         kind: Any = field.type
         value, about = getattr(parameters, field.name), field.metadata
@@ -81,13 +81,13 @@ P = TypeVar('P')
 
 
 def from_mapping(kind: type[P], values: Mapping[str, Any]) -> P:
-    """A parameter object from a mapping; an unknown key is an error that names its neighbours."""
+    """A parameter object from a mapping. An unknown key is an error that names similar ones."""
     made: P = from_mappings((kind,), values)[0]
     return made
 
 
 def from_mappings(kinds: Sequence[type], values: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Parameter objects of several kinds, whose names all differ, from one mapping."""
+    """Parameter objects of several kinds from one mapping. All their names differ."""
     known = {field.name: kind for kind in kinds for field in dataclasses.fields(kind)}
     for name in values:
         if name not in known:

@@ -1,4 +1,4 @@
-"""The parameters of the nodes beside the tracker: simulator, player, NMEA output."""
+"""The parameters of the nodes other than the tracker: simulator, player, NMEA output."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from .description import check, parameter
 
 @dataclass(frozen=True)
 class RadarSimulatorParameters:
-    """The radar simulator node's parameters; what the radar is stands in the scenario file."""
+    """The radar simulator node's parameters. The radar itself is described in the scenario file."""
 
     scenario: str = parameter('paper_track', 'A shipped scenario by name, or a scenario file.')
     rate: float = parameter(
@@ -56,8 +56,8 @@ class NmeaOutputParameters:
 
     sentences: str = parameter(
         'RMC HDT OSD TTM',
-        'Sentences to send, of RMC, HDT, OSD, RSD, TTM, TLL, VHW. OpenCPN wants no '
-        'TLL beside TTM: it would reckon course and speed anew from it.',
+        'Sentences to send, of RMC, HDT, OSD, RSD, TTM, TLL, VHW. OpenCPN wants '
+        'no TLL with TTM: it would compute course and speed from TLL again.',
     )
     udp: str = parameter(
         '127.0.0.1:10110',

@@ -6,7 +6,7 @@ from .description import check, parameter
 
 BEARINGS = ('true', 'relative')
 VESSEL_CLASSES = ('ship', 'small_craft')
-# m: how far the point of a target that echoes strays from its middle, each axis, by vessel class.
+# m: deviation of a target's echoing point from its middle, each axis, by vessel class.
 GLINT_SIGMA = {'ship': 25.0, 'small_craft': 0.0}
 EXTENTS = ('none', 'random_matrix', 'gp')
 
@@ -38,13 +38,12 @@ class TrackerParameters:
     )
     gwnn_learning: bool = parameter(
         False,
-        'Whether each track of the estimator gwnn adds to the output weights what its own '
-        'plots tell.',
+        'Whether each track of the estimator gwnn adapts the output weights to its own plots.',
     )
     alpha_beta_mode: str = parameter(
         'hf_soft',
-        'How the estimator alpha_beta weighs a plot: as paper 002 does (hf), the same '
-        'with softer weights (hf_soft), or as its two rivals.',
+        'How the estimator alpha_beta weights a plot: as paper 002 (hf), with softer '
+        'weights (hf_soft), or as one of the two rivals in that paper.',
         choices=('hf_soft', 'hf', 'method1', 'method2'),
         live=True,
     )
@@ -62,7 +61,7 @@ class TrackerParameters:
     )
     radial_speed_sigma_mps: float = parameter(
         0.5,
-        'Standard deviation of a measured radial speed, where the radar tells one (Doppler).',
+        'Standard deviation of a measured radial speed, if the radar measures it (Doppler).',
         unit='m/s',
         low=0.01,
         high=10.0,
@@ -133,7 +132,7 @@ class TrackerParameters:
     )
     scan_period_s: float = parameter(
         60.0 / 22.0,
-        'Time of one antenna revolution, where the plots do not tell (22 rpm).',
+        'Time of one antenna revolution, used if the plots do not show it (22 rpm).',
         unit='s',
         low=0.2,
         high=120.0,
@@ -204,7 +203,7 @@ class TrackerParameters:
     )
     max_score: float = parameter(
         15.3,
-        'Cap of the track score: how long a good track outlives its plots. A miss costs '
+        'Upper limit of the track score: how long a good track lives without plots. A miss costs '
         '-ln(1 - detection_probability); a confirmed track is lost below 0.',
         low=1.0,
         high=100.0,
@@ -227,14 +226,14 @@ class TrackerParameters:
     )
     max_tracks: int = parameter(
         2000,
-        'Most tracks held, tentative ones included; no new ones are initiated beyond it.',
+        'Largest number of tracks, including tentative ones; above it none are initiated.',
         low=1,
         high=100000,
         live=True,
     )
     max_plots: int = parameter(
         10000,
-        'Most plots taken from one scan; the strongest are kept, the rest counted.',
+        'Largest number of plots in a scan; the strongest are kept, the rest are counted.',
         low=1,
         high=1000000,
         live=True,
@@ -287,5 +286,5 @@ class TrackerParameters:
 
     @property
     def glint_sigma(self) -> float:
-        """m: glint_sigma_m, or where that is below 0 that of the vessel class."""
+        """m: glint_sigma_m; if that is below 0, the value of the vessel class."""
         return GLINT_SIGMA[self.vessel_class] if self.glint_sigma_m < 0 else self.glint_sigma_m

@@ -1,4 +1,4 @@
-"""Track files: what a tracker said after each scan, one row a track and scan, as CSV."""
+"""Track files: the tracks after each scan, one row for each track and scan, as CSV."""
 
 from typing import IO, NamedTuple
 
@@ -41,7 +41,7 @@ REQUIRED = COLUMNS[:7]
 
 
 class TargetColumns(NamedTuple):
-    """What the ARPA tells of N tracks; nan or '' where there is nothing to tell.
+    """The ARPA's values for N tracks; nan or '' if there is none.
 
     number              [N]  of the target, 0 for none
     cpa, tcpa           [N]  NM, min
@@ -125,8 +125,11 @@ def write_scan(
 
 
 def read(path) -> TrackRows:
-    """The rows of a track file, of this or of another tracker: only the first seven columns are
-    needed. ValueError names the file, the line and what is wrong with it."""
+    """The rows of a track file, of this or of another tracker. Only the first seven columns are
+    required.
+
+    ValueError names the file, the line and the error.
+    """
     table = tables.read(path, REQUIRED)
 
     def east_north(prefix, unit):
@@ -148,12 +151,12 @@ def read(path) -> TrackRows:
 
 
 def _degrees(bearing) -> str:
-    """Degrees with two decimals, 0.00 for what would round to 360."""
+    """Degrees with two decimals; 0.00 for what rounds to 360."""
     return f'{np.degrees(wrap_bearing(bearing)) % 359.995:.2f}'
 
 
 def _told(targets: TargetColumns, n: int) -> str:
-    """The cells of TargetColumns, empty where there is nothing to tell."""
+    """The cells of TargetColumns; empty if there is no value."""
     heading = targets.heading[n]
     return ','.join(
         (

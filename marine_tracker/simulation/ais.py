@@ -1,7 +1,7 @@
-"""Ships driven by AIS reports: positions made into smooth ways (ais_file.py reads them).
+"""Ships driven by AIS reports: positions turned into smooth paths (ais_file.py reads them).
 
-Times are whole seconds and sometimes late, so a position is metres off along the way: the way is a
-cubic smoothing spline, not one through every report.
+Times are whole seconds and sometimes late, so positions are metres wrong along the path. The path
+is therefore a cubic smoothing spline, which does not go through every report.
 """
 
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from ..geodesy import LocalFrame
 from ..types import Array
 from .motion import Piece
 
-SMOOTHED_PERIOD = 40.0  # s: slower motion is followed, faster motion is taken for jitter
+SMOOTHED_PERIOD = 40.0  # s; slower motion is followed, faster motion is treated as noise
 
 
 class Reports(NamedTuple):
@@ -22,8 +22,8 @@ class Reports(NamedTuple):
     time       [R]  s, from the scenario's start, strictly increasing
     latitude   [R]  deg
     longitude  [R]  deg
-    length     m, nan where unknown
-    max_gap    s; between reports farther apart than this the vessel is not there
+    length     m, nan if unknown
+    max_gap    s; in a longer gap between reports the vessel does not exist
     """
 
     time: Array
@@ -34,7 +34,7 @@ class Reports(NamedTuple):
 
 
 def way(reports: Reports, frame: LocalFrame) -> list[Piece]:
-    """The vessel's way in the frame: a spline over each run without gaps."""
+    """The vessel's path in the frame: a spline over each stretch without gaps."""
     position = frame.to_local(reports.latitude, reports.longitude)
     ends = np.flatnonzero(np.diff(reports.time) > reports.max_gap) + 1
     pieces = [Piece(min(0.0, reports.time[0]) - 1.0, tuple(position[0]), exists=False)]
@@ -51,8 +51,8 @@ def way(reports: Reports, frame: LocalFrame) -> list[Piece]:
 
 
 def _spline(time, place):
-    """A piecewise cubic [4, pieces, 2] over the reports of one run."""
-    if len(time) < 5:  # too few to smooth: straight from one to the next
+    """A piecewise cubic [4, pieces, 2] over the reports of one stretch."""
+    if len(time) < 5:  # too few to smooth: straight lines between them
         slope = np.diff(place, axis=0) / np.diff(time)[:, None]
         zero = np.zeros_like(slope)
         return PPoly(np.stack([zero, zero, slope, place[:-1]]), time)

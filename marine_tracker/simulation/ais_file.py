@@ -8,13 +8,13 @@
 | Danish Maritime Authority | # Timestamp | MMSI | Latitude, Longitude | Length |
 | Stone Soup's Solent | Time | MMSI | Latitude_degrees, Longitude_degrees | |
 
-Length may be left out; other columns are passed over. A time is a number of seconds, or date and
-time of day: 2022-06-20T00:00:04 (with or without T, fraction, zone) or 31/12/2015 23:59:59, UTC
-where no zone is told, and is then Unix time.
+Length is optional; other columns are ignored. A time is a number of seconds, or date and time of
+day: 2022-06-20T00:00:04 (with or without T, fraction, zone) or 31/12/2015 23:59:59. Dates become
+Unix time, as UTC if no zone is given.
 
-Rows that cannot be used are left out and counted, whatever vessel and time they are of: damaged
-ones, those without a place (91 and 181 degrees mean "not available"), and those that would take
-their vessel there at more than 100 kn from the rows that most others agree with.
+Rows that cannot be used are left out and counted, for all vessels and times: damaged rows; rows
+without a place (91 and 181 degrees mean "not available"); and rows that need more than 100 kn to be
+reached from the rows that most others agree with.
 """
 
 import math
@@ -56,11 +56,11 @@ JUMP = 'that jump faster than 100 kn'
 
 
 class Traffic(NamedTuple):
-    """What a file tells of a stretch of time.
+    """The content of a file for a stretch of time.
 
     vessels  reports by the vessel's name
     start    s, of the file's own time, at which the stretch begins
-    skipped  how many rows of the whole file were left out, by reason
+    skipped  number of rows of the whole file that were left out, by reason
     """
 
     vessels: dict[str, Reports]
@@ -69,7 +69,7 @@ class Traffic(NamedTuple):
 
 
 class _Columns(NamedTuple):
-    """Where in a row the cells of one report are; length -1 where there is none."""
+    """The columns of the cells of one report; length -1 if there is none."""
 
     time: int
     vessel: int
@@ -79,7 +79,7 @@ class _Columns(NamedTuple):
 
 
 class _Vessel(NamedTuple):
-    """What was read of one vessel: a number a row, in the file's order."""
+    """The rows of one vessel: a number a row, in the file's order."""
 
     time: array
     latitude: array
@@ -88,11 +88,11 @@ class _Vessel(NamedTuple):
 
 
 def read(path: Path, start: float | None, duration: float, max_gap: float) -> Traffic:
-    """The vessels that are there from time `start` s of the file on for `duration` s.
+    """The vessels that exist from time `start` s of the file on for `duration` s.
 
-    start    None: time 0, or where times are dates the first report
-    max_gap  s; between reports farther apart a vessel is not there
-    Raises ValueError for a file that is not of this form, and where no vessel is there.
+    start    None: time 0, or the first report if times are dates
+    max_gap  s; in a longer gap between reports a vessel does not exist
+    Raises ValueError for a file that does not have this form, and if no vessel exists then.
     """
     try:
         vessels, dated, skipped = _rows(path)
@@ -117,7 +117,7 @@ def read(path: Path, start: float | None, duration: float, max_gap: float) -> Tr
 
 
 def told(skipped: dict[str, int]) -> str:
-    """What was left out, in words that follow others; '' where nothing was."""
+    """Text about the rows that were left out; '' if there are none."""
     reasons = ', '.join(f'{count} {reason}' for reason, count in skipped.items())
     return f'; rows left out: {reasons}' if reasons else ''
 
@@ -202,7 +202,7 @@ def _date(text: str) -> float:
 def _reports(
     rows: _Vessel, start: float, duration: float, max_gap: float, skipped: Counter
 ) -> Reports | None:
-    """Reports in time order with those of one time averaged; None where none is of use."""
+    """Reports in time order, with those of one time averaged; None if none can be used."""
     time, latitude, longitude = (np.array(column) for column in rows[:3])
     order = np.argsort(time, kind='stable')
     order = order[_agreeing(time[order], latitude[order], longitude[order])]
@@ -222,8 +222,9 @@ def _reports(
 
 
 def _agreeing(time: Array, latitude: Array, longitude: Array) -> NDArray[np.bool_]:
-    """[R] the rows, in time order, that most others agree with: each can be reached from the one
-    before it."""
+    """[R] the rows, in time order, that most others agree with: each can be reached from the
+    previous one.
+    """
     kept = np.ones(len(time), bool)
     apart = _distance(latitude[1:], longitude[1:], latitude[:-1], longitude[:-1])
     if (apart <= _reach(np.diff(time))).all():
@@ -243,7 +244,7 @@ def _agreeing(time: Array, latitude: Array, longitude: Array) -> NDArray[np.bool
 
 
 def _reach(step):
-    """m that a vessel may go in steps s."""
+    """Largest distance, m, that a vessel can move in steps s."""
     return MAX_SPEED * (step + CLOCK_ERROR)
 
 

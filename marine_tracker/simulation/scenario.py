@@ -159,11 +159,9 @@ class Scenario:
     def own_ship_at(self, times) -> OwnShip:
         """Own ship's true motion at the times [K]."""
         times = np.atleast_1d(np.asarray(times, dtype=float))
-        own, paths = np.zeros(len(times), np.int64), self.fleet.paths
+        paths, own = self.fleet.paths, np.zeros(len(times), np.int64)
         position, velocity = motion.locate_ships(paths, own, times)
-        stated = (
-            motion.courses(paths, own, times) if self.fleet.steers else np.full(len(times), np.nan)
-        )
+        stated = motion.courses(paths, own, times) + (0.0 if self.fleet.steers else np.nan)
         return OwnShip(times, position, velocity, heading_from(velocity, stated))
 
     def truth_at(self, time: float) -> Truth:

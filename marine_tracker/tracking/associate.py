@@ -5,8 +5,12 @@ from scipy.optimize import linear_sum_assignment
 
 from ..types import Array, IntArray
 from .gate import Pairs
+from .sparse_assignment import best_pairs
 
 FEW = 32  # tracks; a matrix of so few is solved sooner than it is taken apart
+# Tracks times plots of a component beyond which it is solved as a graph; and, should that take more
+# than so many looks at a pair, as a matrix after all, unless it had more than so many places.
+LARGE, PATIENCE, HUGE = 250_000, 10, 25_000_000
 
 
 def gain(pairs: Pairs, size: float) -> Array:
@@ -28,7 +32,8 @@ def associate(track: IntArray, plot: IntArray, gain: Array, tracks: int, plots: 
 
     Most pairs compete with nothing, and most others are one track with several plots or one plot
     with several tracks: these are settled at once. What remains falls into connected components;
-    each is solved exactly (Jonker-Volgenant), so the whole is the global optimum.
+    each is solved exactly, the small ones as matrices (Jonker-Volgenant), the large ones as graphs,
+    so the whole is the global optimum.
     """
     plot_of = np.full(tracks, -1, np.int64)
     plots_of_track = np.bincount(track, minlength=tracks)
@@ -81,9 +86,14 @@ def _solve(track: IntArray, plot: IntArray, gain: Array) -> IntArray:
 def _assign(
     row: IntArray, column: IntArray, gain: Array, pairs: IntArray, height: int, width: int
 ) -> IntArray:
-    """Of the pairs of one small problem, those of the optimal assignment (Jonker-Volgenant)."""
+    """Of the pairs of one component, those of the optimal assignment."""
+    if height * width > LARGE:
+        patience = PATIENCE if height * width <= HUGE else np.inf
+        best = best_pairs(row, column, gain, height, width, patience)
+        if best is not None:
+            return pairs[best]
     worth = np.zeros((height, width))
-    which = np.full((height, width), -1)
+    which = np.full((height, width), -1, np.int32)
     worth[row, column], which[row, column] = gain, pairs
     taken = which[linear_sum_assignment(worth, maximize=True)]
     found: IntArray = taken[taken >= 0]
@@ -96,8 +106,9 @@ def _components(
     """Connected components of a bipartite graph with the edges (row [P], column [P]).
 
     Returns the smallest row of its component for each row and each column, by passing it on
-    until nothing changes. The graphs here are many and tiny: a few rounds, a sixth of the time
-    that a sparse-graph routine spends on its set-up.
+    until nothing changes; a row also takes over what the row it points to points to, so long chains
+    take few rounds too. The graphs here are many and tiny: a sixth of the time that a sparse-graph
+    routine spends on its set-up.
     """
     of_row = np.arange(rows)
     while True:
@@ -105,6 +116,7 @@ def _components(
         np.minimum.at(of_column, column, of_row[row])
         lower = of_row.copy()
         np.minimum.at(lower, row, of_column[column])
+        lower = lower[lower]
         if np.array_equal(lower, of_row):
             return of_row, of_column
         of_row = lower

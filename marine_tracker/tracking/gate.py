@@ -10,10 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry import to_range_bearing, wrap_bearing
+from ..geometry import to_range_bearing, wrap_angle, wrap_bearing
 from ..types import Array, IntArray, Plots, take
 from .expected import Expected
 from .noise import Noise
+from .pair_budget import fullest, nearest
 from .sweep import Sweep
 
 TURN = 2 * np.pi
@@ -51,20 +52,23 @@ def gate_size(probability: float) -> float:
 
 
 def window_pairs(
+    distance: Array,
     low: Array,
     high: Array,
     bearing: Array,
     half_width: Array,
     plot_range: Array,
     plot_bearing: Array,
-) -> tuple[IntArray, IntArray]:
-    """All pairs (track [P], plot [P]) with the plot inside the track's window.
+) -> tuple[IntArray, IntArray, int]:
+    """All pairs (track [P], plot [P]) with the plot inside the track's window; how many are left
+    out, because they are beyond the budget (see pair_budget.py).
 
-    low, high [N] m: ranges of the window; bearing, half_width [N] rad: its bearings, periodic.
-    plot_range [M] m, plot_bearing [M] rad in [0, 2 pi). Tracks come in ascending order.
+    distance, bearing [N] m, rad: the middle of the window; low, high [N] m: its ranges;
+    half_width [N] rad: its bearings, periodic. plot_range [M] m, plot_bearing [M] rad in [0, 2 pi).
+    Tracks come in ascending order.
     """
     if not len(bearing) or not len(plot_range):
-        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+        return np.zeros(0, np.int64), np.zeros(0, np.int64), 0
     # Every plot stands there twice, a turn apart, so that no window wraps round; one of a whole
     # turn ends where no plot is, or it would meet the first one again.
     whole = half_width > np.pi - HAIR
@@ -91,16 +95,31 @@ def window_pairs(
         key, order = np.concatenate([key, key + TURN]), np.concatenate([order, order])
     begin = key.searchsorted(start, 'left')
     count = key.searchsorted(stop, 'right') - begin
+    of_track = np.bincount(track, count, len(bearing)).astype(np.int64)
+    full, most = fullest(of_track)
+    count = np.where(full[track], 0, count)
     track = track.repeat(count)
     place = np.arange(len(track)) - (count.cumsum() - count - begin).repeat(count)
-    plot = order[place]
-    distance = plot_range[plot]
-    inside = ((distance >= low[track]) & (distance <= high[track])).nonzero()[0]
-    return track[inside], plot[inside]
+    plot, left_out = order[place], 0
+    if full.any():
+        rows, left_out = full.nonzero()[0], int((of_track[full] - most).sum())
+        middles = distance[rows], bearing[rows], 0.5 * (high - low)[rows], half_width[rows]
+        few, near = nearest(*middles, plot_range, plot_bearing, most)
+        few = rows[few]
+        ahead = np.abs(wrap_angle(plot_bearing[near] - bearing[few])) <= half_width[few]
+        track, plot = np.append(track, few[ahead]), np.append(plot, near[ahead])
+        ascending = track.argsort(kind='stable')
+        track, plot = track[ascending], plot[ascending]
+    range_ = plot_range[plot]
+    inside = ((range_ >= low[track]) & (range_ <= high[track])).nonzero()[0]
+    return track[inside], plot[inside], left_out
 
 
-def gate(expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, size: float) -> Pairs:
-    """Pairs of expected targets and plots inside the chi-square gate.
+def gate(
+    expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, size: float
+) -> tuple[Pairs, int]:
+    """Pairs of expected targets and plots inside the chi-square gate; and how many are left out,
+    beyond the budget.
 
     noise  of the plots: bounds the search; the test itself takes the covariances as they are
     size   of the gate, squared Mahalanobis distance
@@ -108,15 +127,16 @@ def gate(expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, size: flo
     A plot is compared with the target at the plot's own time.
     """
     windows = _windows(expected, plots, sweep, noise, np.sqrt(size))
-    track, plot = window_pairs(*windows, plots.range, plots.bearing)
+    track, plot, left_out = window_pairs(*windows, plots.range, plots.bearing)
     nis, determinant = _distance(expected, plots, track, plot)
     inside = (nis < size).nonzero()[0]
-    return Pairs(track[inside], plot[inside], nis[inside], np.log(determinant[inside]))
+    pairs = Pairs(track[inside], plot[inside], nis[inside], np.log(determinant[inside]))
+    return pairs, left_out
 
 
 def _windows(
     expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, reach: float
-) -> tuple[Array, Array, Array, Array]:
+) -> tuple[Array, Array, Array, Array, Array]:
     """What `window_pairs` asks for: windows that hold every plot within `reach` deviations."""
     offset, covariance = expected.position - expected.origin, expected.covariance
     distance, bearing = to_range_bearing(offset)
@@ -149,7 +169,7 @@ def _windows(
         along, across = along + slack, across + slack
         half_width = _half_width(distance, along, across)
     # Sideways offsets lie farther out than the arc, the more the nearer the track is.
-    return distance - along, np.hypot(distance + along, across), bearing, half_width
+    return distance, distance - along, np.hypot(distance + along, across), bearing, half_width
 
 
 def _half_width(distance: Array, along: Array, across: Array) -> Array:

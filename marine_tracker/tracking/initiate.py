@@ -10,7 +10,8 @@ PAIRING_GATE = gate_size(0.99)  # for the noise of a new target's first two plot
 
 
 def unexplained(plots: Plots, pairs: Pairs, plot_of: IntArray, tracks: Tracks) -> BoolArray:
-    """Mask [M] of the plots that are no track's, nor near a held one, whose echoes they may be.
+    """Mask [M] of the plots that belong to no track and are not in the gate of a held track, which
+    may have caused them.
 
     pairs    of the gate; plot_of [N]: the plot that each track took, -1 for none
     """
@@ -29,14 +30,14 @@ def pair_up(
     max_speed: float,
     room: int,
 ) -> tuple[IntArray, IntArray]:
-    """Of the pairs (first [P] in before, second [P] in now), those that may be new targets.
+    """The pairs (first [P] in before, second [P] in now) that may be new targets.
 
     free  [M] mask of the plots in now that no track explains
-    room  most pairs wanted
+    room  largest number of pairs wanted
 
-    A pair fits when the way between its plots, less what noise explains, asks for no more than
-    max_speed, m/s. Every plot is used at most once, the slowest pair first: a plot has one
-    target, and clutter does not breed.
+    A pair fits if the distance between its plots, minus the part that noise explains, needs at most
+    max_speed, m/s. Every plot is used at most once, the slowest pair first: a plot has one target,
+    and one false plot must not begin several tracks.
     """
     candidates = free[second]
     first, second = first[candidates], second[candidates]
@@ -57,14 +58,15 @@ def pair_up(
 def _greedy(first: IntArray, second: IntArray, cost: Array, room: int) -> tuple[IntArray, IntArray]:
     """One-to-one pairs, at most `room`, cheapest first."""
     order = np.argsort(cost, kind='stable')
-    pairs = list(zip(first[order].tolist(), second[order].tolist(), strict=True))
     taken_first: set[int] = set()
     taken_second: set[int] = set()
-    keep = []
-    for a, b in pairs:
+    keep: list[tuple[int, int]] = []
+    for a, b in zip(first[order].tolist(), second[order].tolist()):
+        if len(keep) == room:
+            break
         if a not in taken_first and b not in taken_second:
             taken_first.add(a)
             taken_second.add(b)
             keep.append((a, b))
-    chosen = np.array(keep[:room], np.int64).reshape(-1, 2)
+    chosen = np.array(keep, np.int64).reshape(-1, 2)
     return chosen[:, 0], chosen[:, 1]

@@ -20,6 +20,7 @@ MAX_OWN_SPEED = 100 * KNOT  # m/s
 OWN_JITTER = 50.0  # m that a position may jump at any time step
 REBASE_OWN_AFTER, AGREE_AHEAD = 5, 3  # samples
 SLACK_S, SLACK_STEPS = 2.0, 1.5  # how far two clocks may differ: s, and usual steps
+PAIR_S = 4.0  # s between the stamps of two inputs that belong to one clock
 MAX_OWN_SAMPLES = 2000
 MAX_COORDINATE = 1e7  # m from the origin of the local plane
 
@@ -175,7 +176,7 @@ def now(log: OwnShipLog, time: float, trust: str = AUTO) -> tuple[Array, Array, 
     if not len(log.taken.time):
         return np.full(2, np.nan), np.full(2, np.nan), True
     last = take(log.taken, slice(-1, None))
-    apart, told = paired(time - last.time[0], max(SLACK_S, SLACK_STEPS * log.beat.step))
+    apart, told = paired(time - last.time[0], max(PAIR_S, SLACK_STEPS * log.beat.step))
     velocity, _ = chosen(last, log.off, trust)
     moved = own_ship_at(OwnShip(last.time, last.position, velocity), last.time[0] + apart)
     return moved[0], velocity[0], told

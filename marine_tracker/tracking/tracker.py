@@ -1,4 +1,4 @@
-"""One scan in, tracks out: the whole way of the data on one page."""
+"""One scan in, tracks out: all steps of the tracker on one page."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -24,9 +24,9 @@ from .sweep import sweep_of
 
 
 class OfRadar(NamedTuple):
-    """What is known of one radar.
+    """The memory of one radar.
 
-    leftover  plots of its last scan that belong to no track: one may be a new target's first
+    leftover  plots of its last scan that belong to no track: one may be a new target's first plot
     clutter   the density of its false plots
     """
 
@@ -35,11 +35,11 @@ class OfRadar(NamedTuple):
 
 
 class TrackerMemory(NamedTuple):
-    """All that the tracker knows between two scans.
+    """The memory of the tracker between two scans.
 
-    tracks       N tracks, lost ones left out
-    radars       of each radar
-    origin       [2] m, own ship when last heard of
+    tracks       N tracks, without lost ones
+    radars       memory of each radar
+    origin       [2] m, own ship's last known position
     next_id      the next track's id
     next_number  the next confirmed track's target number
     """
@@ -52,15 +52,16 @@ class TrackerMemory(NamedTuple):
 
 
 class Report(NamedTuple):
-    """What one scan did; one row a track, the lost ones and those just initiated included.
+    """The results of one scan; one row a track, including lost ones and new ones.
 
-    time       [N]     s, when the beam passed the track (its plot's time where it had one); or
-                       its last plot's, where another radar's was later
+    time       [N]     s, when the beam passed the track (the time of its plot if it had one); or
+    the
+                       time of its last plot, if another radar's was later
     tracks     N rows, after the scan
     predicted  [N, 2]  m, where the track was expected at `time`; nan for a new track
     plot       [N]     row of the scan's plots that the track took, -1 for none
-    reason     [N]     why a LOST track was lost: one of lifecycle.REASONS' numbers, 0 = not lost
-    begun      [B]     the first plots, of the last scan, of the tracks just initiated: the last B
+    reason     [N]     why a LOST track was lost: index into lifecycle.REASONS, 0 = not lost
+    begun      [B]     the first plots, of the last scan, of the new tracks: the last B
     """
 
     time: Array
@@ -69,10 +70,11 @@ class Report(NamedTuple):
     plot: IntArray
     reason: CodeArray
     begun: Plots
+    left_out: int
 
 
 class Tracker:
-    """The pure tracking core: parameters in, no state of its own.
+    """The pure tracking core: it takes parameters and has no state.
 
     tracker = Tracker(TrackerParameters(estimator='imm'))
     memory = tracker.start()
@@ -80,13 +82,14 @@ class Tracker:
         memory, report = tracker.step(memory, scan)
         estimate = tracker.extrapolate(report.tracks, report.time)      # Extrapolation, N rows
 
-    A change of parameters is a new Tracker: `memory = new.adopt(memory, old)` keeps every track.
-    An estimator of your own takes the place of the one that the parameters name. Of several
-    radars (parameter `radars`) each scan says which it is from; scans come as they end.
+    After a change of parameters, make a new Tracker: `memory = new.adopt(memory, old)` keeps every
+    track. An estimator of your own replaces the one that the parameters name. With several radars
+    (parameter `radars`) each scan says which radar it is from; scans come in the order of their
+    ends.
     """
 
     def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
-        # Clusters tell what their middle strays.
+        # Clusters already state the deviation of their middle.
         self.parameters = (
             parameters if parameters.extent == 'none' else replace(parameters, glint_sigma_m=0.0)
         )
@@ -130,7 +133,7 @@ class Tracker:
 
         # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
         expected = expect(ahead, lone, scan, speed)
-        pairs = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
+        pairs, left_out = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
         pairs = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
         pairs = unmistakable(pairs, ahead, plots, tracks.last_time, scan.start, p.scan_period_s)
         pairs, starts = split(pairs, count)
@@ -139,7 +142,7 @@ class Tracker:
         worth = gain(pairs, self.gate_size)
         plot_of = associate(pairs.track, pairs.plot, worth, count, len(plots.time))
 
-        # initiate: from plots of this scan and the last that nobody else explains
+        # initiate: from plots of this scan and the last one that belong to no track
         free = unexplained(plots, pairs, plot_of, tracks)
         room = max(0, p.max_tracks - count)
         first, second = pair_up(lone, plots, starts.track, starts.plot, free, speed, room)
@@ -153,7 +156,7 @@ class Tracker:
         chosen = take(plots, plot_of[rows])
         tracks = late_plots.update(self.estimator, tracks, chosen, rows, scan.radar)
 
-        # judge: what the scan tells of each track, and what becomes of it
+        # judge: record the scan for each track, and decide its status
         seen = look(tracks, rows, chosen, ahead, expected, noise)
         gained = score.gained(pairs, plot_of, take(lone, first), chosen, of_radar.clutter, p)
         elsewhere = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
@@ -173,13 +176,13 @@ class Tracker:
             scan.own_ship.position[-1],
             memory.next_id + len(first),
             next_number,
-        ), Report(seen.time, tracks, seen.predicted, plot_of, reason, begun)
+        ), Report(seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
-        """The memory of another tracker, made fit for this one's estimator; no track is lost.
+        """Takes over the memory of another tracker for this one's estimator. No track is lost.
 
-        Where the estimator differs, each track starts anew from its last estimate's position and
-        velocity.
+        If the estimator differs, each track starts again from the position and velocity of its last
+        estimate.
         """
         p, old = self.parameters, previous.parameters
         same = (p.estimator, p.vessel_class) == (old.estimator, old.vessel_class)

@@ -9,6 +9,7 @@ from marine_tracker.evaluation import metrics
 from marine_tracker.evaluation.replay import open_source
 from marine_tracker.recording import csv_folder, track_file
 from marine_tracker.simulation import radar, scenario
+from marine_tracker.types import PolarPlots
 
 SCENARIO = 'clean'
 
@@ -61,6 +62,30 @@ def test_standard_output_gets_tracks_alone(command, tracks):
     done = command('replay', SCENARIO, '--out', '-')
     assert done.stdout.encode() == tracks.read_bytes()
     assert 'tracks confirmed' in done.stderr
+
+
+def test_pairs_left_out_in_a_crowd_are_told(capsys, tmp_path):
+    """1,500 plots within 150 m in every scan."""
+    rng, count = np.random.default_rng(2), 1500
+
+    def crowd():
+        for scan, truth in radar.simulate(scenario.load(SCENARIO), 1):
+            if scan.start > 12.0:
+                return
+            plots = PolarPlots(
+                np.full(count, scan.start),
+                rng.uniform(9000, 9150, count),
+                rng.uniform(2.0, 2.015, count),
+                np.zeros(count),
+            )
+            yield scan._replace(plots=plots), truth
+
+    csv_folder.write(tmp_path / 'crowd', 'crowd', crowd(), {'range_sigma_m': 15.0})
+    replay(tmp_path / 'tracks.csv', tmp_path / 'crowd')
+    left_out = int(capsys.readouterr().out.split(' pairs left out')[0].split()[-1])
+    assert left_out > 4 * 1_000_000
+    replay(tmp_path / 'tracks.csv', SCENARIO)
+    assert 'left out' not in capsys.readouterr().out
 
 
 def test_a_written_scenario_replays_and_scores_like_the_scenario_itself(tracks, tmp_path):

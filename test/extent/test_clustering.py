@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from marine_tracker.extent import clustering
 from marine_tracker.extent.clustering import Gates, cluster, in_gates
 from marine_tracker.geometry import to_range_bearing, wrap_angle
 from marine_tracker.types import Plots
@@ -62,7 +63,7 @@ def test_clusters_are_the_connected_components_of_cells_that_touch(seed):
             edge = set(np.flatnonzero(touch[list(edge)].any(0)).tolist()) - part
         left -= part
         expected.add(frozenset(part))
-    found = cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))
+    found, _ = cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))
     assert 10 < len(expected) < 200
     assert sets(found.of_cell) == expected
     assert found.cells.sum() == 300 and not found.crowded.any() and (found.gate == -1).all()
@@ -72,7 +73,7 @@ def test_cluster_tells_centroid_scatter_size_and_strongest_cell():
     rng = np.random.default_rng(4)
     position = np.array([900.0, 900.0]) + rng.uniform(-20, 20, (25, 2))
     cells = plots(position)
-    found = cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))
+    found, _ = cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))
     assert found.cells == [25] and found.amplitude == [24.0]
     assert found.position[0] == pytest.approx(position.mean(0))
     assert found.scatter[0] == pytest.approx(25 * np.cov(position.T, bias=True))
@@ -87,9 +88,9 @@ def test_cells_of_one_gate_are_one_cluster_though_they_do_not_touch():
     cells = plots(
         np.concatenate([line([1000, 1000], [1000, 1050], 6), line([1000, 1110], [1000, 1160], 6)])
     )
-    alone = cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))
+    alone, _ = cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))
     assert len(alone.cells) == 2
-    held = cluster(cells, DEPTH, BEAM, in_gates(cells, gate([1000, 1080], 110, 30)))
+    held, _ = cluster(cells, DEPTH, BEAM, in_gates(cells, gate([1000, 1080], 110, 30)))
     assert held.cells.tolist() == [12] and held.gate.tolist() == [0] and not held.crowded.any()
 
 
@@ -97,7 +98,7 @@ def test_ships_side_by_side_stay_two_and_are_crowded():
     cells = plots(
         np.concatenate([line([1000, 1000], [1000, 1150], 12), line([1030, 1000], [1030, 1150], 12)])
     )
-    found = cluster(
+    found, _ = cluster(
         cells, DEPTH, BEAM, in_gates(cells, gate([[1000, 1075], [1030, 1075]], 110, 20))
     )
     assert found.cells.tolist() == [12, 12] and sorted(found.gate) == [0, 1]
@@ -108,7 +109,7 @@ def test_what_sticks_out_of_a_gate_belongs_to_it_but_a_coast_does_not():
     ship = line([1000, 1000], [1000, 1150], 12)
     for far, cells_of_ship in ((1250, 18), (1800, 12)):
         cells = plots(np.concatenate([ship, line([1000, 1160], [1000, far], (far - 1160) // 15)]))
-        found = cluster(cells, DEPTH, BEAM, in_gates(cells, gate([1000, 1075], 80, 20)))
+        found, _ = cluster(cells, DEPTH, BEAM, in_gates(cells, gate([1000, 1075], 80, 20)))
         own = found.gate == 0
         assert found.cells[own].tolist() == [cells_of_ship]
         assert found.crowded[own][0] == (far == 1800)
@@ -119,7 +120,7 @@ def test_land_is_never_drawn_into_a_hull():
         np.concatenate([line([1000, 1000], [1000, 1150], 12), line([1030, 1000], [1060, 1100], 8)])
     )
     place = in_gates(cells, gate([1000, 1075], 85, 10))
-    found = cluster(cells, DEPTH, BEAM, place._replace(land=np.arange(20) >= 12))
+    found, _ = cluster(cells, DEPTH, BEAM, place._replace(land=np.arange(20) >= 12))
     assert found.cells[found.gate == 0].tolist() == [12]
     assert found.land.tolist() == (found.gate == -1).tolist()
 
@@ -127,7 +128,7 @@ def test_land_is_never_drawn_into_a_hull():
 def test_a_ship_over_north_is_one_cluster():
     cells = plots(line([-80, 1500], [80, 1500], 12))
     assert cells.bearing.max() > 6 and cells.bearing.min() < 0.1
-    assert cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES)).cells.tolist() == [12]
+    assert cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))[0].cells.tolist() == [12]
 
 
 def test_gates_move_with_their_targets():
@@ -139,4 +140,41 @@ def test_gates_move_with_their_targets():
 
 def test_no_cells_no_clusters():
     cells = plots(np.empty((0, 2)))
-    assert len(cluster(cells, DEPTH, BEAM, in_gates(cells, gate([0, 0], 9, 9))).cells) == 0
+    assert len(cluster(cells, DEPTH, BEAM, in_gates(cells, gate([0, 0], 9, 9)))[0].cells) == 0
+
+
+@pytest.mark.parametrize('middle', [(900.0, 300.0), (0.0, 5000.0)])
+def test_in_a_crowd_the_clusters_are_those_of_all_pairs(middle, monkeypatch):
+    """Three crowds too far apart to touch, one over north; two gates share one of them."""
+    rng = np.random.default_rng(6)
+    places = np.asarray(middle) + np.concatenate(
+        [[shift, 0] + rng.uniform(-30, 30, (150, 2)) for shift in (-500, 0, 500)]
+    )
+    cells = plots(places)
+    place = in_gates(cells, gate([np.add(middle, (-8, 0)), np.add(middle, (8, 0))], 12, 7))
+    expected, none = cluster(cells, DEPTH, BEAM, place)
+    monkeypatch.setattr(clustering, 'LINKS', 2000)
+    found, left_out = cluster(cells, DEPTH, BEAM, place)
+    assert none == 0 and left_out > 2000
+    assert sets(found.of_cell) == sets(expected.of_cell)
+    assert len(expected.cells) >= 4
+    np.testing.assert_array_equal(found.crowded, expected.crowded)
+
+
+def test_cells_at_one_place_are_one_cluster(monkeypatch):
+    monkeypatch.setattr(clustering, 'LINKS', 50)
+    cells = plots(np.tile([700.0, -900.0], (600, 1)))
+    found, left_out = cluster(cells, DEPTH, BEAM, in_gates(cells, NO_GATES))
+    assert found.cells.tolist() == [600]
+    assert left_out > 300_000  # 2 lists of 179,700 pairs
+
+
+def test_gates_are_looked_through_in_parts_to_the_same_end(monkeypatch):
+    rng = np.random.default_rng(7)
+    cells = plots(rng.uniform(500, 900, (90, 2)))
+    gates = gate(rng.uniform(500, 900, (12, 2)), 80, 30)
+    whole = in_gates(cells, gates)
+    monkeypatch.setattr(clustering, 'AT_ONCE', 100)
+    for part, all_at_once in zip(in_gates(cells, gates), whole):
+        np.testing.assert_array_equal(part, all_at_once)
+    assert len(np.unique(whole.gate)) > 5

@@ -82,3 +82,16 @@ def test_learning_leaves_the_map_before_it_alone():
     clutter = clutter_map.empty()
     clutter_map.learn(clutter, np.array([100.0]), np.array([1.0]))
     assert not clutter.plots.any() and clutter.scans == 0
+
+
+def test_a_crowd_in_one_cell_says_nothing_of_the_other_side_of_the_ring():
+    """4,000 plots a scan within 200 m at 5 km: there they are false, abeam the sea is clear."""
+    rng = np.random.default_rng(9)
+    clutter = clutter_map.empty()
+    for _ in range(40):
+        clutter = clutter_map.learn(
+            clutter, 5000 + rng.uniform(-100, 100, 4000), 1.0 + rng.uniform(-0.02, 0.02, 4000)
+        )
+    there, abeam = clutter_map.density(clutter, np.full(2, 5000.0), np.array([1.0, 3.0]))
+    assert there > 3e-4
+    assert abeam < 5e-6

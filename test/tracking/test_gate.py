@@ -113,7 +113,7 @@ def test_the_gate_is_that_of_all_pairs(about, seed):
     targets, plots, sweep = scene(rng, 25, 60, **about)
     expected = brute_force(targets, plots, size)
     sigmas = noise(bearing_sigma=about.get('bearing_sigma', 0.0087))
-    track, plot, nis, log_det = gate(targets, plots, sweep, sigmas, size)
+    (track, plot, nis, log_det), _ = gate(targets, plots, sweep, sigmas, size)
     assert (np.diff(track) >= 0).all()
     found = list(zip(track.tolist(), plot.tolist()))
     assert len(set(found)) == len(found), 'a pair came twice'
@@ -138,14 +138,17 @@ def test_the_gate_does_not_tear_at_north(north):
     covariance = np.tile(2500.0 * np.eye(2), (9, 1, 1))
     targets = Expected(np.zeros(9), position, np.zeros((9, 2)), covariance, np.zeros((9, 2)))
     size = gate_size(0.99)
-    track, plot, _, _ = gate(targets, plots, Sweep(0.0, 0.0, 0.0), noise(), size)
+    (track, plot, _, _), _ = gate(targets, plots, Sweep(0.0, 0.0, 0.0), noise(), size)
     assert set(zip(track.tolist(), plot.tolist())) == set(brute_force(targets, plots, size))
     assert len(track) > 30
 
 
 @pytest.mark.parametrize(('tracks', 'plots'), [(0, 0), (0, 5), (5, 0)])
 def test_nothing_meets_nothing(tracks, plots):
-    found = gate(*scene(np.random.default_rng(1), tracks, plots), noise(), gate_size(0.99))
+    found, left_out = gate(
+        *scene(np.random.default_rng(1), tracks, plots), noise(), gate_size(0.99)
+    )
+    assert left_out == 0
     assert [len(column) for column in found] == [0, 0, 0, 0]
     assert found[0].dtype.kind == found[1].dtype.kind == 'i'
 
@@ -174,7 +177,9 @@ def test_the_gate_holds_the_targets_plot_as_often_as_promised():
             np.zeros((count, 2)),
         )
         plots = locate(polar, own, 15.0, 0.0087)
-        track, plot, _, _ = gate(targets, plots, Sweep(0.0, 0.0, 0.0), noise(), gate_size(0.99))
+        (track, plot, _, _), _ = gate(
+            targets, plots, Sweep(0.0, 0.0, 0.0), noise(), gate_size(0.99)
+        )
         hits += np.count_nonzero(track == plot)
     assert abs(hits / 20_000 - 0.99) < 0.003
 
@@ -189,7 +194,10 @@ def test_windows_find_exactly_the_plots_inside_them(seed):
     half = np.minimum(10 ** rng.uniform(-3, 1, tracks), np.pi)
     plot_range, plot_bearing = rng.uniform(0, 6000, plots), rng.uniform(0, 2 * np.pi, plots)
     plot_bearing[0] = 0.0
-    track, plot = window_pairs(low, high, bearing, half, plot_range, plot_bearing)
+    track, plot, left_out = window_pairs(
+        0.5 * (low + high), low, high, bearing, half, plot_range, plot_bearing
+    )
+    assert left_out == 0
     expected = {
         (i, j)
         for i in range(tracks)
@@ -212,10 +220,10 @@ def test_plots_that_tell_their_own_covariance_are_gated_by_it(seed):
     told = plots._replace(covariance=root @ root.swapaxes(1, 2) + 4 * np.eye(2))
     widest = float(np.sqrt(np.trace(told.covariance, axis1=1, axis2=2).max()))
     size = gate_size(0.99)
-    track, plot, _, _ = gate(targets, told, sweep, noise(5.0, 0.005, widest), size)
+    (track, plot, _, _), _ = gate(targets, told, sweep, noise(5.0, 0.005, widest), size)
     expected = set(brute_force(targets, told, size))
     assert set(zip(track.tolist(), plot.tolist())) == expected
-    narrow, _, _, _ = gate(targets, told, sweep, noise(5.0, 0.005), size)
+    (narrow, _, _, _), _ = gate(targets, told, sweep, noise(5.0, 0.005), size)
     assert len(narrow) < len(expected)
 
 

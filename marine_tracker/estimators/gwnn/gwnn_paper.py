@@ -1,16 +1,16 @@
 """The paper's own form: a wavelet network for each track, trained on line by its plots.
 
-Paper 000, sections 2, 3 and 5. From z(k) = [R, theta, v, gamma], range, bearing, speed and course
-of the target at plot k, the network gives the first difference to one scan later:
+Paper 000, sections 2, 3 and 5. The input is z(k) = [R, theta, v, gamma]: range, bearing, speed and
+course of the target at plot k. The network outputs the difference to one scan later:
 
     z(k+1) = z(k) + D net(z(k))
 
-Every plot trains it by the rules of variable step and momentum. The paper feeds plots; on a real
-radar's noise that carries the noise of two plots into every difference, so z(k) is here the
-posterior of a CS-Kalman filter, which also gives the covariance. Between plots and one scan ahead
-the track runs straight. The filter alone answers while the network is new, before the last plot,
-and where the network gives no number or leaves what the filter holds possible; a network that is
-far out begins anew at the next plot.
+Every plot trains it by the rules of variable step and momentum. The paper uses the plots as inputs.
+With a real radar's noise, every difference would then have the noise of two plots. So z(k) is here
+the posterior of a CS-Kalman filter, which also gives the covariance. Between plots, and within the
+scan ahead, the track is straight. The filter alone is used while the network is new, for times
+before the last plot, and when the network's output is not a number or is too far from the filter. A
+network that is very far off starts again at the next plot.
 """
 
 from typing import NamedTuple

@@ -151,6 +151,30 @@ def test_a_hundred_thousand_plots_in_one_message_are_cut_to_the_strongest(rig, c
     assert len(before) == 6 and set(before) <= set(here.names())
 
 
+def test_a_crowd_of_plots_costs_no_track_and_is_told(rig, clean):
+    """3,000 plots within 120 m, in two scans: 9,000,000 pairs of lone plots."""
+    rng, count = np.random.default_rng(5), 3000
+    here = rig()
+    here.play(clean[0][:8])
+    before, crowds = here.names(), []
+    for scan in clean[0][8:10]:
+        crowd = PolarPlots(
+            rng.uniform(scan.start, scan.end, count),
+            rng.uniform(11_000, 11_120, count),
+            rng.uniform(4.0, 4.01, count),
+            rng.uniform(0, 30, count),
+        )
+        crowds.append(scan._replace(plots=append(scan.plots, crowd)))
+    here.play(crowds)
+    assert len(before) == 6 and set(before) <= set(here.names())
+    status = here.tracker._tracking_status(0.0)
+    told = {pair.key: pair.value for pair in status.values}
+    assert int(told['pairs left out']) > 5_000_000
+    assert 'a crowd of plots' in status.message
+    here.play([clean[0][10]])
+    assert 'a crowd' not in here.tracker._tracking_status(0.0).message
+
+
 def test_an_exception_in_a_callback_is_counted_not_thrown(rig, clean, monkeypatch):
     here = rig()
     here.play(clean[0][:8])

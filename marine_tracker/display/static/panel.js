@@ -1,0 +1,235 @@
+// What stands beside the picture: own ship, alarms, the selected target, the table, the state.
+
+import { NAUTICAL_MILE, rangeBearing, toMap } from './geometry.js';
+import * as format from './format.js';
+import { COASTING, LOST, ACQUIRING, nameOf } from './state.js';
+import { RANGES } from './settings.js';
+
+const STATUS = { [ACQUIRING]: 'acquiring', 1: 'tracking', [COASTING]: 'coasting', [LOST]: 'lost' };
+const MOTION = ['steady', 'manoeuvring', 'at rest'];
+const NEVER = 1e12; // sorts behind all numbers
+/** Columns of the table: head, what a cell shows, what it is sorted by. */
+export const COLUMNS = [
+  ['No', nameOf, (t) => t.number || NEVER + t.id],
+  ['NM', (t) => format.miles(t.range), (t) => t.range],
+  ['Brg°', (t) => format.bearing(t.bearing), (t) => t.bearing],
+  ['Crs°', (t) => format.bearing(t.course), (t) => t.course],
+  ['kn', (t) => format.knots(t.speed), (t) => t.speed],
+  ['CPA', (t) => format.miles(t.cpa), (t) => t.cpa],
+  ['TCPA', (t) => format.minutes(t.tcpa), (t) => (t.tcpa !== null && t.tcpa < 0 ? NEVER : t.tcpa)],
+];
+
+/** @param {string} id @returns {HTMLElement} */
+export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
+/** Set a text only where it differs: what does not change is not laid out again. */
+export function say(/** @type {Element} */ where, /** @type {string} */ text) {
+  if (where.textContent !== text) where.textContent = text;
+}
+
+/** Terms and figures as the children of a <dl>; a figure may have its deviation. */
+function fill(/** @type {HTMLElement} */ list, /** @type {string[][]} */ figures) {
+  while (list.children.length > 2 * figures.length) list.lastChild?.remove();
+  figures.forEach(([term, value, deviation], row) => {
+    if (list.children.length <= 2 * row) {
+      const dd = document.createElement('dd');
+      dd.append(document.createElement('span'), ' ', document.createElement('small'));
+      list.append(document.createElement('dt'), dd);
+    }
+    say(list.children[2 * row], term);
+    const [main, small] = list.children[2 * row + 1].children;
+    say(main, value);
+    say(small, deviation && deviation !== format.NONE ? `±${deviation}` : '');
+  });
+}
+
+export function showOwnShip(/** @type {import('./state.js').State} */ state) {
+  const own = state.own;
+  const speed = own ? Math.hypot(own.vx, own.vy) : null;
+  const course = own && speed ? Math.atan2(own.vx, own.vy) : null;
+  fill(element('own'), [
+    ['HDG', `${format.bearing(own?.heading)}°`],
+    ['COG', `${format.bearing(course)}°`],
+    ['SOG', `${format.knots(speed)} kn`],
+    ['POS', own ? format.place(own.latitude, own.longitude) : format.NONE],
+  ]);
+}
+
+/** The data of the selected target, each with its standard deviation. */
+export function showSelected(/** @type {import('./state.js').Target|undefined} */ target) {
+  say(
+    element('selected-name'),
+    target ? `${nameOf(target)}, ${STATUS[target.status]}, ${MOTION[target.motion]}` : 'No target selected',
+  );
+  if (!target) return fill(element('selected'), []);
+  const figures = [
+    ['Range', `${format.miles(target.range)} NM`, format.miles(target.range_sd)],
+    ['Bearing', `${format.bearing(target.bearing)}°`, angleSd(target.bearing_sd)],
+    ['Course', `${format.bearing(target.course)}°`, angleSd(target.course_sd)],
+    ['Speed', `${format.knots(target.speed)} kn`, format.knots(target.speed_sd)],
+    ['CPA', `${format.miles(target.cpa)} NM`, format.miles(target.cpa_sd)],
+    ['TCPA', `${format.minutes(target.tcpa)} min`, format.minutes(target.tcpa_sd)],
+    ['Bow', `${format.miles(target.bow_range)} NM`, format.miles(target.bow_range_sd)],
+    ['in', `${format.minutes(target.bow_time)} min`, format.minutes(target.bow_time_sd)],
+    ['P(danger)', `${format.number(100 * target.danger_probability, 0)} %`],
+    ['Acquired', target.acquired ? 'by hand' : 'automatic'],
+  ];
+  if (target.length !== null) {
+    figures.push(
+      ['Length', `${format.number(target.length, 0)} m`, format.number(target.length_sd, 0)],
+      ['Heading', `${format.bearing(target.heading)}°`, angleSd(target.heading_sd)],
+    );
+  }
+  fill(element('selected'), figures);
+}
+
+function angleSd(/** @type {number|null} */ sd) {
+  return format.number(sd === null ? null : (sd * 180) / Math.PI, 1);
+}
+
+/** The alerts, those that nobody acknowledged first. */
+export function showAlarms(state, mayCommand, acknowledge) {
+  const list = element('alarms');
+  const priority = ['alarm', 'warning', 'caution'];
+  const waits = (alarm) => alarm.state.endsWith('unacknowledged');
+  const alarms = [...state.alarms].sort(
+    (a, b) => Number(waits(b)) - Number(waits(a)) || priority.indexOf(a.priority) - priority.indexOf(b.priority),
+  );
+  const old = new Map([...list.children].map((item) => [item.dataset.name, item]));
+  const items = alarms.map((alarm) => {
+    const item = old.get(alarm.name) ?? newAlarm(alarm.name);
+    item.className = `${alarm.priority} ${waits(alarm) ? 'unacknowledged' : ''}`;
+    const [text, button] = item.children;
+    say(text, alarm.text || `${alarm.name}, ${alarm.state}`);
+    button.hidden = !(waits(alarm) && alarm.number);
+    button.disabled = !mayCommand;
+    button.onclick = () => acknowledge(alarm.number);
+    return item;
+  });
+  if (items.length !== list.children.length || items.some((item, k) => item !== list.children[k])) {
+    list.replaceChildren(...items);
+  }
+}
+
+function newAlarm(/** @type {string} */ name) {
+  const item = document.createElement('li');
+  item.dataset.name = name;
+  const button = document.createElement('button');
+  button.textContent = 'Ack';
+  button.title = `Acknowledge ${name}`;
+  item.append(document.createElement('span'), button);
+  return item;
+}
+
+/** The heads of the table; sort(column) is called by a click. */
+export function makeHeads(sort) {
+  const row = element('targets').querySelector('thead tr');
+  COLUMNS.forEach(([head], column) => {
+    const cell = document.createElement('th');
+    const button = document.createElement('button');
+    button.textContent = head;
+    button.title = `Sort by ${head}`;
+    button.onclick = () => sort(column);
+    cell.append(button);
+    row.append(cell);
+  });
+}
+
+/** @type {Map<number, HTMLTableRowElement>} */
+const rows = new Map();
+
+/** The table, sorted; dangerous ones first where it is sorted by TCPA. */
+export function showTargets(targets, sorted, chosen, choose) {
+  const body = element('targets').querySelector('tbody');
+  const [, , key] = COLUMNS[sorted.column];
+  const order = (t) => key(t) ?? NEVER;
+  const inOrder = targets
+    .filter((t) => t.status !== LOST)
+    .sort((a, b) => (sorted.danger ? b.alarm - a.alarm : 0) || sorted.sign * (order(a) - order(b)));
+  say(element('count'), String(inOrder.length));
+  for (const [id, row] of rows) if (!inOrder.some((t) => t.id === id)) rows.delete(id) && row.remove();
+  inOrder.forEach((target, place) => {
+    let row = rows.get(target.id);
+    if (!row) {
+      row = newRow();
+      rows.set(target.id, row);
+    }
+    row.className = `${target.alarm ? 'danger' : ''} ${target.id === chosen ? 'chosen' : ''}`;
+    row.onclick = () => choose(target.id);
+    COLUMNS.forEach(([, show], column) => {
+      const cell = row.children[column];
+      say(column ? cell : cell.firstChild, show(target));
+    });
+    if (body.children[place] !== row) body.insertBefore(row, body.children[place] ?? null);
+  });
+}
+
+function newRow() {
+  const row = document.createElement('tr');
+  COLUMNS.forEach((_, column) => {
+    const cell = document.createElement('td');
+    if (!column) cell.append(document.createElement('button'));
+    row.append(cell);
+  });
+  return row;
+}
+
+/** The words in the corners of the picture. */
+export function showCorners(state, settings, scope, marks, pointer) {
+  const [range, rings] = RANGES[settings.range];
+  const heading = state.own?.heading ?? null;
+  const missing = heading === null ? '\nHEADING MISSING' : '';
+  say(
+    element('scale'),
+    `${range} NM\n${settings.rings === 'on' ? `rings ${rings} NM` : 'no rings'}\n` +
+      `${scope.orientation}, relative motion${missing}`,
+  );
+  say(
+    element('modes'),
+    `vectors ${settings.vectors}, ${settings.vectorMinutes} min\n` +
+      `trails ${settings.trails}${settings.trails === 'off' ? '' : `, ${settings.trailMinutes} min`}`,
+  );
+  const places = [
+    ['cursor', pointer ? toMap(scope.view, ...pointer) : marks.cursor],
+    ['EBL/VRM', marks.marker],
+  ];
+  const lines = places.flatMap(([name, at]) => {
+    if (!at || !state.own) return [];
+    const [away, bearing] = rangeBearing(state.own.x, state.own.y, at[0], at[1]);
+    return [`${name} ${format.bearing(bearing)}° ${(away / NAUTICAL_MILE).toFixed(2)} NM`];
+  });
+  say(element('cursor'), lines.join('\n'));
+  say(element('time'), state.scan ? `${format.clock(state.scan.time)} UTC` : '');
+}
+
+/** Health, limits, trial, and what this viewer may do. */
+export function showState(state) {
+  const parts = Object.entries(state.health).filter(([, part]) => part.level !== 'ok');
+  const estimator = Object.values(state.health).find((part) => part.estimator)?.estimator ?? '';
+  say(element('health-is'), `${parts.length ? `${parts.length} to look at` : 'all well'}${estimator && `, estimator ${estimator}`}`);
+  const lines = Object.entries(state.health).map(([name, part]) => `${part.level}: ${name}: ${part.text}`);
+  const list = element('health');
+  while (list.children.length > lines.length) list.lastChild?.remove();
+  lines.forEach((line, k) => say(list.children[k] ?? list.appendChild(document.createElement('li')), line));
+  const limits = state.limits;
+  say(
+    element('limits-are'),
+    limits ? `CPA ${limits.cpa_limit_nm} NM in ${limits.tcpa_limit_min} min` : format.NONE,
+  );
+  say(element('role'), state.role.commands ? '' : state.role.why || 'Looking only.');
+  say(element('trial-says'), trialSays(state.trial));
+}
+
+function trialSays(trial) {
+  if (!trial.on) return '';
+  if (!trial.safe_deg) return trial.text;
+  const safe = trial.safe_deg.map(([a, b]) => `${String(a).padStart(3, '0')}–${String(b).padStart(3, '0')}`);
+  const dangers = trial.targets.filter((target) => target.danger);
+  const told = dangers.map((t) => `${t.name} CPA ${format.number(t.cpa_nm, 2)} NM in ${format.number(t.tcpa_min, 1)} min`);
+  return (
+    `TRIAL ${format.number(trial.course_deg, 0)}°, ${format.number(trial.speed_kn, 1)} kn` +
+    `${trial.countdown_min ? `, begins in ${format.number(trial.countdown_min, 1)} min` : ''}. ` +
+    `Safe courses: ${safe.join(', ') || 'none'}. ` +
+    (told.length ? `Dangerous: ${told.join('; ')}.` : 'No target is dangerous.')
+  );
+}

@@ -1,0 +1,346 @@
+// The radar picture on its canvas: scale, rings, echoes, targets, own ship.
+
+import {
+  NAUTICAL_MILE,
+  canvasAngle,
+  direction,
+  edge,
+  ellipse,
+  radians,
+  toScreen,
+  turned,
+} from './geometry.js';
+import { placed } from './labels.js';
+import { RANGES } from './settings.js';
+import {
+  ACQUIRING,
+  ACKNOWLEDGED,
+  COASTING,
+  LOST,
+  UNACKNOWLEDGED,
+  lostTargets,
+  nameOf,
+  serverNow,
+} from './state.js';
+import * as symbols from './symbols.js';
+
+const MARGIN = 34; // px, for the bearing scale
+const GLOW_S = 30; // an echo has faded after so long
+const OFF = 0.5; // of the radius: how far own ship is moved back when off-centre
+const ELLIPSE_SIGMA = 2;
+const FLASH_S = 0.5;
+
+/**
+ * @typedef {import('./geometry.js').View} View
+ * @typedef {import('./state.js').State} State
+ * @typedef {import('./settings.js').Settings} Settings
+ * @typedef {object} Scope
+ * @property {View} view
+ * @property {number} middleX  px, of the picture's circle
+ * @property {number} middleY
+ * @property {number} radius
+ * @property {string} orientation  as it is: north-up where no heading is known
+ */
+
+/**
+ * How the map lies on the screen at this moment; drawing and clicking ask this.
+ * @param {State} state @param {Settings} settings
+ * @param {number} width px @param {number} height px @param {number} courseUp rad
+ * @returns {Scope}
+ */
+export function scopeOf(state, settings, width, height, courseUp) {
+  const radius = Math.max(Math.min(width, height) / 2 - MARGIN, 40);
+  const own = state.own;
+  const heading = own?.heading ?? null;
+  const orientation = heading === null ? 'north-up' : settings.orientation;
+  const up = { 'north-up': 0, 'head-up': heading ?? 0, 'course-up': courseUp }[orientation] ?? 0;
+  const view = {
+    originX: own?.x ?? 0,
+    originY: own?.y ?? 0,
+    centreX: width / 2,
+    centreY: height / 2,
+    scale: radius / (RANGES[settings.range][0] * NAUTICAL_MILE),
+    up,
+  };
+  if (settings.offCentre === 'on' && heading !== null) {
+    const [right, down] = direction(view, heading);
+    view.centreX -= OFF * radius * right;
+    view.centreY -= OFF * radius * down;
+  }
+  return { view, middleX: width / 2, middleY: height / 2, radius, orientation };
+}
+
+/** The vector of a target or own ship, m. */
+export function vectorOf(/** @type {Settings} */ settings, own, vx, vy) {
+  const seconds = 60 * settings.vectorMinutes;
+  const relative = settings.vectors === 'relative';
+  return [(vx - (relative ? own.vx : 0)) * seconds, (vy - (relative ? own.vy : 0)) * seconds];
+}
+
+/**
+ * Draw everything.
+ * @param {CanvasRenderingContext2D} canvas  in CSS pixels
+ * @param {State} state @param {Settings} settings @param {Scope} scope
+ * @param {Record<string, string>} colors
+ * @param {{id: number|null, cursor: number[]|null, marker: number[]|null}} marks  map positions
+ * @param {number} local s
+ */
+export function draw(canvas, state, settings, scope, colors, marks, local) {
+  const { middleX, middleY, radius } = scope;
+  canvas.clearRect(0, 0, canvas.canvas.width, canvas.canvas.height);
+  canvas.fillStyle = colors.sea;
+  canvas.beginPath();
+  canvas.arc(middleX, middleY, radius, 0, 2 * Math.PI);
+  canvas.fill();
+  canvas.save();
+  canvas.clip();
+  if (settings.rings === 'on') drawRings(canvas, settings, scope, colors);
+  if (state.own) {
+    drawPlots(canvas, state, scope, colors, local);
+    if (settings.trails !== 'off') drawTrails(canvas, state, settings, scope, colors);
+    drawOwnShip(canvas, state, settings, scope, colors);
+    drawTargets(canvas, state, settings, scope, colors, marks.id, local);
+  }
+  drawMarks(canvas, scope, colors, marks);
+  canvas.restore();
+  drawScale(canvas, scope, colors);
+  if (state.trial.on) drawTrial(canvas, state, scope, colors);
+}
+
+function drawRings(canvas, settings, { view, radius }, colors) {
+  const [range, spacing] = RANGES[settings.range];
+  const far = settings.offCentre === 'on' ? (1 + OFF) * range : range;
+  canvas.strokeStyle = colors.ring;
+  canvas.lineWidth = 1;
+  for (let ring = 1; ring * spacing <= far + 1e-9; ring++) {
+    canvas.beginPath();
+    canvas.arc(view.centreX, view.centreY, (ring * spacing * radius) / range, 0, 2 * Math.PI);
+    canvas.stroke();
+  }
+}
+
+/** Echoes, each as large as its age leaves it bright. */
+function drawPlots(canvas, state, { view, radius, middleX, middleY }, colors, local) {
+  const now = serverNow(state, local);
+  canvas.fillStyle = colors.echo;
+  state.plots.forEach((scan, place) => {
+    const newest = place === state.plots.length - 1;
+    const fade = 1 - Math.max(now - scan.at, 0) / GLOW_S;
+    if (fade <= 0 && !newest) return;
+    canvas.globalAlpha = newest ? 1 : 0.5 * fade ** 2;
+    const size = newest ? 4 : 3;
+    for (let k = 0; k < scan.x.length; k++) {
+      const [x, y] = toScreen(view, scan.x[k], scan.y[k]);
+      if (Math.abs(x - middleX) < radius && Math.abs(y - middleY) < radius) {
+        canvas.fillRect(x - size / 2, y - size / 2, size, size);
+      }
+    }
+  });
+  canvas.globalAlpha = 1;
+}
+
+function drawTrails(canvas, state, settings, { view }, colors) {
+  const trails = state.trails;
+  if (!trails) return;
+  const relative = settings.trails === 'relative';
+  const count = Math.round((60 * settings.trailMinutes) / trails.interval);
+  const step = Math.max(1, Math.round(count / 12));
+  canvas.fillStyle = colors.trail;
+  const last = trails.own.length - 1;
+  for (const target of state.targets) {
+    const trail = trails.targets[target.id];
+    if (!trail) continue;
+    for (let back = 0; back <= Math.min(count, last); back++) {
+      // Dots stay where they are: they hang on whole moments, not on the newest one.
+      const moment = last - back;
+      if ((trails.count - back) % step || !trail[moment]) continue;
+      const [dx, dy] = relative
+        ? [state.own.x - trails.own[moment][0], state.own.y - trails.own[moment][1]]
+        : [0, 0];
+      const [x, y] = toScreen(view, trail[moment][0] + dx, trail[moment][1] + dy);
+      symbols.pastPosition(canvas, x, y);
+    }
+  }
+}
+
+function drawOwnShip(canvas, state, settings, scope, colors) {
+  const { view, middleX, middleY, radius } = scope;
+  const own = state.own;
+  if (own.heading !== null) {
+    const [x, y] = edge(view, own.heading, middleX, middleY, radius);
+    canvas.strokeStyle = colors.own;
+    canvas.lineWidth = 1.4;
+    canvas.beginPath();
+    canvas.moveTo(view.centreX, view.centreY);
+    canvas.lineTo(x, y);
+    canvas.stroke();
+  }
+  if (settings.vectors === 'true') {
+    const [right, down] = turned(view, ...vectorOf(settings, own, own.vx, own.vy));
+    symbols.vector(canvas, view.centreX, view.centreY, right, down, colors.own, true);
+  }
+  symbols.ownShip(canvas, view.centreX, view.centreY, colors.own);
+}
+
+function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
+  const { view, middleX, middleY, radius } = scope;
+  const shown = Math.floor(local / FLASH_S) % 2 === 0;
+  /** @type {import('./labels.js').Label[]} */
+  const labels = [];
+  const inOrder = [...state.targets].sort((a, b) => a.alarm - b.alarm); // the dangerous on top
+  for (const target of inOrder) {
+    if (target.x === null || target.status === LOST) continue;
+    const [x, y] = toScreen(view, target.x, target.y);
+    const danger = target.alarm >= ACKNOWLEDGED;
+    const color = danger ? colors.danger : target.status === COASTING ? colors.coasting : colors.target;
+    const [right, down] = turned(view, ...vectorOf(settings, state.own, target.vx, target.vy));
+    if (Math.hypot(x - middleX, y - middleY) > radius + Math.hypot(right, down)) continue;
+    if (target.id === chosen) {
+      symbols.selected(canvas, x, y, colors.selected);
+      drawEllipse(canvas, view, target, colors);
+    }
+    if (target.alarm !== UNACKNOWLEDGED || shown) {
+      if (target.status !== ACQUIRING) symbols.vector(canvas, x, y, right, down, color, danger);
+      if (danger) symbols.dangerous(canvas, x, y, color);
+      else if (target.status === ACQUIRING) symbols.acquiring(canvas, x, y, color);
+      else if (target.status === COASTING) symbols.coasting(canvas, x, y, color);
+      else symbols.tracked(canvas, x, y, color, target.danger_probability ?? 0, colors.danger);
+    }
+    if (target.number && (settings.labels === 'on' || danger || target.id === chosen)) {
+      const text = String(target.number).padStart(2, '0');
+      labels.push({ x, y, text, needed: danger || target.id === chosen });
+    }
+  }
+  for (const alarm of lostTargets(state)) {
+    if (!shown && alarm.state.endsWith('unacknowledged')) continue;
+    const [x, y] = toScreen(view, alarm.x, alarm.y);
+    symbols.lost(canvas, x, y, colors.danger);
+    if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: true });
+  }
+  canvas.font = '600 13px system-ui, sans-serif';
+  canvas.textBaseline = 'middle';
+  canvas.textAlign = 'left';
+  canvas.fillStyle = colors.label;
+  for (const { label, left, middle } of placed(labels, (text) => canvas.measureText(text).width)) {
+    canvas.fillText(label.text, left, middle);
+  }
+}
+
+function drawEllipse(canvas, view, target, colors) {
+  const { long, short, bearing } = ellipse(target.xx, target.xy, target.yy);
+  canvas.strokeStyle = colors.selected;
+  canvas.lineWidth = 1;
+  canvas.beginPath();
+  const [x, y] = toScreen(view, target.x, target.y);
+  const size = ELLIPSE_SIGMA * view.scale;
+  canvas.ellipse(x, y, long * size, short * size, canvasAngle(view, bearing), 0, 2 * Math.PI);
+  canvas.stroke();
+}
+
+/** Cursor, and the marker with its electronic bearing line and variable range marker. */
+function drawMarks(canvas, { view, middleX, middleY, radius }, colors, marks) {
+  if (marks.marker) {
+    const [x, y] = toScreen(view, marks.marker[0], marks.marker[1]);
+    const bearing = Math.atan2(marks.marker[0] - view.originX, marks.marker[1] - view.originY);
+    canvas.strokeStyle = colors.marker;
+    canvas.lineWidth = 1.2;
+    canvas.setLineDash([9, 5]);
+    canvas.beginPath();
+    canvas.moveTo(view.centreX, view.centreY);
+    canvas.lineTo(...edge(view, bearing, middleX, middleY, radius));
+    canvas.stroke();
+    canvas.beginPath();
+    canvas.arc(view.centreX, view.centreY, Math.hypot(x - view.centreX, y - view.centreY), 0, 2 * Math.PI);
+    canvas.stroke();
+    canvas.setLineDash([]);
+  }
+  if (marks.cursor) {
+    const [x, y] = toScreen(view, marks.cursor[0], marks.cursor[1]);
+    canvas.strokeStyle = colors.cursor;
+    canvas.lineWidth = 1.4;
+    canvas.beginPath();
+    for (const [right, down] of [
+      [1, 0],
+      [-1, 0],
+      [0, 1],
+      [0, -1],
+    ]) {
+      canvas.moveTo(x + 4 * right, y + 4 * down);
+      canvas.lineTo(x + 14 * right, y + 14 * down);
+    }
+    canvas.stroke();
+  }
+}
+
+/** The bearing scale around the picture: marks each 5 degrees, numbers each 30. */
+function drawScale(canvas, { view, middleX, middleY, radius }, colors) {
+  canvas.strokeStyle = colors.scale;
+  canvas.fillStyle = colors.scale;
+  canvas.font = '600 12px system-ui, sans-serif';
+  canvas.textAlign = 'center';
+  canvas.textBaseline = 'middle';
+  canvas.lineWidth = 1;
+  canvas.beginPath();
+  canvas.arc(middleX, middleY, radius, 0, 2 * Math.PI);
+  for (let mark = 0; mark < 360; mark++) {
+    if (mark % 5 && radius < 250) continue;
+    const [x, y] = edge(view, radians(mark), middleX, middleY, radius);
+    const length = mark % 10 === 0 ? 10 : mark % 5 === 0 ? 6 : 3;
+    const out = [(x - middleX) / radius, (y - middleY) / radius];
+    canvas.moveTo(x, y);
+    canvas.lineTo(x + length * out[0], y + length * out[1]);
+    if (mark % 30 === 0) {
+      canvas.fillText(String(mark).padStart(3, '0'), x + 22 * out[0], y + 20 * out[1]);
+    }
+  }
+  canvas.stroke();
+}
+
+/** Safe and unsafe courses of a trial around the picture, and the T that says that it is one. */
+function drawTrial(canvas, state, scope, colors) {
+  const { view, middleX, middleY, radius } = scope;
+  const around = 5;
+  canvas.lineWidth = 6;
+  const safe = new Set();
+  for (const [first, last] of state.trial.safe_deg ?? []) {
+    for (let k = 0; k <= (last - first + 360) % 360; k++) safe.add((first + k) % 360);
+  }
+  for (let course = 0; course < 360; course++) {
+    canvas.strokeStyle = safe.has(course) ? colors.safe : colors.danger;
+    if (!safe.has(course) && course % 4 > 1) continue; // broken: not by colour alone
+    const angle = canvasAngle(view, radians(course));
+    canvas.beginPath();
+    canvas.arc(middleX, middleY, radius - around, angle, angle + radians(1.2));
+    canvas.stroke();
+  }
+  canvas.fillStyle = colors.danger;
+  canvas.font = '700 40px system-ui, sans-serif';
+  canvas.textAlign = 'center';
+  canvas.fillText('T', middleX, middleY + radius - 34);
+  if (state.trial.course_deg !== null && state.own) {
+    canvas.strokeStyle = colors.safe;
+    canvas.lineWidth = 2;
+    canvas.setLineDash([2, 6]);
+    canvas.beginPath();
+    canvas.moveTo(view.centreX, view.centreY);
+    canvas.lineTo(...edge(view, radians(state.trial.course_deg), middleX, middleY, radius));
+    canvas.stroke();
+    canvas.setLineDash([]);
+  }
+}
+
+/** The target under a pixel, or null. */
+export function targetAt(/** @type {State} */ state, /** @type {View} */ view, x, y, reach = 18) {
+  let found = null;
+  for (const target of state.targets) {
+    if (target.x === null || target.status === LOST) continue;
+    const [tx, ty] = toScreen(view, target.x, target.y);
+    const away = Math.hypot(tx - x, ty - y);
+    if (away <= reach) {
+      reach = away;
+      found = target;
+    }
+  }
+  return found;
+}
+

@@ -1,0 +1,87 @@
+// What the viewer chose: kept in this browser, and changed in one place.
+
+/** Range in NM, and the distance between its rings. */
+export const RANGES = [
+  [0.25, 0.05],
+  [0.5, 0.1],
+  [0.75, 0.25],
+  [1.5, 0.25],
+  [3, 0.5],
+  [6, 1],
+  [12, 2],
+  [24, 4],
+];
+export const CHOICES = {
+  orientation: ['north-up', 'head-up', 'course-up'],
+  vectors: ['true', 'relative'],
+  vectorMinutes: [1, 3, 6, 12, 30],
+  trails: ['true', 'relative', 'off'],
+  trailMinutes: [1, 3, 6, 15, 30],
+  labels: ['on', 'off'],
+  rings: ['on', 'off'],
+  offCentre: ['off', 'on'],
+  palette: ['day', 'dusk', 'night'],
+};
+const KEY = 'marine_tracker ppi';
+
+/**
+ * @typedef {object} Settings
+ * @property {number} range  index of RANGES
+ * @property {string} orientation
+ * @property {string} vectors
+ * @property {number} vectorMinutes
+ * @property {string} trails
+ * @property {number} trailMinutes
+ * @property {string} labels
+ * @property {string} rings
+ * @property {string} offCentre
+ * @property {string} palette
+ */
+
+/** The defaults, with what was chosen before, and what the address asks for (?range=12&...). */
+export function load(/** @type {string} */ search) {
+  /** @type {Record<string, any>} */
+  const settings = {
+    range: 5,
+    orientation: 'north-up',
+    vectors: 'true',
+    vectorMinutes: 6,
+    trails: 'true',
+    trailMinutes: 6,
+    labels: 'on',
+    rings: 'on',
+    offCentre: 'off',
+    palette: 'day',
+  };
+  let kept = {};
+  try {
+    kept = JSON.parse(localStorage.getItem(KEY) ?? '{}');
+  } catch {
+    // Kept by somebody else, or not to be read: the defaults will do.
+  }
+  const asked = Object.fromEntries(new URLSearchParams(search));
+  for (const given of [kept, asked]) {
+    for (const [name, choices] of Object.entries(CHOICES)) {
+      const found = choices.find((choice) => String(choice) === String(given[name]));
+      if (found !== undefined) settings[name] = found;
+    }
+  }
+  const index = RANGES.findIndex(([range]) => String(range) === asked.range);
+  if (Number.isInteger(kept.range) && RANGES[kept.range]) settings.range = kept.range;
+  if (index >= 0) settings.range = index;
+  return /** @type {Settings} */ (settings);
+}
+
+export function keep(/** @type {Settings} */ settings) {
+  try {
+    localStorage.setItem(KEY, JSON.stringify(settings));
+  } catch {
+    // Not allowed here: they hold until the page is closed.
+  }
+}
+
+/** The choice after the present one. */
+export function next(/** @type {Settings} */ settings, /** @type {string} */ name) {
+  const choices = CHOICES[name];
+  return choices[(choices.indexOf(settings[name]) + 1) % choices.length];
+}

@@ -1,0 +1,144 @@
+// What the page knows: the newest message of each kind, and how old each is.
+//
+// Receiving does not draw. Ages come from the server's steady clock, which stands in every
+// message, and this browser's own steady clock: what time of day either has does not matter.
+
+export const SILENT_S = 3; // without fresh data for so long: the red cross
+const GLOW_SCANS = 12; // of plots that are kept for the afterglow
+const WINDOW = 60; // messages by which the clocks are compared
+
+export const ACQUIRING = 0;
+export const COASTING = 2;
+export const LOST = 3;
+export const ACKNOWLEDGED = 1;
+export const UNACKNOWLEDGED = 2;
+
+/**
+ * @typedef {Record<string, any>} Message
+ * @typedef {Record<string, any>} Target  one row of `targets`
+ * @typedef {object} State
+ * @property {Message|null} own
+ * @property {Target[]} targets
+ * @property {Message|null} scan     the message that the targets came with, without its columns
+ * @property {Message[]} plots       of the last scans, newest last
+ * @property {Message[]} alarms
+ * @property {Message|null} trails
+ * @property {Message} trial
+ * @property {Record<string, Message>} health
+ * @property {Message|null} limits
+ * @property {{commands: boolean, why: string}} role
+ * @property {number} heard          s of this browser's clock; -Infinity before the first message
+ * @property {number[]} differences  s, of the server's clock to this browser's, of late
+ */
+
+/** @returns {State} */
+export function emptyState() {
+  return {
+    own: null,
+    targets: [],
+    scan: null,
+    plots: [],
+    alarms: [],
+    trails: null,
+    trial: { on: false },
+    health: {},
+    limits: null,
+    role: { commands: false, why: '' },
+    heard: -Infinity,
+    differences: [],
+  };
+}
+
+/**
+ * Take a message in.
+ * @param {State} state @param {Message} message @param {number} local s of this browser's clock
+ */
+export function receive(state, message, local) {
+  state.heard = local;
+  state.differences.push(message.now - local);
+  if (state.differences.length > WINDOW) state.differences.shift();
+  switch (message.kind) {
+    case 'targets':
+      state.targets = rows(message.columns);
+      state.scan = { at: message.at, time: message.time, period: message.period };
+      break;
+    case 'plots':
+      if (state.plots.length && message.stamp < state.plots[state.plots.length - 1].stamp) {
+        state.plots = []; // time went back: another run
+      }
+      state.plots.push(message);
+      if (state.plots.length > GLOW_SCANS) state.plots.shift();
+      break;
+    case 'alarms':
+      state.alarms = message.alarms;
+      break;
+    case 'health':
+      state.health = message.parts;
+      break;
+    case 'role':
+      state.role = { commands: message.commands, why: message.why };
+      break;
+    case 'own':
+    case 'trails':
+    case 'trial':
+    case 'limits':
+      state[message.kind] = message;
+      break;
+  }
+}
+
+/** After a new connection the clocks are compared anew: it may be another server. */
+export function reconnected(/** @type {State} */ state) {
+  state.differences = [];
+}
+
+/**
+ * The server's time now, s. The message that was least on its way tells it best.
+ * @param {State} state @param {number} local s
+ */
+export function serverNow(state, local) {
+  return local + Math.max(...state.differences);
+}
+
+/**
+ * Why the picture is not live, or '' while it is.
+ * @param {State} state @param {number} local s
+ */
+export function staleness(state, local) {
+  if (!Number.isFinite(state.heard)) return 'No connection yet';
+  const silent = local - state.heard;
+  if (silent >= SILENT_S) return `No connection for ${Math.floor(silent)} s`;
+  const now = serverNow(state, local);
+  if (!state.own) return 'No own ship yet';
+  const ownAge = now - state.own.at;
+  if (ownAge >= SILENT_S) return `No own ship for ${Math.floor(ownAge)} s`;
+  if (!state.scan) return 'No targets yet: waiting for the tracker';
+  const overdue = now - state.scan.at - (state.scan.period ?? 0);
+  if (overdue >= SILENT_S) return `No scan for ${Math.floor(now - state.scan.at)} s`;
+  return '';
+}
+
+/** The columns of a message as rows. @returns {Target[]} */
+function rows(/** @type {Record<string, any[]>} */ columns) {
+  const names = Object.keys(columns);
+  return columns.number.map((_, row) =>
+    Object.fromEntries(names.map((name) => [name, columns[name][row]])),
+  );
+}
+
+/** TT07; Q and the track's id while it is being acquired. @param {Target} target */
+export function nameOf(target) {
+  return target.number ? `TT${String(target.number).padStart(2, '0')}` : `Q${target.id}`;
+}
+
+/** Alerts that somebody has still to acknowledge. @param {State} state */
+export function unacknowledged(state) {
+  return state.alarms.filter((alarm) => alarm.state.endsWith('unacknowledged'));
+}
+
+/** Where targets were lost, until that is acknowledged. @param {State} state */
+export function lostTargets(state) {
+  return state.alarms.filter(
+    (alarm) => alarm.kind === 'lost target' && alarm.x !== null && alarm.y !== null,
+  );
+}

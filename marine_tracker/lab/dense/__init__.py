@@ -1,0 +1,1 @@
+"""A crowd of plots: what it costs, and what becomes of the targets elsewhere."""

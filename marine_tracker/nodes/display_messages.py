@@ -1,0 +1,144 @@
+"""ROS messages as plain values for the page: lists, numbers, None where there is no number.
+
+Lengths in m, times in s, angles in rad clockwise from true north, as in the messages.
+"""
+
+import math
+import re
+from typing import Any
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+from .diagnostics import one_line
+
+LEVELS = {
+    DiagnosticStatus.OK: 'ok',
+    DiagnosticStatus.WARN: 'warning',
+    DiagnosticStatus.ERROR: 'error',
+    DiagnosticStatus.STALE: 'stale',
+}
+COLUMNS = {  # of `targets_cloud`, with their decimals
+    'x': 1,
+    'y': 1,
+    'vx': 3,
+    'vy': 3,
+    'xx': 1,
+    'xy': 1,
+    'yy': 1,
+    'danger_probability': 3,
+    'length': 0,
+    'length_sd': 0,
+    'beam': 0,
+    'heading': 4,
+    'heading_sd': 4,
+    **{
+        name + ending: digits
+        for name, digits in (
+            ('range', 0),
+            ('bearing', 4),
+            ('course', 4),
+            ('speed', 2),
+            ('cpa', 0),
+            ('tcpa', 0),
+            ('bow_range', 0),
+            ('bow_time', 0),
+        )
+        for ending in ('', '_sd')
+    },
+}
+WHOLE = ('number', 'id', 'status', 'alarm', 'acquired', 'motion')
+MOST_ALARMS = 200
+NUMBER = re.compile(r'TT(\d+)')
+SECTOR = re.compile(r'(\d+)-(\d+)')
+
+
+def plain(values: np.ndarray, digits: int) -> list[float | None]:
+    """Rounded numbers [N]; None for what is not finite."""
+    rounded = np.round(values.astype(float), digits)
+    if digits == 0:
+        return [int(v) if math.isfinite(v) else None for v in rounded.tolist()]
+    return [v if math.isfinite(v) else None for v in rounded.tolist()]
+
+
+def targets(rows: np.ndarray) -> dict[str, list]:
+    """The columns of `targets_cloud` that the page shows."""
+    return {name: rows[name].tolist() for name in WHOLE} | {
+        name: plain(rows[name], digits) for name, digits in COLUMNS.items()
+    }
+
+
+def alarms(message: DiagnosticArray) -> list[dict[str, Any]]:
+    """The alerts that are not normal, as the topic `alarms` has them."""
+    found = []
+    for entry in message.status[:MOST_ALARMS]:
+        values = _values(entry)
+        if values.get('state', 'normal') == 'normal':
+            continue
+        number = NUMBER.fullmatch(values.get('target', ''))
+        found.append(
+            {
+                'name': one_line(entry.name),
+                'text': one_line(entry.message),
+                'kind': values.get('kind', ''),
+                'priority': values.get('priority', ''),
+                'state': values['state'],
+                'number': int(number[1]) if number else 0,
+                'in_state_s': _number(values.get('in_state_s')),
+                'x': _number(values.get('east_m')),
+                'y': _number(values.get('north_m')),
+            }
+        )
+    return found
+
+
+def trial(message: DiagnosticArray) -> dict[str, Any]:
+    """The trial manoeuvre: its own entry first, then one for each target; off where empty."""
+    if not message.status:
+        return {'on': False}
+    first, *others = message.status
+    about = _values(first)
+    return {
+        'on': True,
+        'text': one_line(first.message),
+        'course_deg': _number(about.get('course_deg')),
+        'speed_kn': _number(about.get('speed_kn')),
+        'countdown_min': _number(about.get('countdown_min')),
+        'safe_deg': [
+            [int(a), int(b)] for a, b in SECTOR.findall(about.get('safe_courses_deg', ''))
+        ],
+        'targets': [
+            {
+                'name': one_line(entry.name),
+                'cpa_nm': _number(values.get('cpa_nm')),
+                'tcpa_min': _number(values.get('tcpa_min')),
+                'danger_probability': _number(values.get('danger_probability')),
+                'danger': entry.level == DiagnosticStatus.ERROR,
+            }
+            for entry, values in ((entry, _values(entry)) for entry in others)
+        ],
+    }
+
+
+def health(message: DiagnosticArray) -> dict[str, dict[str, str]]:
+    """How the parts of the service fare, by name."""
+    return {
+        one_line(entry.name): {
+            'level': LEVELS.get(entry.level, 'error'),
+            'text': one_line(entry.message),
+            'estimator': _values(entry).get('estimator', ''),
+        }
+        for entry in message.status
+    }
+
+
+def _values(entry: DiagnosticStatus) -> dict[str, str]:
+    return {pair.key: one_line(pair.value) for pair in entry.values}
+
+
+def _number(text: str | None) -> float | None:
+    try:
+        value = float(text or '')
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
