@@ -140,7 +140,7 @@ class Arpa:
         sensors  what is known of own ship beside her positions
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
-        samples = lately(memory.own, scan.own_ship, now)
+        samples, p = lately(memory.own, scan.own_ship, now), self.parameters
         own = own_motion(samples, now, heading)._replace(north=sensors.north)
 
         # motion: course and speed from a memory of their own
@@ -163,20 +163,17 @@ class Arpa:
         row = row_of(tracks.id, targets.id)
 
         # alarms: those after the scan, and those that changed
-        overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        down = _fallen(fallen, acquired, tracks)
-        tracking = alarms.Tracking(self.acquisition.capacity, down, overlap, other)
+        swap = self._swap_risk(tracks, remembered, passing, own, now, radar)
+        tracking = alarms.Tracking(p.max_targets, _fallen(fallen, acquired, tracks), *swap)
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
 
         # the picture: the rows of the targets
         moving, passing = take(moving, row), take(passing, row)
-        told = no_danger[row], seen.danger[row], overlap[row], events, *alarm, against
-        return (
-            ArpaMemory(samples, remembered, acquired, alarm[0], past),
-            Picture(now, own, row, targets, moving, passing, past, *told),
-        )
+        told = no_danger[row], seen.danger[row], swap[0][row], events, *alarm, against
+        known = ArpaMemory(samples, remembered, acquired, alarm[0], past)
+        return known, Picture(now, own, row, targets, moving, passing, past, *told)
 
     def _stabilised(
         self, moving: Motion, own: OwnMotion, sensors: OwnSensors, tracks: Tracks

@@ -94,7 +94,7 @@ class SensorsInput:
         wall = time.monotonic()
         north, heading = math.isfinite(self.heading_now(wall, p)), self.heading
         if math.isnan(heading):
-            relative = any(radar.parameters.bearings == 'relative' for radar in radars)
+            relative = any(radar.parameters.bearings == 'bow' for radar in radars)
             north, heading = not relative, 0.0 if relative else heading
         way = NONE if fallback in NOT_MOVING else POSITIONS
         if fallback == own_ship.OWN_RECKONED:

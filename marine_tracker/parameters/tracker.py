@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from .description import check, parameter
 
-BEARINGS = ('true', 'relative')
+BEARINGS = ('north', 'bow')
 VESSEL_CLASSES = ('ship', 'small_craft')
 # m: deviation of a target's echoing point from its middle, each axis, by vessel class.
 GLINT_SIGMA = {'ship': 25.0, 'small_craft': 0.0}
@@ -162,9 +162,9 @@ class TrackerParameters:
         live=True,
     )
     bearings: str = parameter(
-        'true',
-        "What the radar counts bearings from: true north, or the bow (relative; own ship's "
-        'heading is then added).',
+        'north',
+        "What the radar counts bearings from: true north (north), or own ship's bow (bow): her "
+        'heading is then added.',
         choices=BEARINGS,
         live=True,
     )

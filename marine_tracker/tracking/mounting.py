@@ -26,7 +26,7 @@ def mounted(scan: Scan, radar: TrackerParameters, heading: float) -> Scan:
     """
     gps = radar.gps_ahead_m, radar.gps_starboard_m
     antenna = radar.antenna_ahead_m, radar.antenna_starboard_m
-    relative = radar.bearings == 'relative'
+    relative = radar.bearings == 'bow'
     if not (any(gps) or any(antenna) or radar.bearing_offset_deg or relative):
         return scan
     own, headings = scan.own_ship, _headings(scan.own_ship, heading)
@@ -47,7 +47,7 @@ def mounted(scan: Scan, radar: TrackerParameters, heading: float) -> Scan:
 def needs_heading(radars: Iterable[TrackerParameters]) -> bool:
     """Whether anything that the parameters tell can be applied with a heading only."""
     return any(
-        radar.bearings == 'relative'
+        radar.bearings == 'bow'
         or radar.gps_ahead_m
         or radar.gps_starboard_m
         or radar.antenna_ahead_m
