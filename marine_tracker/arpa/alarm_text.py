@@ -65,5 +65,5 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
         return f"own ship's speed as told is {first / KNOT:.1f} kn off the way of her positions"
     silent = f'for {first:.0f} s' if math.isfinite(first) else 'so far'
     of = f' of radar {part}' if kind == alarms.PLOTS_MISSING and part != NO_LONGER else ''
-    then = ': relative bearings only' if kind == alarms.HEADING_MISSING and first < math.inf else ''
+    then = ': relative bearings only' if kind == alarms.HEADING_MISSING and second == 1 else ''
     return f'no {alarms.NAMES[kind].removesuffix(" missing")}{of} {silent}{then}'

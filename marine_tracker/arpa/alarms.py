@@ -125,6 +125,7 @@ class Silence(NamedTuple):
 
     speed_off  m/s, how far own ship's velocity as told is off that of her positions; 0: they agree
     log        s; 0 where it is not asked for
+    bow_only   whether bearings are told relative to the bow only, for want of the heading
     """
 
     heading: float
@@ -132,6 +133,7 @@ class Silence(NamedTuple):
     plots: tuple[float, ...]
     speed_off: float = 0.0
     log: float = 0.0
+    bow_only: bool = False
 
 
 def step(
@@ -196,7 +198,7 @@ def watch(
         *((PLOTS_MISSING, radar, silent) for radar, silent in enumerate(silence.plots)),
     ]
     causes = [
-        (kind, part, _causes(silent > settings.sensor_timeout, silent))
+        (kind, part, _causes(silent > settings.sensor_timeout, silent, silence.bow_only))
         for kind, part, silent in sensors
     ]
     causes.append((OWN_SPEED, 0, _causes(silence.speed_off > 0, silence.speed_off)))

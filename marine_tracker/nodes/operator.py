@@ -120,7 +120,8 @@ class Operator:
         """
         wall = time.monotonic()
         heading, position, log = self.sensors.silent(wall, self.arpa.parameters)
-        silence = alarms.Silence(heading, position, self._overdue(wall), speed_off, log)
+        bow_only = not self.sensors.told(self.arpa.parameters, self.arpa.radars, '')[1].north
+        silence = alarms.Silence(heading, position, self._overdue(wall), speed_off, log, bow_only)
         found, changed = alarms.watch(
             self.memory.arpa.alerts, self.arpa.alarms, silence, self._now()
         )
