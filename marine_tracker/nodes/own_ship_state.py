@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..arpa.arpa import Picture
-from ..arpa.stabilisation import LOG, NO_HEADING, NONE, POSITIONS, SEA
+from ..arpa.stabilisation import LOG, NO_HEADING, NO_SPEED, NONE, POSITIONS, SEA
 from ..geometry import KNOT, to_range_bearing
 from ..parameters import ArpaParameters
 from ..tracking import own_ship
@@ -46,7 +46,7 @@ def sources(
     if math.isnan(heard):
         values['heading from'] = 'never heard'
     if fallback == own_ship.OWN_RECKONED:
-        values['velocity from'] = against.by
+        values['velocity from'] = 'last known' if against.by == NO_SPEED else against.by
     elif fallback in (own_ship.OWN_SILENT, own_ship.OWN_NO_VELOCITY):
         values['velocity from'] = 'not known'
     if not own.north:

@@ -43,7 +43,7 @@ OWN_REASONS = (
 OWN_NEVER_HEARD = 'never heard: taken at rest at the origin'
 OWN_SILENT = 'silent: taken at rest at the last known position'
 OWN_BY_ARRIVAL = 'scans with stamps far from those of own ship: paired as they arrived'
-OWN_RECKONED = 'silent: reckoned by her speed through the water'
+OWN_RECKONED = 'silent: reckoned from the last known position'
 OWN_NO_VELOCITY = 'velocity not known yet: taken at rest'
 
 
@@ -128,15 +128,24 @@ def confirmed(log: OwnShipLog, end: float) -> OwnShipLog:
 def reckoned(
     log: OwnShipLog, end: float, arrival: float, timeout: float, velocity: Array, heading: float
 ) -> OwnShipLog:
-    """The log moved on to `end` s, where own ship was not heard for longer than `timeout` s by our
-    clock: at first by the velocity that she had, then by `velocity` [2] m/s, her way through the
-    water; nan: not known, she stays where she is. heading: rad, of now."""
+    """The log moved on to `end` s, if own ship was not heard for over `timeout` s of our clock.
+
+    velocity  [2] m/s, her way through the water; nan: not known, she goes on as she did
+    heading   rad, of now
+
+    The first step is by the velocity that she had, so nothing jumps: motion relative to her stays
+    right.
+    """
     waited, velocity = log.beat.waited(arrival), np.reshape(velocity, (1, 2))
     late = waited > timeout and len(log.taken.time) and end > log.taken.time[-1]
-    if not late or np.isnan(velocity).any():
+    if not late:
         return log
     last = take(log.taken, slice(-1, None))
-    before = velocity if log.reckoned else chosen(last, log.off, AUTO)[0]
+    before = chosen(last, log.off, AUTO)[0]
+    if np.isnan(velocity).any():
+        velocity = before
+    elif log.reckoned:
+        before = velocity
     now = last.position + (end - last.time[0]) * before
     sample = Samples(np.array([end]), now, velocity, velocity, np.array([heading]))
     taken = take(append(log.taken, sample), slice(-MAX_OWN_SAMPLES, None))
