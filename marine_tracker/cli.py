@@ -5,6 +5,7 @@ import importlib
 import os
 import sys
 from importlib import metadata
+from typing import NoReturn
 
 from .processes import one_thread, stop_on_sigterm
 
@@ -62,7 +63,7 @@ def main(arguments: list[str] | None = None) -> int:
 class _Parser(argparse.ArgumentParser):
     """A parser that reports a usage error in one line."""
 
-    def error(self, message):
+    def error(self, message: str) -> NoReturn:
         self.exit(2, f'{self.prog}: {message} (see {self.prog} --help)\n')
 
 

@@ -1,4 +1,4 @@
-"""Files read with bounds, and written whole or not at all."""
+"""Reads files with limits. Writes files completely or not at all."""
 
 import contextlib
 import os
@@ -17,19 +17,19 @@ Place = str | os.PathLike[str]  # of a file
 
 
 def shown(value: Any) -> str:
-    """The value as a message tells it: as Python writes it, long ones cut."""
+    """The value as shown in a message: as Python writes it; long ones are cut."""
     text = _BRIEF.repr(value)
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + '...'
 
 
 def shortened(text: Any) -> str:
-    """A name or path as a message tells it: in one line, long ones cut."""
+    """A name or path as shown in a message: in one line; long ones are cut."""
     line = ' '.join(str(text).split())
     return line if len(line) <= 200 else line[:197] + '...'
 
 
 def regular(path: Place) -> Path:
-    """The path, if it is that of a regular file; else ValueError (OSError where there is none).
+    """The path, if it is a regular file; else ValueError (OSError if it does not exist).
 
     A pipe or a device might never end, or never begin.
     """
@@ -42,7 +42,7 @@ def regular(path: Place) -> Path:
 def read_text(path: Place, limit: int) -> str:
     """The text of a regular file in UTF-8 of at most `limit` bytes.
 
-    ValueError, in one line, where it is none; OSError where it cannot be read.
+    ValueError, in one line, if it is not such a file; OSError if it cannot be read.
     """
     path = regular(path)
     with open(path, 'rb') as file:
@@ -61,10 +61,10 @@ def read_text(path: Place, limit: int) -> str:
 
 @contextlib.contextmanager
 def written(path: Place, mode: str = 'w', **options: Any) -> Iterator[IO[Any]]:
-    """A file to write, which takes its place only when the block has ended well.
+    """A file to write. It replaces `path` only if the block ends without an error.
 
-    It is written beside `path` and renamed. An error, SIGINT or a full disk leaves what was there
-    before. What is there and is no regular file (a pipe, /dev/null) is written to directly.
+    It is written next to `path` and then renamed. After an error, SIGINT or a full disk, the old
+    file is unchanged. If `path` is not a regular file (a pipe, /dev/null), it is written directly.
     mode, options  as for `open`
     """
     path = Path(os.path.realpath(path))
@@ -93,6 +93,6 @@ def written(path: Place, mode: str = 'w', **options: Any) -> Iterator[IO[Any]]:
 
 
 def write_text(path: Place, text: str) -> None:
-    """Write a text file, whole or not at all."""
+    """Writes a text file, completely or not at all."""
     with written(path) as file:
         file.write(text)

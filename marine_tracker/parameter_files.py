@@ -7,6 +7,7 @@ import dataclasses
 import json
 import textwrap
 from pathlib import Path
+from typing import Any
 
 from . import yaml_file
 from .files import write_text
@@ -15,12 +16,12 @@ from .parameters import NODES
 COMMAND = 'python -m marine_tracker.parameter_files'
 
 
-def fields(node: str) -> list[dataclasses.Field]:
+def fields(node: str) -> list[dataclasses.Field[Any]]:
     """All parameters of a node."""
     return [field for kind in NODES[node] for field in dataclasses.fields(kind)]
 
 
-def limits(field) -> str:
+def limits(field: dataclasses.Field[Any]) -> str:
     """The values a parameter may take, in words; '' when any will do."""
     about = field.metadata
     if about['choices']:
@@ -34,7 +35,7 @@ def limits(field) -> str:
     return f'{about["low"]:g} to {about["high"]:g}'
 
 
-def yaml_value(value) -> str:
+def yaml_value(value: Any) -> str:
     """A parameter's value as YAML that every reader takes for the same type."""
     if isinstance(value, str):
         # Not null, and none of the words that YAML 1.1, which ROS reads, takes for a bool.

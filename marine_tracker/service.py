@@ -79,7 +79,7 @@ class Service:
         tracker: TrackerParameters,
         arpa: ArpaParameters | None = None,
         estimator: Estimator | None = None,
-    ):
+    ) -> None:
         self.tracker = Tracker(tracker, estimator)
         self.extents = Extents(tracker)
         self.arpa = Arpa(arpa or ArpaParameters(), self.tracker.parameters)

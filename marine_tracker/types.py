@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+FloatArray = NDArray[np.floating[Any]]  # of float32 as well, for the trained networks
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 CodeArray = NDArray[np.int8]  # one of a few named numbers, such as Tracks.status

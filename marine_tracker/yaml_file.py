@@ -1,10 +1,9 @@
-"""YAML 1.2 and JSON from people's hands, read with bounds: the one reader of the package.
+"""Reads YAML 1.2 and JSON written by people, with limits. The only such reader in the package.
 
-What it takes for numbers are decimal numbers, as in JSON: `045` is 45, `1:30` and `0x1f` are texts,
-and so are `yes` and `off`. A key may be there once. Size, depth, number of values (aliases counted
-as often as they are used) and size of integers have limits, for a file that exceeds them is none
-that someone wrote. Every error is a ValueError of one line that names the file, the line in it, the
-key, the value and the limit.
+Numbers are decimal numbers, as in JSON: `045` is 45; `1:30`, `0x1f`, `yes` and `off` are texts. A
+key may occur only once. Size, depth, number of values (aliases count as often as they are used) and
+size of integers have limits, which no file written by a person exceeds. Every error is a ValueError
+of one line that names the file, the line in it, the key, the value and the limit.
 """
 
 import json
@@ -38,19 +37,19 @@ TEXT_TAGS = ('!', '!!str', 'tag:yaml.org,2002:str')
 
 
 class _Found(NamedTuple):
-    """A value, and how many values it holds with itself, aliases followed."""
+    """A value, and the number of values in it, including itself and those of aliases."""
 
     value: Any
     size: int
 
 
 def read(path: Place) -> Any:
-    """What a YAML file holds. ValueError for one that is wrong, OSError where none can be read."""
+    """The content of a YAML file. ValueError if it is wrong, OSError if it cannot be read."""
     return parse(read_text(path, MAX_BYTES), shortened(path))
 
 
 def read_mapping(path: Place) -> dict[str, Any]:
-    """A YAML file that holds one mapping (empty counts as none); errors name the file."""
+    """A YAML file that holds one mapping (empty: an empty mapping). Errors name the file."""
     values = read(path)
     if values is None:
         return {}
@@ -65,7 +64,7 @@ def read_json(path: Place) -> dict[str, Any]:
 
 
 def parse_json(text: str, name: str) -> dict[str, Any]:
-    """The one object of a JSON text, under the same limits; `name` says what the text is."""
+    """The one object of a JSON text, under the same limits; `name` describes the text."""
 
     def pairs(items: list[tuple[str, Any]]) -> dict[str, Any]:
         made: dict[str, Any] = {}
@@ -94,10 +93,10 @@ def parse_json(text: str, name: str) -> dict[str, Any]:
 
 
 def parse(text: str, name: str, *, as_text: bool = False) -> Any:
-    """What a YAML text holds: dict, list, str, int, float, bool or None.
+    """The content of a YAML text: dict, list, str, int, float, bool or None.
 
-    name     what the text is, for errors
-    as_text  every scalar stays the text that was written
+    name     describes the text, for errors
+    as_text  every scalar stays a text, as written
     """
     if len(text) > MAX_BYTES:
         raise ValueError(f'{name}: {len(text)} characters; it must be {MAX_BYTES} at most')
@@ -113,12 +112,14 @@ def _events(text: str, name: str) -> Iterator[Any]:
         place = f'{name}, line {mark.line + 1}' if mark else name
         why = error.problem or error.context or 'it cannot be read'
         raise ValueError(f'{place} is not YAML: {shortened(why)}') from None
-    except Exception as error:  # of broken texts the library raises more than its own errors
+    except Exception as error:  # for broken texts the library also raises other errors than its own
         raise ValueError(f'{name} is not YAML: {shortened(error)}') from None
 
 
 class _Composer:
-    """Values from the events of the parser; a stack of open collections, no recursion."""
+    """Builds values from the events of the parser, with a stack of open collections, without
+    recursion.
+    """
 
     def __init__(self, name: str, as_text: bool):
         self.name = name
@@ -206,7 +207,7 @@ class _Composer:
             collection.wants_key = True
 
     def _place(self, event: Any) -> str:
-        """File, line and key of what the event brings."""
+        """File, line and key of the event's value."""
         keys = ''
         for collection in self.open:
             if not isinstance(collection.value, dict):

@@ -54,7 +54,15 @@ def installed(tmp_path_factory):
         ROOT,
         source,
         ignore=shutil.ignore_patterns(
-            '.*', '__pycache__', '*.egg-info', 'build', 'install', 'log', 'test', 'tracks.csv'
+            '.*',
+            'node_modules',
+            '__pycache__',
+            '*.egg-info',
+            'build',
+            'install',
+            'log',
+            'test',
+            'tracks.csv',
         ),
     )
     run = subprocess.run(

@@ -214,7 +214,7 @@ def acknowledge(
 ) -> tuple[Alerts, Alerts]:
     """The operator has seen one alert, all of a kind, all of a target, or all (alerts.py).
 
-    duration  s, after which it is to be acknowledged anew; 0: not before its cause has ended
+    duration  s, after which it must be acknowledged again; 0: not before its cause has ended
     """
     until = now + duration if duration > 0 else np.inf
     return machine.acknowledge(alerts, now, MOMENTARY, kind, number, until, REMEMBERED)

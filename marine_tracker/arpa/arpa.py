@@ -98,7 +98,7 @@ class Arpa:
     the zones are wrong.
     """
 
-    def __init__(self, parameters: ArpaParameters, tracker: TrackerParameters):
+    def __init__(self, parameters: ArpaParameters, tracker: TrackerParameters) -> None:
         p = self.parameters = parameters
         self.radars = radars_of(tracker)
         self.limits = situation.Limits(p.cpa_limit_nm * NAUTICAL_MILE, 60 * p.tcpa_limit_min)

@@ -38,7 +38,9 @@ def marked(
     row = row_of(situation.id, alerts.id)
     new = dangers & ~np.isnan(alerts.until) & (row >= 0)
     new &= np.append(situation.danger, SAFE)[row] == DANGEROUS
-    worse = _known(situation, limits, now) - _clearly(limits)
+    known = _known(situation, limits, now)
+    known[:, 0] = np.minimum(known[:, 0], limits.cpa)  # likely below it, or it were no danger
+    worse = known - _clearly(limits)
     worse = np.append(worse, [[np.nan, np.nan]], 0)[row]  # -1, gone away: the last
     mark = np.where(new[:, None] & np.isnan(alerts.mark), worse, alerts.mark)
     return alerts._replace(mark=mark)

@@ -8,6 +8,8 @@ measured if it is installed (extra `bench`). The estimator's own part of the ste
 traffic and Stone Soup.
 """
 
+from argparse import ArgumentParser, Namespace
+
 from ..estimators import ESTIMATORS
 from ..evaluation import benchmark, report
 from ..processes import keep_freed_memory, peak_memory_mb
@@ -23,7 +25,7 @@ MANY_TARGETS = 50000  # the two limits below hold for this number
 MOST_SCAN_MS, MOST_MB = 1000.0, 1000.0  # CPU time of a scan; memory of the process
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the command line of `bench`."""
     parser.add_argument(
         '--tracks',
@@ -49,7 +51,7 @@ def add_arguments(parser) -> None:
     report.add_arguments(parser)
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Prints the table. Returns 1 if a ratio misses its limit."""
     for name, least in (('tracks', 1), ('clutter', 0), ('scans', 1)):
         if getattr(args, name) < least:

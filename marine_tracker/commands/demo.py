@@ -11,6 +11,7 @@ import signal
 import sys
 import threading
 import time
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +50,7 @@ PLAIN_EVERY_S = 2.0  # s between two tables if there is no terminal
 PPI = 'ppi_display'
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the options of the command."""
     source = parser.add_mutually_exclusive_group()
     source.add_argument(
@@ -81,7 +82,7 @@ def add_arguments(parser) -> None:
     )
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Returns 0 after a requested stop, 1 if a process died or ROS is missing."""
     stop = threading.Event()
 

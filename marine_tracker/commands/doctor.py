@@ -10,6 +10,7 @@ import json
 import os
 import subprocess
 import sys
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
 from importlib import metadata
 from importlib.util import find_spec
@@ -81,7 +82,7 @@ class Check(NamedTuple):
     required: bool = False
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the command line of `doctor`."""
     parser.add_argument(
         '--listen',
@@ -96,7 +97,7 @@ def add_arguments(parser) -> None:
     )
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Prints the checks. Returns 0 if all required things are there, else 1."""
     if not 0 <= args.listen <= 60:
         raise ValueError(f'--listen is {args.listen:g} s; it must be between 0 and 60')

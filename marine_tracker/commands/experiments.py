@@ -2,6 +2,7 @@
 
 import inspect
 import sys
+from argparse import ArgumentParser, Namespace
 from contextlib import ExitStack
 
 from ..evaluation import report
@@ -13,7 +14,7 @@ from .progress_bar import progress_bar
 HELP = 'reproduce published figures'
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the command line of `experiments`."""
     names = parser.add_subparsers(title='experiments', metavar='NAME', required=True)
     for name, experiment in EXPERIMENTS.items():
@@ -47,7 +48,7 @@ def _has_parts(experiment):
     return 'workers' in inspect.signature(experiment.run).parameters
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Prints the table. Returns 1 if a figure misses its limit."""
     if args.runs < 1:
         raise ValueError(f'--runs is {args.runs}; it must be at least 1')

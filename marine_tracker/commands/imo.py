@@ -14,6 +14,8 @@ thousand runs of all parts take about twenty minutes on two processors, longer w
 """
 
 import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -21,6 +23,7 @@ from ..conformance import accuracy, encounters, figures, loss, manoeuvres, page
 from ..conformance.accuracy import A823, MINUTES, Outcome, a823_trial
 from ..estimators import ESTIMATORS
 from ..evaluation import report
+from ..evaluation.parallel import Workers
 from ..parameters import TrackerParameters
 from . import worker_options
 from .progress_bar import progress_bar
@@ -30,7 +33,7 @@ PARTS = ('accuracy', 'manoeuvres', 'encounters', 'loss')
 ALL = ('gwnn', 'cs_kalman', 'imm')
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the command line of `imo`."""
     parser.add_argument(
         '--runs', type=int, default=1000, metavar='N', help='Monte Carlo runs (default 1000)'
@@ -58,7 +61,7 @@ def add_arguments(parser) -> None:
     report.add_arguments(parser)
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Prints the figures. Returns 1 if one misses its limit."""
     for name, least in (('runs', 1), ('seed', 0)):
         if getattr(args, name) < least:
@@ -79,7 +82,9 @@ def run(args) -> int:
     )
 
 
-def measure(estimators, parts, runs, seed, workers) -> figures.Results:
+def measure(
+    estimators: Sequence[str], parts: Sequence[str], runs: int, seed: int, workers: Workers
+) -> figures.Results:
     """Runs the requested parts."""
     found = figures.Results(estimators, {}, {})
     if 'accuracy' in parts:

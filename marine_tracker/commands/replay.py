@@ -2,6 +2,7 @@
 
 import contextlib
 import sys
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Iterator
 
 from ..estimators import WANT_DOPPLER
@@ -15,7 +16,7 @@ from . import tracker_options
 HELP = 'track a recording or a scenario into a CSV file, without ROS'
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the command line of `replay`."""
     parser.add_argument(
         'source',
@@ -37,7 +38,7 @@ def add_arguments(parser) -> None:
     tracker_options.add_arguments(parser)
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Writes the track file and prints one line about what was tracked."""
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')

@@ -5,6 +5,7 @@ A scenario is the name of a shipped one, or a YAML file of your own. For the for
 """
 
 import sys
+from argparse import ArgumentParser, Namespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from ..simulation import radar, scenario
 HELP = 'list, check, show or write scenarios'
 
 
-def add_arguments(parser):
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the sub-commands and their options."""
     commands = parser.add_subparsers(title='what to do', metavar='ACTION', required=True)
     listed = commands.add_parser('list', help='the shipped scenarios')
@@ -35,7 +36,7 @@ def add_arguments(parser):
     written.set_defaults(action=_write)
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Runs the sub-command. Returns 1 if a checked file is wrong."""
     return args.action(args)
 

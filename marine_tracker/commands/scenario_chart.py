@@ -4,13 +4,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..files import written
+from ..files import Place, written
 from ..geometry import NAUTICAL_MILE
+from ..simulation.scenario import Scenario
 
 STEPS = 241
 
 
-def draw(loaded, file):
+def draw(loaded: Scenario, file: Place) -> None:
     """Draws the paths of own ship and targets into an image file, out to the radar's range.
 
     A dot marks each start. The circles are the radar's range at the start and at the end.

@@ -10,6 +10,7 @@ the frame's zero ("origin": [55.0, 7.0]). `scenario write` writes them for a sce
 """
 
 import sys
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from ..evaluation import ais_score, metrics, report, screened
@@ -19,7 +20,7 @@ from ..simulation import ais_file
 HELP = 'tell how good a track file is on a recording'
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the command line of `score`."""
     parser.add_argument('folder', metavar='FOLDER', help='recording with truth.csv')
     parser.add_argument('tracks', metavar='TRACKS.csv', nargs='+', help='track file to score')
@@ -88,7 +89,7 @@ def add_arguments(parser) -> None:
     parser.epilog = 'figures:\n' + '\n'.join(lines)
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Prints the figures. Always returns 0, because there are no limits."""
     recording, remarks = screened.read(args.folder)
     for remark in remarks:

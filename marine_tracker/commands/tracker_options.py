@@ -1,11 +1,14 @@
 """The options of a command that set the tracker's parameters."""
 
+from argparse import ArgumentParser, Namespace
+from typing import Any
+
 from .. import yaml_file
 from ..estimators import ESTIMATORS
 from ..parameters import TrackerParameters, from_mapping
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds --estimator, --parameters and --set."""
     parser.add_argument(
         '--estimator', choices=sorted(ESTIMATORS), help='filter to use (default: the shipped one)'
@@ -24,7 +27,7 @@ def add_arguments(parser) -> None:
     )
 
 
-def parameters(args, from_source: dict) -> TrackerParameters:
+def parameters(args: Namespace, from_source: dict[str, Any]) -> TrackerParameters:
     """The parameters: defaults, then the source's, then --parameters, then --set, --estimator.
 
     Later ones replace earlier ones.

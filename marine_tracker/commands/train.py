@@ -1,6 +1,7 @@
 """Trains the weights of an estimator again."""
 
 import json
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from ..evaluation import report
@@ -37,7 +38,7 @@ STAGES = {
 }
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the command line of `train`."""
     names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
     _add_gwnn(names.add_parser('gwnn', help='the wavelet network of `gwnn`', description=GWNN))
@@ -110,7 +111,7 @@ def _add_gwnn(sub) -> None:
     sub.set_defaults(train=_train_gwnn)
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Writes the weights and prints how good they are."""
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')

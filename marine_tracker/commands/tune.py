@@ -5,6 +5,8 @@ position error one scan ahead. The figures are also given for new tracks that th
 see. It takes some minutes of one processor.
 """
 
+from argparse import ArgumentParser, Namespace
+
 from ..estimators.gwnn import bank
 from ..evaluation import report
 from ..parameters import VESSEL_CLASSES
@@ -26,7 +28,7 @@ FILTERS = {
 CLEAR = 0.995  # ratio of errors; below it settings are clearly better than the shipped ones
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds the command line of `tune`."""
     names = parser.add_subparsers(title='estimators', metavar='NAME', required=True)
     for name, (what, evaluations) in FILTERS.items():
@@ -76,7 +78,7 @@ def _shipped(name: str, vessel_class: str) -> dict[str, filter_families.Settings
     return {'training': getattr(TUNED[vessel_class], name)}
 
 
-def run(args) -> int:
+def run(args: Namespace) -> int:
     """Prints the settings found, with the results of them and of the shipped ones."""
     for name, least in (('evaluations', 1), ('tracks', filter_tuning.LEAST_TRACKS), ('seed', 0)):
         if getattr(args, name) < least:

@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -11,7 +12,7 @@ from ..processes import keep_freed_memory, one_thread
 CONNECT_S = 10.0  # s for a scheduler to answer, and then for a first worker
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds --processes and --scheduler."""
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
@@ -30,7 +31,7 @@ def add_arguments(parser) -> None:
 
 
 @contextmanager
-def workers(args) -> Iterator[Workers]:
+def workers(args: Namespace) -> Iterator[Workers]:
     """The workers that run the parts, while the context lasts. ValueError says what is wrong."""
     if args.scheduler is None:
         if args.processes < 1:

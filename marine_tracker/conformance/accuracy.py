@@ -80,7 +80,7 @@ def a823_limits(number: int, minutes: int) -> Array:
     return np.array(A823[minutes][number])
 
 
-def msc192_limits(truth, minutes: int) -> Array:
+def msc192_limits(truth: Array, minutes: int) -> Array:
     """[6] in UNITS for the true figures [6], nan where there is no limit.
 
     Limits of speeds are a share of the speed if that is more.
@@ -91,7 +91,7 @@ def msc192_limits(truth, minutes: int) -> Array:
     return limits
 
 
-def figures_of(position, velocity, true_velocity) -> Array:
+def figures_of(position: Array, velocity: Array, true_velocity: Array) -> Array:
     """FIGURES [..., 6] from relative position [..., 2] m and relative and true velocity [..., 2]
     m/s.
     """
@@ -107,7 +107,7 @@ def figures_of(position, velocity, true_velocity) -> Array:
     )
 
 
-def told(output: Output, place) -> Array:
+def told(output: Output, place: Array) -> Array:
     """FIGURES [6] of the shown target nearest to `place` [2] m from own ship, or nan."""
     approach, place_of = output.picture.approach, shown(output)
     if np.isnan(place_of).all():

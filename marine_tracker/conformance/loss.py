@@ -15,7 +15,7 @@ from ..service import service_for
 from ..simulation import radar, scenario
 from ..simulation.standard_scenarios import REVOLUTION, ROTATION
 from ..tracking.lifecycle import LOST
-from ..types import Array, take
+from ..types import Array, BoolArray, take
 from . import ring_of_ships
 
 BEGIN, MINUTES, AFTER = 10, 10, 14  # scans seen; minutes of gaps; scans unseen
@@ -49,7 +49,7 @@ def run(
     return Kept(*(np.concatenate(column, axis=1) for column in zip(*found)))
 
 
-def pattern(scans: int, count: int, rng: np.random.Generator):
+def pattern(scans: int, count: int, rng: np.random.Generator) -> BoolArray:
     """[scans, count] whether each target has a plot: SHOWN times in every OF scans."""
     blocks = -(-scans // OF)
     shows = np.tile(np.arange(OF) < SHOWN, (blocks, count, 1))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..evaluation.report import Figure, number
 from ..evaluation.result import draw
-from ..files import write_text
+from ..files import Place, write_text
 from .figures import Results, figures, lines
 from .pictures import pictures
 
@@ -23,7 +23,7 @@ it knows that the target keeps its course. A limit that the fit itself misses is
 is not required."""
 
 
-def write(folder, results: Results, title: str, seed: int) -> Path:
+def write(folder: Place, results: Results, title: str, seed: int) -> Path:
     """Writes index.html and pictures into the folder, which is created; returns the page's path."""
     drawn = draw(folder, pictures(results, seed))
     parts = [

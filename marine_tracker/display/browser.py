@@ -37,7 +37,7 @@ class Page:
     requests  addresses that it asked for
     """
 
-    def __init__(self, socket: aiohttp.ClientWebSocketResponse):
+    def __init__(self, socket: aiohttp.ClientWebSocketResponse) -> None:
         self._socket = socket
         self._answers: dict[int, asyncio.Future[dict[str, Any]]] = {}
         self._count = 0
@@ -148,6 +148,9 @@ async def open_page(address: str, width: int = 1280, height: int = 800) -> Async
                         mobile=False,
                     )
                     await page.call('Page.navigate', url=address)
+                    await page.until(
+                        "location.href != 'about:blank' && document.readyState == 'complete'"
+                    )
                     yield page
         finally:
             process.terminate()

@@ -39,7 +39,10 @@ TYPES = {
     'txt': 'text/plain',
 }
 HEADERS = {
-    'Content-Security-Policy': "default-src 'self'; frame-ancestors 'none'; base-uri 'none'",
+    'Content-Security-Policy': (  # the icons of OpenBridge have style attributes
+        "default-src 'self'; style-src-attr 'unsafe-inline'; frame-ancestors 'none'; "
+        "base-uri 'none'"
+    ),
     'X-Content-Type-Options': 'nosniff',
     'Referrer-Policy': 'no-referrer',
     'Cache-Control': 'no-cache',
@@ -78,7 +81,7 @@ class DisplayServer:
         on_command: Callable[[Command], Future[str]],
         anybody_commands: bool = False,
         token: str | None = None,
-    ):
+    ) -> None:
         self._host, self.port = read_address(address)
         self._on_command, self._anybody = on_command, anybody_commands
         self.token = token or access.new_token()
@@ -170,7 +173,8 @@ class DisplayServer:
                 self.port = runner.addresses[0][1]
             started.set()
             while not self._stop.is_set():
-                self._put('pulse', _text('pulse', viewers=len(self._viewers)))
+                pulse = _text('pulse', viewers=len(self._viewers), utc=time.time())
+                self._put('pulse', pulse)
                 try:
                     await asyncio.wait_for(self._stop.wait(), PULSE_S)
                 except TimeoutError:

@@ -95,7 +95,7 @@ def traffic(targets: int, clutter: int, scans: int, seed: int) -> Traffic:
 class Clock:
     """Measures CPU time, s, spent in extrapolation and update."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.spent = 0.0
 
     def time(self, estimator: Estimator) -> Estimator:

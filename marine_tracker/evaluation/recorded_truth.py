@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..geometry import unit_vector
 from ..recording.csv_folder import Recording
-from ..types import Array
+from ..types import Array, IntArray
 from .gospa import assign
 
 WINDOW = 11  # scans around a truth ...
@@ -81,7 +81,7 @@ def seen_by_radar(
     return seen, plotted
 
 
-def by_scan(scan, count: int) -> list[NDArray[np.intp]]:
+def by_scan(scan: IntArray, count: int) -> list[NDArray[np.intp]]:
     """Rows of each scan, from the sorted scan index of each row."""
     return np.split(np.arange(len(scan)), np.searchsorted(scan, np.arange(1, count)))
 

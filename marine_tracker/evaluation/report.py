@@ -4,6 +4,7 @@ import json
 import math
 import sys
 import textwrap
+from argparse import ArgumentParser
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -36,21 +37,25 @@ class Claim(NamedTuple):
     verdict: str
 
 
-def at_most(name: str, value, limit: float, unit: str = '', against: str | None = None) -> Figure:
+def at_most(
+    name: str, value: float | None, limit: float, unit: str = '', against: str | None = None
+) -> Figure:
     """A figure that must not exceed `limit`. A value that could not be measured fails."""
     return Figure(
         name, value, unit, f'<= {limit:g}', value is not None and bool(value <= limit), against
     )
 
 
-def at_least(name: str, value, limit: float, unit: str = '', against: str | None = None) -> Figure:
+def at_least(
+    name: str, value: float | None, limit: float, unit: str = '', against: str | None = None
+) -> Figure:
     """A figure that must reach `limit`. A value that could not be measured fails."""
     return Figure(
         name, value, unit, f'>= {limit:g}', value is not None and bool(value >= limit), against
     )
 
 
-def add_arguments(parser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Adds --json, for every command that measures."""
     parser.add_argument(
         '--json',
@@ -117,7 +122,7 @@ def table(figures: Sequence[Figure]) -> str:
     )
 
 
-def number(value) -> str:
+def number(value: Any) -> str:
     """A value as text: up to four digits after the point; - for None."""
     value = _plain(value)
     if value is None:

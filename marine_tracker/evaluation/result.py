@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..files import written
+from ..files import Place, written
 from .report import Claim, Figure
 
 BORNE_OUT, NOT_BORNE_OUT, IN_PART = 'borne out', 'not borne out', 'borne out in part'
@@ -28,7 +28,7 @@ class Result(NamedTuple):
     pictures: Sequence[Picture] = ()
 
 
-def verdict(holds, otherwise: str = NOT_BORNE_OUT) -> str:
+def verdict(holds: bool, otherwise: str = NOT_BORNE_OUT) -> str:
     """The verdict as text."""
     return BORNE_OUT if holds else otherwise
 
@@ -37,7 +37,7 @@ def silent(done: int, whole: int) -> None:
     """Progress that shows nothing."""
 
 
-def draw(folder, pictures: Sequence[Picture]) -> list[Path]:
+def draw(folder: Place, pictures: Sequence[Picture]) -> list[Path]:
     """Draws all as PNG into the folder, which is created; returns the files. ValueError without
     matplotlib.
     """

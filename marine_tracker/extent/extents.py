@@ -83,7 +83,7 @@ class Extents:
     on  whether the parameters ask for extents
     """
 
-    def __init__(self, parameters: TrackerParameters):
+    def __init__(self, parameters: TrackerParameters) -> None:
         self.parameters = parameters
         self.on = parameters.extent != 'none'
         self.beam_width = float(np.radians(parameters.beam_width_deg))

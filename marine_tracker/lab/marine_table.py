@@ -15,7 +15,7 @@ from ..estimators.contract import Estimator
 from ..evaluation import report
 from ..evaluation.result import Progress, Result, silent
 from ..geometry import polar_to_position, to_range_bearing, unit_vector
-from ..types import Plots, take
+from ..types import Array, Plots, take
 
 HELP = 'CV, IMM and CS-Kalman on a straight run, in turns and on a fast boat'
 RUNS = 100
@@ -61,7 +61,7 @@ def filters() -> dict[str, Estimator]:
     return rows
 
 
-def truth(leg: Leg):
+def truth(leg: Leg) -> tuple[Array, Array]:
     """Position [SCANS, 2] m and velocity [SCANS, 2] m/s, exact on straights and arcs."""
     rate = np.zeros(SCANS)
     rate[FIRST_TURN : FIRST_TURN + leg.turning] = leg.turn_rate
@@ -73,7 +73,9 @@ def truth(leg: Leg):
     return position, leg.speed * unit_vector(course)
 
 
-def errors(estimator: Estimator, leg: Leg, runs: int, seed: int, detection: float = 1.0):
+def errors(
+    estimator: Estimator, leg: Leg, runs: int, seed: int, detection: float = 1.0
+) -> tuple[float, float]:
     """RMS position error m and velocity error m/s per axis. Every run is one track of a batch.
 
     detection  probability of each plot after the first
@@ -98,7 +100,8 @@ def errors(estimator: Estimator, leg: Leg, runs: int, seed: int, detection: floa
         if k >= SETTLED:
             now = estimator.extrapolate(state, time)
             off.append((now.position - position[k], now.velocity - velocity[k]))
-    return tuple(float(np.sqrt(np.mean(np.square([pair[i] for pair in off])))) for i in (0, 1))
+    found = [float(np.sqrt(np.mean(np.square([pair[i] for pair in off])))) for i in (0, 1)]
+    return found[0], found[1]
 
 
 def run(runs: int, seed: int, progress: Progress = silent) -> Result:

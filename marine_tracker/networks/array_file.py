@@ -8,10 +8,12 @@ import io
 import math
 import re
 import zipfile
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..files import regular
+from ..files import Place, regular
 
 MAX_BYTES = 8_000_000  # of a file
 MAX_UNPACKED = 32_000_000
@@ -23,7 +25,7 @@ HEADER = re.compile(
 )
 
 
-def read(path) -> dict[str, np.ndarray]:
+def read(path: Place) -> dict[str, NDArray[Any]]:
     """The arrays of a file by their names.
 
     ValueError where it holds none, or is too large; OSError where it cannot be read.
@@ -56,7 +58,7 @@ def _check(members: list[zipfile.ZipInfo]) -> None:
         raise ValueError('it is packed in a way that is not read')
 
 
-def _array(content: bytes) -> np.ndarray:
+def _array(content: bytes) -> NDArray[Any]:
     """An array from the bytes of a .npy file."""
     if content[:6] != b'\x93NUMPY' or content[6] not in (1, 2):
         raise ValueError('it holds what is no array')

@@ -100,7 +100,7 @@ def draw(design: Design, count: int, rng: np.random.Generator) -> Weights:
     return Weights(inner, outer, np.zeros_like(inner), np.zeros_like(outer))
 
 
-def forward(design: Design, weights: Weights, inputs) -> Passed:
+def forward(design: Design, weights: Weights, inputs: Array) -> Passed:
     """All networks on their inputs [B, I] (eq 1)."""
     layer = np.ones((len(inputs), design.inputs + 1))
     layer[:, :-1] = sigmoid(inputs, design.width)
@@ -115,7 +115,9 @@ def forward(design: Design, weights: Weights, inputs) -> Passed:
     return Passed(layer, value, slopes.reshape(shape), (weights.outer * value).sum(-1))
 
 
-def correct(weights: Weights, passed: Passed, error, step, variable: bool = True) -> Weights:
+def correct(
+    weights: Weights, passed: Passed, error: Array, step: Array, variable: bool = True
+) -> Weights:
     """One step down the gradient of |error|^2 / 2 (eq 5), with momentum where `variable` (eq 6).
 
     error [B, O]: wanted output - output; step [B].
@@ -130,7 +132,7 @@ def correct(weights: Weights, passed: Passed, error, step, variable: bool = True
     return Weights(weights.inner + inner, weights.outer + outer, inner, outer)
 
 
-def hidden_error(weights: Weights, passed: Passed, error):
+def hidden_error(weights: Weights, passed: Passed, error: Array) -> Array:
     """delta [B, C G] of the hidden units, from that of the outputs [B, O] (eq 8)."""
     back = weights.outer * error[..., None]
     if passed.units.shape[1] == 1:
@@ -138,21 +140,22 @@ def hidden_error(weights: Weights, passed: Passed, error):
     return (back * passed.slopes).reshape(len(error), -1)
 
 
-def input_gradient(design: Design, weights: Weights, inputs, error):
+def input_gradient(design: Design, weights: Weights, inputs: Array, error: Array) -> Array:
     """-dE/de0 [B, I]: how fast the squared error falls with the inputs [B, I] (eq 17)."""
     passed = forward(design, weights, inputs)
     back = hidden_error(weights, passed, error)[:, None]
-    return np.matmul(back, weights.inner)[:, 0, :-1] * sigmoid_slope(inputs, design.width)
+    by_layer: Array = np.matmul(back, weights.inner)[:, 0, :-1]
+    return by_layer * sigmoid_slope(inputs, design.width)
 
 
-def momentum(delta):
+def momentum(delta: Array) -> Array:
     """mu [B, n] of the neurons of a layer: each one's share of its squared error [B, n] (eq 7)."""
     square = delta * delta
     total = square.sum(-1, keepdims=True)
     return np.minimum(square / np.where(total > 0, total, 1.0), MAX_MOMENTUM)
 
 
-def first_step(rule: Rule, speed):
+def first_step(rule: Rule, speed: Array) -> Array:
     """A(v): the first step [B] for a plot, for target speeds [B] m/s (eq 9)."""
     if not rule.variable:
         return np.full(len(speed), rule.step)
@@ -164,7 +167,7 @@ def first_step(rule: Rule, speed):
     )
 
 
-def next_step(rule: Rule, step, error, before, far):
+def next_step(rule: Rule, step: Array, error: Array, before: Array, far: float | Array) -> Array:
     """p [B] after the radial error has changed from `before` to `error` [B] m (eq 10).
 
     far [B] or number, m: E2, above which the step grows.
@@ -173,7 +176,15 @@ def next_step(rule: Rule, step, error, before, far):
 
 
 def learn(
-    design: Design, weights: Weights, inputs, wanted, speed, rule: Rule, unit: float, near, far
+    design: Design,
+    weights: Weights,
+    inputs: Array,
+    wanted: Array,
+    speed: Array,
+    rule: Rule,
+    unit: float,
+    near: float | Array,
+    far: float | Array,
 ) -> Weights:
     """The weights after one plot each: steps 1 to 5 of the paper's algorithm.
 

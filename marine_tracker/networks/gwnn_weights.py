@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..files import shortened, shown
 from . import weight_file
@@ -32,7 +33,7 @@ def shipped(vessel_class: str) -> Path:
     return FOLDER / f'gwnn_{vessel_class}.npz'
 
 
-def _arrays(weights: Weights) -> dict[str, np.ndarray]:
+def _arrays(weights: Weights) -> dict[str, NDArray[np.float32]]:
     return {
         f'{name}_{array}': np.asarray(getattr(getattr(weights, name), array), np.float32)
         for name in NETWORKS
@@ -70,7 +71,7 @@ def load(path: str | Path, inputs: int, outputs: dict[str, int]) -> Weights:
     return Weights(networks[0], networks[1], manifest)
 
 
-def _layout(manifest, name: str, what: str) -> Layout:
+def _layout(manifest: dict[str, Any], name: str, what: str) -> Layout:
     layouts = manifest.get('layouts')
     given = layouts.get(name) if isinstance(layouts, dict) else None
     try:
@@ -80,7 +81,9 @@ def _layout(manifest, name: str, what: str) -> Layout:
         raise ValueError(f'{what}: the layout of {name} is {shown(given)}: {error}') from error
 
 
-def _network(name, arrays, form, inputs, outputs, what) -> Network:
+def _network(
+    name: str, arrays: dict[str, NDArray[Any]], form: Layout, inputs: int, outputs: int, what: str
+) -> Network:
     group = group_size(form)
     shapes = {
         'centre': (inputs,),

@@ -45,7 +45,7 @@ def shapes(inputs: int, hidden: int, neurons: int) -> Shapes:
     )
 
 
-def from_vector(vector, form: Shapes) -> Network:
+def from_vector(vector: Array, form: Shapes) -> Network:
     """The network with arrays of the shapes `form`, taken from the vector one after another."""
     ends = np.cumsum([np.prod(shape, dtype=int) for shape in form])
     return Network._make(
@@ -53,7 +53,7 @@ def from_vector(vector, form: Shapes) -> Network:
     )
 
 
-def to_vector(network: Network):
+def to_vector(network: Network) -> Array:
     """All weights and thresholds in one vector."""
     return np.concatenate([array.ravel() for array in network])
 
@@ -63,31 +63,32 @@ def draw(form: Shapes, rng: np.random.Generator, scale: float = 0.35) -> Network
     return Network._make(rng.normal(0, scale, shape) for shape in form)
 
 
-def _activations(network: Network, inputs):
+def _activations(network: Network, inputs: Array) -> Array:
     """Activations of the hidden neurons [N, H, K], before they are sorted."""
     nodes = network.inner_theta
     net = _flat(inputs) @ network.inner.reshape(-1, nodes.size)
     return np.tanh(0.5 * (net - nodes.ravel())).reshape(-1, *nodes.shape)
 
 
-def _flat(array):
+def _flat(array: Array) -> Array:
     """[N, ...] as [N, M]; N may be 0."""
     return array.reshape(len(array), int(np.prod(array.shape[1:])))
 
 
-def bounds(network: Network, inputs):
+def bounds(network: Network, inputs: Array) -> Array:
     """[lower, upper] of the output node, [N, K], for inputs [N, I, K]."""
     hidden = _flat(np.sort(_activations(network, inputs), -1))
     net = hidden @ network.outer.reshape(hidden.shape[1], -1)
     return np.sort(np.tanh(0.5 * (net - network.outer_theta)), -1)
 
 
-def forward(network: Network, inputs):
+def forward(network: Network, inputs: Array) -> Array:
     """Outputs [N] for inputs [N, I, K]."""
-    return bounds(network, inputs).mean(-1)
+    middle: Array = bounds(network, inputs).mean(-1)
+    return middle
 
 
-def jacobian(network: Network, inputs):
+def jacobian(network: Network, inputs: Array) -> Array:
     """d outputs / d `to_vector` [N, P] at inputs [N, I, K]."""
     activation = _activations(network, inputs)
     order = np.argsort(activation, -1)

@@ -12,8 +12,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import DTypeLike
 
-from ..types import Array
+from ..types import Array, FloatArray
 from . import wavelets
 
 BLOCK = 128  # rows at once; their hidden units fit into the processor's cache
@@ -63,7 +64,7 @@ def group_size(layout: Layout) -> int:
 
 
 @lru_cache
-def units(layout: Layout, dtype=np.float64) -> Form:
+def units(layout: Layout, dtype: DTypeLike = np.float64) -> Form:
     """The form of all H hidden units. ValueError for an unknown kind of units."""
     if layout.units == TANH:
         return Sigmoids(0.5 / layout.q)
@@ -74,7 +75,7 @@ def units(layout: Layout, dtype=np.float64) -> Form:
     )
 
 
-def hidden(form: Form, net):
+def hidden(form: Form, net: Array) -> tuple[Array, Array]:
     """Values [..., H] of the units at the net inputs [..., H], and their T [..., H]."""
     if isinstance(form, Sigmoids):
         tanh = np.tanh(form.dilation * net)
@@ -82,14 +83,14 @@ def hidden(form: Form, net):
     return wavelets.hidden(form, net)
 
 
-def slope(form: Form, value, tanh):
+def slope(form: Form, value: Array, tanh: Array) -> Array:
     """Derivatives [..., H] of the units by their net inputs, from the results of `hidden`."""
     if isinstance(form, Sigmoids):
         return form.dilation * (1 - tanh * tanh)
     return wavelets.slope(form, value, tanh)
 
 
-def squash(network: Network, inputs):
+def squash(network: Network, inputs: FloatArray) -> Array:
     """The input layer [N, I + 1]: S of the standardised inputs [N, I], and 1 for the bias."""
     out = np.empty((len(inputs), inputs.shape[1] + 1), network.inner.dtype)
     np.tanh((inputs - network.centre) * (0.5 / network.scale), out=out[:, :-1])
@@ -97,7 +98,7 @@ def squash(network: Network, inputs):
     return out
 
 
-def forward(network: Network, inputs):
+def forward(network: Network, inputs: FloatArray) -> Array:
     """Outputs [N, O] for inputs [N, I]."""
     form, outer = units(network.layout, network.inner.dtype), connect(network.outer)
     out = np.empty((len(inputs), network.layout.outputs), network.inner.dtype)
@@ -108,7 +109,7 @@ def forward(network: Network, inputs):
     return out
 
 
-def connect(outer):
+def connect(outer: Array) -> Array:
     """The local connection [O, G] as one matrix [H, O], zero elsewhere."""
     count, group = outer.shape
     matrix = np.zeros((count, group, count), outer.dtype)
@@ -117,7 +118,9 @@ def connect(outer):
     return matrix.reshape(-1, count)
 
 
-def backward(network: Network, form: Form, layer, value, tanh, gradient):
+def backward(
+    network: Network, form: Form, layer: Array, value: Array, tanh: Array, gradient: FloatArray
+) -> tuple[Array, Array, Array]:
     """Gradients of a loss by inner, outer and bias, from its gradient [N, O] by the outputs.
 
     layer, value, tanh: the results of `squash` and `hidden` in the forward pass.
@@ -130,7 +133,7 @@ def backward(network: Network, form: Form, layer, value, tanh, gradient):
     return layer.T @ spread, outer, gradient.sum(0)
 
 
-def jacobian(network: Network, inputs):
+def jacobian(network: Network, inputs: FloatArray) -> Array:
     """d outputs / d inputs [N, O, I] at the inputs [N, I]."""
     form = units(network.layout, network.inner.dtype)
     layer = squash(network, inputs)
@@ -138,11 +141,17 @@ def jacobian(network: Network, inputs):
     count, group = network.outer.shape
     slopes = (slope(form, value, tanh) * network.outer.reshape(-1)).reshape(-1, count, group)
     inner = network.inner[:-1].reshape(-1, count, group).transpose(1, 2, 0)
-    by_layer = np.matmul(slopes.transpose(1, 0, 2), inner).transpose(1, 0, 2)
+    by_layer: Array = np.matmul(slopes.transpose(1, 0, 2), inner).transpose(1, 0, 2)
     return by_layer * ((1 - layer[:, None, :-1] ** 2) * (0.5 / network.scale))
 
 
-def start(layout: Layout, centre, scale, rng: np.random.Generator, dtype=np.float32) -> Network:
+def start(
+    layout: Layout,
+    centre: FloatArray,
+    scale: FloatArray,
+    rng: np.random.Generator,
+    dtype: DTypeLike = np.float32,
+) -> Network:
     """Random weights: net inputs that spread over the translations, and small outputs."""
     inputs, group = len(centre), group_size(layout)
     inner = rng.normal(0, 1.5 * layout.q / np.sqrt(inputs), (inputs + 1, layout.outputs * group))

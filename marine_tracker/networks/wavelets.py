@@ -15,6 +15,7 @@ addition theorem of tanh each is a fraction in one T = S(t). `hidden` computes t
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import DTypeLike
 from scipy.optimize import minimize_scalar
 
 from ..types import Array
@@ -25,32 +26,32 @@ MAX_SPACING = 3.5  # b, the paper's upper limit for a frame
 MIN_Q = 0.2  # below this, S(2) is so near 1 that the quotients lose precision
 
 
-def sigmoid(t, q: float):
+def sigmoid(t: float | Array, q: float) -> Array:
     """S(t)."""
     return np.tanh(t / (2 * q))
 
 
-def sigmoid_slope(t, q: float):
+def sigmoid_slope(t: float | Array, q: float) -> Array:
     """S'(t), at most 1 / 2q."""
     return (1 - np.tanh(t / (2 * q)) ** 2) / (2 * q)
 
 
-def scaling(t, q: float, d: float = D):
+def scaling(t: float | Array, q: float, d: float = D) -> Array:
     """phi(t): even, positive, bell-shaped (eq 12)."""
     return sigmoid(t + d, q) - sigmoid(t - d, q)
 
 
-def scaling_slope(t, q: float, d: float = D):
+def scaling_slope(t: float | Array, q: float, d: float = D) -> Array:
     """phi'(t)."""
     return sigmoid_slope(t + d, q) - sigmoid_slope(t - d, q)
 
 
-def wavelet(t, q: float, d: float = D, p: float = P):
+def wavelet(t: float | Array, q: float, d: float = D, p: float = P) -> Array:
     """psi(t): odd, of zero mean (eq 13)."""
     return scaling(t + p, q, d) - scaling(t - p, q, d)
 
 
-def wavelet_slope(t, q: float, d: float = D, p: float = P):
+def wavelet_slope(t: float | Array, q: float, d: float = D, p: float = P) -> Array:
     """psi'(t): even."""
     return scaling_slope(t + p, q, d) - scaling_slope(t - p, q, d)
 
@@ -87,7 +88,7 @@ def units(
     q: float,
     spacing: float = 1.0,
     groups: int = 1,
-    dtype=np.float64,
+    dtype: DTypeLike = np.float64,
 ) -> Units:
     """`groups` equal groups of n (M + 2) units for M = `levels`, n = `translations`, b = `spacing`.
 
@@ -120,7 +121,7 @@ def units(
     return Units(*(np.tile(column, groups).astype(dtype) for column in group))
 
 
-def hidden(form: Units, net):
+def hidden(form: Units, net: Array) -> tuple[Array, Array]:
     """Values [..., H] of the units at the net inputs [..., H], and their T [..., H]."""
     tanh = net * form.dilation
     tanh -= form.shift
@@ -134,7 +135,7 @@ def hidden(form: Units, net):
     return value, tanh
 
 
-def slope(form: Units, value, tanh):
+def slope(form: Units, value: Array, tanh: Array) -> Array:
     """Derivatives [..., H] of the units by their net inputs, from the results of `hidden`."""
     square = tanh * tanh
     rest = 1 - square

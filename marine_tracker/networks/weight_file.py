@@ -2,20 +2,22 @@
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import yaml_file
 from ..files import shortened, shown, written
+from ..types import Array
 from . import array_file
 
 FOLDER = Path(__file__).parent / 'weights'
 
 
-def checksum(arrays) -> str:
+def checksum(arrays: Mapping[str, NDArray[Any]]) -> str:
     """SHA-256 over names, shapes and values of the arrays."""
     digest = hashlib.sha256()
     for name in sorted(arrays):
@@ -24,7 +26,7 @@ def checksum(arrays) -> str:
     return digest.hexdigest()
 
 
-def write(path: str | Path, arrays: dict[str, np.ndarray], manifest: dict[str, Any]) -> None:
+def write(path: str | Path, arrays: Mapping[str, NDArray[Any]], manifest: dict[str, Any]) -> None:
     """Writes arrays of float32 and the manifest, which holds `format` and `checksum`."""
     with written(path, 'wb') as file:
         np.savez(file, manifest=np.array(json.dumps(manifest)), **arrays)  # type: ignore[arg-type]
@@ -32,7 +34,7 @@ def write(path: str | Path, arrays: dict[str, np.ndarray], manifest: dict[str, A
 
 def read(
     path: str | Path, kind: str, command: str, form: int, names: Iterable[str]
-) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     """The arrays with the given names, and the manifest.
 
     kind: what the weights are for; command: what writes such files; form: their format. Raises
@@ -53,7 +55,7 @@ def read(
     if manifest.get('format') != form:
         raise ValueError(
             f'{what} has format {shown(manifest.get("format"))}; this version reads {form}: '
-            'train anew'
+            'train again'
         )
     wanted = set(names)
     if set(arrays) != wanted:
@@ -64,7 +66,7 @@ def read(
     return arrays, manifest
 
 
-def checked(values, name: str, shape: tuple[int, ...], what: str):
+def checked(values: Array, name: str, shape: tuple[int, ...], what: str) -> Array:
     """The array, if it has the shape and is finite; else ValueError."""
     if values.shape != shape:
         raise ValueError(

@@ -7,10 +7,14 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from rclpy.service import Service
 from rclpy.subscription import Subscription
+from rclpy.timer import Timer
 
 from . import diagnostics, topics
 from .diagnostics import FAILED, Tally, one_line
@@ -26,7 +30,7 @@ class RunnableNode(Node):
     failures  the counted exceptions, for /diagnostics
     """
 
-    def __init__(self, name: str, **node_arguments):
+    def __init__(self, name: str, **node_arguments: Any) -> None:
         self.failures = Tally((), self.tell)
         self._to_failures: Publisher | None = None
         super().__init__(name, **node_arguments)
@@ -41,27 +45,38 @@ class RunnableNode(Node):
 
     # -- callbacks, guarded ----------------------------------------------------------------------
 
-    def create_subscription(self, msg_type, topic, callback, *arguments, **named):
+    def create_subscription(
+        self,
+        msg_type: type[Any],
+        topic: str,
+        callback: Callable[..., Any],
+        *arguments: Any,
+        **named: Any,
+    ) -> Subscription:
         """As in rclpy."""
         return super().create_subscription(
             msg_type, topic, self._guarded(callback), *arguments, **named
         )
 
-    def create_timer(self, timer_period_sec, callback, *arguments, **named):
+    def create_timer(
+        self, timer_period_sec: float, callback: Callable[..., Any], *arguments: Any, **named: Any
+    ) -> Timer:
         """As in rclpy."""
         return super().create_timer(timer_period_sec, self._guarded(callback), *arguments, **named)
 
-    def create_service(self, srv_type, srv_name, callback, **named):
+    def create_service(
+        self, srv_type: type[Any], srv_name: str, callback: Callable[..., Any], **named: Any
+    ) -> Service:
         """As in rclpy. If the callback fails, the response says so."""
         return super().create_service(
             srv_type, srv_name, self._guarded(callback, _not_done), **named
         )
 
-    def add_on_set_parameters_callback(self, callback):
+    def add_on_set_parameters_callback(self, callback: Callable[..., SetParametersResult]) -> None:
         """As in rclpy. If the callback fails, the change is refused."""
         super().add_on_set_parameters_callback(self._guarded(callback, _refused))
 
-    def add_post_set_parameters_callback(self, callback):
+    def add_post_set_parameters_callback(self, callback: Callable[..., None]) -> None:
         """As in rclpy."""
         super().add_post_set_parameters_callback(self._guarded(callback))
 
@@ -101,7 +116,7 @@ class RunnableNode(Node):
         """The radar that the node belongs to, as in radar_1/radar."""
         return f'{self.get_namespace()}/radar'.strip('/')
 
-    def watch_failures(self, clock) -> None:
+    def watch_failures(self, clock: Clock) -> None:
         """For a node with nothing else on /diagnostics: publishes failures if there are any."""
         self.create_timer(1.0, self._tell_failures, clock=clock)
 
@@ -131,7 +146,7 @@ class RunnableNode(Node):
 
     # -- without event handlers ------------------------------------------------------------------
 
-    def publisher(self, kind, topic: str, quality) -> Publisher:
+    def publisher(self, kind: type[Any], topic: str, quality: QoSProfile) -> Publisher:
         """A publisher without event handlers.
 
         rclpy checks every handler each time it wakes. The handlers of six publishers cost more than
@@ -144,7 +159,9 @@ class RunnableNode(Node):
             event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
         )
 
-    def subscription(self, kind, topic: str, callback, quality) -> Subscription:
+    def subscription(
+        self, kind: type[Any], topic: str, callback: Callable[..., Any], quality: QoSProfile
+    ) -> Subscription:
         """A subscription without event handlers, for the same reason."""
         return self.create_subscription(
             kind,

@@ -7,23 +7,19 @@ Times cross this border as integer nanoseconds, for a float of seconds since 197
 
 import array
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import Point32, Quaternion
+from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import Odometry
-from sensor_msgs.msg import (
-    ChannelFloat32,
-    NavSatFix,
-    NavSatStatus,
-    PointCloud,
-    PointCloud2,
-    PointField,
-)
+from numpy.typing import NDArray
+from sensor_msgs.msg import NavSatFix, NavSatStatus, PointCloud2, PointField
 from std_msgs.msg import Header
 
 from ..geometry import AT_REST, bearing_from_yaw, heading_from, own_ship_at, unit_vector
-from ..types import Array, PolarPlots, Scan
+from ..types import Array, IntArray, PolarPlots, Scan
 from .faults import (
     BAD_LAYOUT,
     BAD_STAMP,
@@ -90,12 +86,13 @@ def header(time_ns: int, frame: str = FRAME) -> Header:
     return Header(stamp=time_message(time_ns), frame_id=frame)
 
 
-def cloud_message(rows, time_ns: int) -> PointCloud2:
+def cloud_message(rows: NDArray[np.void], time_ns: int) -> PointCloud2:
     """A PointCloud2 of a structured array [M] of little-endian fields."""
     kinds = {kind: datatype for datatype, kind in KINDS.items()}
+    layout: Any = rows.dtype
     fields = []
-    for name in rows.dtype.names:
-        kind, offset = rows.dtype.fields[name]
+    for name in layout.names:
+        kind, offset = layout.fields[name]
         fields.append(PointField(name=name, offset=offset, datatype=kinds[kind.str[1:]], count=1))
     return PointCloud2(
         header=header(time_ns),
@@ -192,36 +189,8 @@ def cloud_to_plots(message: PointCloud2) -> PolarPlots:
     return PolarPlots(offset, range_, bearing, amplitude, *speed)
 
 
-def plots_to_readable(scan: Scan, start_ns: int) -> PointCloud:
-    """One revolution for people's eyes.
-
-    Channels range_m, bearing_deg, amplitude_db, time_offset_s, and radial_speed_mps where the radar
-    tells it. Values are rounded to binary fractions, which float32 holds exactly, so that an echo
-    prints 123.25 and not 123.249996.
-    """
-    plots = scan.plots
-    points = [Point32(x=x, y=y) for x, y in _rounded(plots_positions(scan), 2).tolist()]
-    columns = [
-        ('range_m', plots.range, 2),
-        ('bearing_deg', np.degrees(plots.bearing), 8),
-        ('amplitude_db', plots.amplitude, 2),
-        ('time_offset_s', plots.time - scan.start, 8),
-    ]
-    if plots.radial_speed is not None:
-        columns.append(('radial_speed_mps', plots.radial_speed, 16))
-    channels = [
-        ChannelFloat32(name=name, values=array.array('f', _rounded(values, parts).tolist()))
-        for name, values, parts in columns
-    ]
-    return PointCloud(header=header(start_ns), points=points, channels=channels)
-
-
-def _rounded(values, parts: int):
-    return np.round(np.asarray(values) * parts) / parts
-
-
 def own_ship_to_odometry(
-    time_ns: int, position, velocity, heading: float | None = None
+    time_ns: int, position: Array, velocity: Array, heading: float | None = None
 ) -> Odometry:
     """Own ship's position and velocity [2], m and m/s east and north, and heading, rad.
 
@@ -302,10 +271,17 @@ class OdometryPool:
     What `fill` returns is valid until the next `fill`.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._messages: list[Odometry] = []
 
-    def fill(self, times_ns, child_frames, position, velocity, covariance) -> list[Odometry]:
+    def fill(
+        self,
+        times_ns: Sequence[int] | IntArray,
+        child_frames: Sequence[str],
+        position: Array,
+        velocity: Array,
+        covariance: Array,
+    ) -> list[Odometry]:
         """N messages.
 
         times_ns [N] int; child_frames N strings; position, velocity [N, 2] m, m/s;

@@ -50,7 +50,7 @@ def declare(node: Node, *kinds: type) -> tuple[Any, ...]:
     return parameters
 
 
-def descriptor(field) -> ParameterDescriptor:
+def descriptor(field: dataclasses.Field[Any]) -> ParameterDescriptor:
     """The descriptor of a dataclass field in ROS terms."""
     about = field.metadata
     described = ParameterDescriptor(

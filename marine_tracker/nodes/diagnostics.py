@@ -26,7 +26,7 @@ class Tally:
     on_first(reason, detail) is called the first time a reason comes up. The detail is one line.
     """
 
-    def __init__(self, reasons: Iterable[str], on_first: Callable[[str, str], None]):
+    def __init__(self, reasons: Iterable[str], on_first: Callable[[str, str], None]) -> None:
         self.counts: Counter[str] = Counter({reason: 0 for reason in reasons})
         self._last: dict[str, float] = {}
         self._on_first = on_first
@@ -43,7 +43,7 @@ class Tally:
         return [reason for reason, last in self._last.items() if wall - last < FRESH_S]
 
 
-def answered(callback):
+def answered(callback: Callable[[Any, Any], str]) -> Callable[[Any, Any, Any], Any]:
     """Makes a method that returns its answer a callback of a service with success and message."""
 
     @functools.wraps(callback)
@@ -69,7 +69,7 @@ def one_line(text: object, longest: int = LONGEST) -> str:
 class Durations:
     """The last durations of something, s."""
 
-    def __init__(self, count: int = 200):
+    def __init__(self, count: int = 200) -> None:
         self._last: deque[float] = deque(maxlen=count)
 
     def add(self, seconds: float) -> None:

@@ -24,7 +24,7 @@ class TrackerCommands:
     Everything here runs in the node's executor.
     """
 
-    def __init__(self, node: RunnableNode, tracker: str):
+    def __init__(self, node: RunnableNode, tracker: str) -> None:
         self._node, self._tracker = node, tracker
         self._acquire = node.publisher(PointStamped, topics.ACQUIRE, topics.reliable())
         self._numbers = {

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 class ConversionError(ValueError):
     """A message that cannot be read; `reason` is the name of its counter."""
 
-    def __init__(self, reason: str, text: str):
+    def __init__(self, reason: str, text: str) -> None:
         super().__init__(f'{reason}: {text}')
         self.reason = reason
 

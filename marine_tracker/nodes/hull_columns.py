@@ -1,10 +1,13 @@
 """The columns of `targets` about size and heading, with extent on."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..arpa.view import HullView
 from ..extent.hulls import METHODS, SOURCES
 from ..geometry import NAUTICAL_MILE
+from ..types import Array, BoolArray, IntArray
 
 COLUMNS = (
     'length_m',
@@ -19,7 +22,9 @@ COLUMNS = (
 POINT = 'point'  # too small for a size
 
 
-def columns(hulls: HullView, degrees, figure) -> list[list[str]]:
+def columns(
+    hulls: HullView, degrees: Callable[[float], str], figure: Callable[[float, int], str]
+) -> list[list[str]]:
     """The texts of each column, in the order of COLUMNS, a list of one for each target.
 
     degrees, figure: how angles and numbers are written.
@@ -49,7 +54,7 @@ def columns(hulls: HullView, degrees, figure) -> list[list[str]]:
     ]
 
 
-def outlines(hulls: HullView, alive):
+def outlines(hulls: HullView, alive: BoolArray) -> tuple[Array, IntArray]:
     """Closed outlines [H, K + 1, 2] m about their targets' middles, of the extended ones among
     `alive` [N], and the rows [H] of those."""
     rows = (hulls.shapes.extended & alive).nonzero()[0]

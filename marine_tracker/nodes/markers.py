@@ -32,7 +32,7 @@ AMBER, MAGENTA = (1.0, 0.7, 0.1), (0.8, 0.3, 0.8)
 class MarkersWriter:
     """Builds the message. Remembers which labels are shown."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._labelled: set[int] = set()
 
     def message(

@@ -179,7 +179,7 @@ class OwnShipInput:
         timeout: float,
         gps: tuple[float, float],
         count: Callable[[str, str], None],
-    ):
+    ) -> None:
         self._from_fixes = origin is None
         self.anchor = None if origin is None else Anchor(np.zeros(2), origin)
         self._trust, self._timeout, self._gps, self._count = trust, timeout, gps, count
@@ -281,7 +281,7 @@ class OwnShipInput:
             self._count(NO_STAMP, '')
         return time_ns or now_ns
 
-    def target_places(self, time_ns: int, offset) -> tuple[Array, Array]:
+    def target_places(self, time_ns: int, offset: Array) -> tuple[Array, Array]:
         """Latitude and longitude [...] deg at offsets [..., 2] m from own ship; nan if not known.
 
         The offset is laid off from own ship over the Earth, with y true north there, and not in

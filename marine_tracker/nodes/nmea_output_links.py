@@ -66,7 +66,7 @@ class Datagrams:
     error    why the last one could not be sent
     """
 
-    def __init__(self, name: str, text: str):
+    def __init__(self, name: str, text: str) -> None:
         self.destinations = endpoints(name, text)
         self.sent = self.refused = 0
         self.error = ''
@@ -144,7 +144,7 @@ class Clients:
     dropped, refused  number of clients
     """
 
-    def __init__(self, name: str, text: str):
+    def __init__(self, name: str, text: str) -> None:
         self.sent = self.dropped = self.refused = 0
         self._pending: dict[socket.socket, bytearray] = {}
         self._listeners: list[socket.socket] = []
@@ -169,7 +169,7 @@ class Clients:
                     f'{(taken or errors)[0].strerror}'
                 )
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._pending)
 
     def send(self, lines: list[bytes]) -> None:

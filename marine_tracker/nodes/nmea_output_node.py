@@ -7,6 +7,7 @@ or has gone is sent once more as lost. A slow receiver never delays the others.
 
 import time
 import uuid
+from typing import Any
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
@@ -51,7 +52,7 @@ NO_ROOM, TOO_SLOW = 'TCP clients refused for want of room', 'TCP clients dropped
 class NmeaOutputNode(RunnableNode):
     """See the module. ValueError where the parameters are wrong or a port is taken."""
 
-    def __init__(self, **node_arguments):
+    def __init__(self, **node_arguments: Any) -> None:
         super().__init__('nmea_output', **node_arguments)
         (p,) = declare(self, NmeaOutputParameters)
         self._settings = p

@@ -47,7 +47,7 @@ class Operator:
 
     def __init__(
         self, node: RunnableNode, service: Service, sensors: SensorsInput, hardware_id: str
-    ):
+    ) -> None:
         self._node = node
         self._hardware_id = hardware_id
         self.sensors = sensors

@@ -29,6 +29,7 @@ from ..types import OwnShip, Scan, Truth, take
 from . import convert, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
+from .readable_plots import plots_to_readable
 
 FIRST_S = 1.0  # s, where simulated time begins
 TICK_S = 0.05  # longest wait between two looks at the time
@@ -73,7 +74,7 @@ class Playback:
         loop: bool,
         origin: LocalFrame | None = None,
         begin_at: float = 0.0,
-    ):
+    ) -> None:
         if begin_at and rate != 1:
             raise ValueError(
                 f'begin_at_s is {begin_at:g} s beside a rate of {rate:g}; it needs '
@@ -209,7 +210,7 @@ class Playback:
         start_ns = self._stamp(scan.start)
         self._plots.publish(convert.plots_to_cloud(scan, start_ns))
         if self._readable.get_subscription_count():
-            self._readable.publish(convert.plots_to_readable(scan, start_ns))
+            self._readable.publish(plots_to_readable(scan, start_ns))
         if self._truth.get_subscription_count():
             exact = np.zeros((len(truth.time), 4, 4))
             for message in self._pool.fill(

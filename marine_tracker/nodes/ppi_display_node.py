@@ -10,6 +10,7 @@ import time
 from collections import deque
 from concurrent.futures import Future
 from statistics import median
+from typing import Any
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
@@ -37,7 +38,7 @@ BAD_TARGETS, BAD_OWN, BAD_FIX = 'targets not read', 'own ship not finite', 'fixe
 class PpiDisplayNode(RunnableNode):
     """See the module. ValueError for wrong parameters, OSError where the port is taken."""
 
-    def __init__(self, **node_arguments):
+    def __init__(self, **node_arguments: Any) -> None:
         super().__init__('ppi_display', **node_arguments)
         (p,) = declare(self, PpiDisplayParameters)
         self._bad = Tally((*convert.CLOUD_REASONS, BAD_TARGETS, BAD_OWN, BAD_FIX), self.tell)

@@ -44,7 +44,7 @@ class RadarInput:
     taken   scans so far
     """
 
-    def __init__(self, radar: Radar, place: int, tell: Callable[[str, str], None]):
+    def __init__(self, radar: Radar, place: int, tell: Callable[[str, str], None]) -> None:
         self.radar, self._place = radar, place
         self.order = intake.TimeOrder()
         self.bad = Tally(

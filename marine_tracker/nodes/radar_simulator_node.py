@@ -7,6 +7,7 @@ unless it loops.
 """
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from .playback import Playback, Revolution, own_ship_period
 class RadarSimulatorNode(RunnableNode):
     """Plays a scenario. ValueError where the parameters or the scenario are wrong."""
 
-    def __init__(self, **node_arguments):
+    def __init__(self, **node_arguments: Any) -> None:
         super().__init__('radar_simulator', **node_arguments)
         (parameters,) = declare(self, RadarSimulatorParameters)
         chosen = scenario.load(parameters.scenario)

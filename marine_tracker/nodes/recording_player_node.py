@@ -6,6 +6,7 @@ ended, unless it loops. The values of radar.yaml are for the tracker; give them 
 """
 
 from collections.abc import Iterator
+from typing import Any
 
 from ..parameters import RecordingPlayerParameters
 from ..recording import csv_folder
@@ -19,7 +20,7 @@ from .playback import Playback, Revolution
 class RecordingPlayerNode(RunnableNode):
     """Plays a recording. ValueError if the parameters or the recording are wrong."""
 
-    def __init__(self, **node_arguments):
+    def __init__(self, **node_arguments: Any) -> None:
         super().__init__('recording_player', **node_arguments)
         (parameters,) = declare(self, RecordingPlayerParameters)
         if not parameters.folder:

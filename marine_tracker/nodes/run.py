@@ -19,6 +19,9 @@ import os
 import signal
 import sys
 import threading
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
 
 from ..processes import closing, end_in_time, keep_freed_memory
 from . import arguments, log_folder
@@ -34,7 +37,7 @@ LONGEST = 600  # characters of why a node cannot start
 ASKED = (signal.SIGINT, signal.SIGTERM)
 
 
-def on_signals(handler) -> None:
+def on_signals(handler: Callable[[int, FrameType | None], Any] | signal.Handlers) -> None:
     """From now on this handler handles SIGINT and SIGTERM."""
     for number in ASKED:
         signal.signal(number, handler)

@@ -48,7 +48,7 @@ class Picture(NamedTuple):
 class TargetsListener:
     """A node with a context of its own. The caller spins it and handles the signals."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.picture = Picture()
         self._context = Context()
         log_folder.provide()

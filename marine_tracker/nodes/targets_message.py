@@ -57,7 +57,7 @@ MESSAGE = {TENTATIVE: 'ACQUIRING', CONFIRMED: 'TRACKING', COASTING: 'COASTING', 
 class TargetsWriter:
     """Fills one DiagnosticArray again and again; new messages would cost ten times as much."""
 
-    def __init__(self, hardware_id: str):
+    def __init__(self, hardware_id: str) -> None:
         self._hardware_id = hardware_id
         self._keys: tuple[str, ...] = COLUMNS
         self._entries: list[DiagnosticStatus] = []

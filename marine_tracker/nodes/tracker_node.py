@@ -11,6 +11,7 @@ with their status. In `tracks` each one has the time at which the beam passed it
 
 import time
 from functools import partial
+from typing import Any
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -42,7 +43,7 @@ from .tracker_output import TrackerOutput
 class TrackerNode(RunnableNode):
     """See the module. ValueError where the parameters are wrong."""
 
-    def __init__(self, **node_arguments):
+    def __init__(self, **node_arguments: Any) -> None:
         super().__init__('tracker', **node_arguments)
         parameters, arpa_parameters = declare(self, TrackerParameters, ArpaParameters)
         service = Service(parameters, arpa_parameters)
@@ -73,7 +74,7 @@ class TrackerNode(RunnableNode):
         self._to_state = self.publisher(DiagnosticArray, topics.OWN_SHIP_STATE, topics.latched())
 
         # Own ship first: of messages that wait together it is taken first.
-        self._inputs = {}
+        self._inputs: dict[str, tuple[Any, ...]] = {}
         self._mismatched: set[str] = set()
         self._listen(Odometry, topics.ODOMETRY, self._on_odometry, topics.best_available())
         for heard in self.inputs:

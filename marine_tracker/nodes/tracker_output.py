@@ -26,7 +26,7 @@ from .targets_message import TargetsWriter
 class TrackerOutput:
     """The publishers of one tracker node."""
 
-    def __init__(self, node: RunnableNode, hardware_id: str):
+    def __init__(self, node: RunnableNode, hardware_id: str) -> None:
         burst = topics.reliable(topics.BURST)
         self._to_tracks = node.publisher(Odometry, topics.TRACKS, burst)
         self._to_extrapolations = node.publisher(Odometry, topics.EXTRAPOLATIONS, burst)

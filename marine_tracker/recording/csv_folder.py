@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import tables, yaml_file
-from ..files import written
+from ..files import Place, written
 from ..geometry import heading_at, own_ship_at, wrap_bearing
 from ..types import Array, OwnShip, PolarPlots, Scan, Truth, take
 
@@ -63,7 +63,7 @@ class Recording(NamedTuple):
     own_ship: OwnShip
 
 
-def read(folder) -> Recording:
+def read(folder: Place) -> Recording:
     """The recording in a folder; ValueError names the file, the line and what is wrong with it."""
     folder = Path(folder)
     if not folder.is_dir():
@@ -97,7 +97,7 @@ def read(folder) -> Recording:
 
 
 def write(
-    folder,
+    folder: Place,
     name: str,
     pairs: Iterable[tuple[Scan, Truth]],
     tracker_parameters: dict[str, Any],

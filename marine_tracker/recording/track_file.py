@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import tables
+from ..files import Place
 from ..geometry import KNOT, own_ship_at, to_range_bearing, wrap_bearing
-from ..types import Array, Extrapolation, OwnShip
+from ..types import Array, Extrapolation, IntArray, OwnShip
 
 COLUMNS = (
     'time_s',
@@ -91,10 +92,10 @@ def write_scan(
     file: IO[str],
     scan: int,
     tracks: Extrapolation,
-    track,
-    status,
-    predicted,
-    plot,
+    track: IntArray,
+    status: NDArray[np.str_],
+    predicted: Array,
+    plot: IntArray,
     own_ship: OwnShip,
     estimator: str,
     targets: TargetColumns,
@@ -124,7 +125,7 @@ def write_scan(
         )
 
 
-def read(path) -> TrackRows:
+def read(path: Place) -> TrackRows:
     """The rows of a track file, of this or of another tracker. Only the first seven columns are
     required.
 

@@ -8,6 +8,7 @@ neighbouring cells: this is the smear.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..geometry import wrap_bearing
 from ..types import Array, PolarPlots, take
@@ -22,7 +23,7 @@ def cells(
     start: float,
     distance: Array,
     bearing: Array,
-    echo,
+    echo: NDArray[np.complex128],
     random: np.random.Generator,
 ) -> PolarPlots:
     """The cells over the threshold in the revolution that begins at `start` s.

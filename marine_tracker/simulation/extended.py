@@ -61,7 +61,7 @@ def plots(
     shore = shore[shown]
     shore -= (_passed(scenario, start, shore) - own.time[-1])[:, None] * own.velocity[-1]
     power = np.concatenate([power, of.power[shown]])
-    echo = np.sqrt(0.5 * power) * (random.standard_normal((2, len(power))).T @ [1, 1j])
+    echo = np.sqrt(0.5 * power) * (random.standard_normal((2, len(power))).T @ np.array([1, 1j]))
     distance, bearing = to_range_bearing(np.concatenate([offset, shore]))
     return echoes.cells(scenario.radar, start, distance, bearing, echo, random)
 

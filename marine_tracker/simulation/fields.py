@@ -24,7 +24,7 @@ class Section:
     keys    the allowed keys, in one string; `range_m|range_nm` are two spellings of one value
     """
 
-    def __init__(self, values: Any, where: str, keys: str):
+    def __init__(self, values: Any, where: str, keys: str) -> None:
         values = {} if values is None else values  # `straight:` without a value
         if not isinstance(values, Mapping):
             raise ValueError(
@@ -42,7 +42,7 @@ class Section:
         """The name of what the mapping describes."""
         return self.where or 'the scenario'
 
-    def place(self, key) -> str:
+    def place(self, key: Any) -> str:
         """The place of the key in the file."""
         name = shortened(key)
         return f'{self.where}.{name}' if self.where else name

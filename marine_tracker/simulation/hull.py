@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import unit_vector
-from ..types import Array
+from ..types import Array, BoolArray
 from .ships import Fleet
 
 SPACING = 4.0  # m, of scatterers along the outline
@@ -68,7 +68,7 @@ def scatterers(fleet: Fleet, random: np.random.Generator) -> Scatterers:
     return Scatterers(*map(np.concatenate, zip(*parts, strict=True)))
 
 
-def along(corners: Array, spacing: float, random: np.random.Generator):
+def along(corners: Array, spacing: float, random: np.random.Generator) -> tuple[Array, Array]:
     """Points [P, 2] m, one on each stretch of about `spacing` m of a line, and its normals [P, 2].
 
     corners [C, 2] m; the normals, of unit length, point outward where a line runs as OUTLINE does.
@@ -84,7 +84,7 @@ def along(corners: Array, spacing: float, random: np.random.Generator):
     return np.concatenate(points), np.concatenate(normals)
 
 
-def place(of: Scatterers, middle: Array, heading: Array, own: Array):
+def place(of: Scatterers, middle: Array, heading: Array, own: Array) -> tuple[Array, BoolArray]:
     """Offsets [S, 2] m, east and north, from the ships' middles, and which [S] are lit.
 
     middle [S, 2] m and heading [S] rad of each scatterer's ship; own [S, 2] m: the radar.

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..files import shown
 from ..geometry import NAUTICAL_MILE, to_range_bearing
-from ..types import Array
+from ..types import Array, BoolArray
 from .fields import Section
 
 SHORE_KEYS = 'name corners_m|corners_nm closed snr_db'
@@ -87,7 +87,7 @@ def _corner(corner, where, unit):
     return east * unit, north * unit
 
 
-def lit(offset: Array, edge: Array, depth: float):
+def lit(offset: Array, edge: Array, depth: float) -> BoolArray:
     """Which of the scatterers at offsets [S, 2] m from the radar are not hidden by nearer land.
 
     edge   [E, 2]  m, offsets of points along all shores, close to each other

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from ..geometry import unit_vector
-from ..types import Array
+from ..types import Array, FloatArray, Numbers
 
 MAX_TURN_RATE = np.radians(45.0)  # rad/s
 MAX_ACCELERATION = 10.0  # m/s^2
@@ -111,7 +111,9 @@ def table(ways: Sequence[Sequence[Piece]], duration: float) -> Paths:
     return Paths._make([*columns, key, span, len(ways)])
 
 
-def locate_ships(paths: Paths, ship: NDArray[np.int64], time) -> tuple[Array, Array]:
+def locate_ships(
+    paths: Paths, ship: NDArray[np.int64], time: float | FloatArray
+) -> tuple[Array, Array]:
     """Position [..., 2] m and velocity [..., 2] m/s of the numbered ships [...] at times [...]."""
     row = _row(paths, ship, time)
     t = time - paths.start[row]
@@ -137,14 +139,14 @@ def locate_ships(paths: Paths, ship: NDArray[np.int64], time) -> tuple[Array, Ar
     return position, velocity
 
 
-def courses(paths: Paths, ship: NDArray[np.int64], time) -> Array:
+def courses(paths: Paths, ship: NDArray[np.int64], time: float | FloatArray) -> Array:
     """Course [...] rad that the numbered ships [...] steer at times [...], also at rest; 0 of one
     that is driven by reports."""
     row = _row(paths, ship, time)
     return paths.course[row] + paths.curvature[row] * _run(paths, row, time - paths.start[row])
 
 
-def exist(paths: Paths, ship: NDArray[np.int64], time) -> NDArray[np.bool_]:
+def exist(paths: Paths, ship: NDArray[np.int64], time: float | FloatArray) -> NDArray[np.bool_]:
     """Whether the numbered ships [...] exist at times [...]."""
     return paths.exists[_row(paths, ship, time)]
 
@@ -163,7 +165,11 @@ def _row(paths, ship, time):
 
 
 def sail(
-    position, course: float, speed: float, legs: Sequence[Leg] = (), wave: Wave | None = None
+    position: Numbers,
+    course: float,
+    speed: float,
+    legs: Sequence[Leg] = (),
+    wave: Wave | None = None,
 ) -> list[Piece]:
     """The pieces of a ship that starts at time 0 and runs its legs, then keeps course and speed.
 

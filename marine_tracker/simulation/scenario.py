@@ -55,7 +55,7 @@ from numpy.typing import NDArray
 from .. import config, yaml_file
 from ..geometry import NAUTICAL_MILE, heading_from
 from ..parameters import VESSEL_CLASSES, TrackerParameters
-from ..types import OwnShip, Truth
+from ..types import Numbers, OwnShip, Truth
 from . import land, motion, sensor_errors, ships
 from .fields import Section
 from .standard_scenarios import STANDARD
@@ -156,7 +156,7 @@ class Scenario:
         """Whether there are hulls or land, which the radar sees as cells."""
         return bool(np.isfinite(self.fleet.hulls.beam).any() or self.shores)
 
-    def own_ship_at(self, times) -> OwnShip:
+    def own_ship_at(self, times: float | Numbers) -> OwnShip:
         """Own ship's true motion at the times [K]."""
         times = np.atleast_1d(np.asarray(times, dtype=float))
         paths, own = self.fleet.paths, np.zeros(len(times), np.int64)
@@ -210,7 +210,7 @@ def shipped() -> list[str]:
     return sorted([file.stem for file in config.path('scenarios').glob('*.yaml')] + [*STANDARD])
 
 
-def load(name_or_path) -> Scenario:
+def load(name_or_path: str | Path) -> Scenario:
     """The shipped scenario of that name, or that of a file (a path with a folder or ending).
 
     Raises ValueError for any error in it, naming file, place, value and limit.
@@ -237,7 +237,7 @@ def load(name_or_path) -> Scenario:
         raise ValueError(text if text.startswith(str(path)) else f'{path}: {text}') from error
 
 
-def build(values: dict[str, Any], name: str, folder=Path()) -> Scenario:
+def build(values: dict[str, Any], name: str, folder: Path = Path()) -> Scenario:
     """The scenario of a mapping with the form of a file. Its AIS file is looked for in `folder`.
 
     Raises ValueError for any error in it, naming place, value and limit.

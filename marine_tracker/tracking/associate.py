@@ -1,4 +1,4 @@
-"""Which track takes which plot: the best assignment of all, found piece by piece."""
+"""Which track takes which plot: the best assignment of all, solved in parts."""
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -7,14 +7,14 @@ from ..types import Array, IntArray
 from .gate import Pairs
 from .sparse_assignment import best_pairs
 
-FEW = 32  # tracks; a matrix of so few is solved sooner than it is taken apart
+FEW = 32  # tracks; so small a matrix is solved faster than it is split
 # Tracks times plots of a component beyond which it is solved as a graph; and, should that take more
 # than so many looks at a pair, as a matrix after all, unless it had more than so many places.
 LARGE, PATIENCE, HUGE = 250_000, 10, 25_000_000
 
 
 def gain(pairs: Pairs, size: float) -> Array:
-    """What each pair [P] is worth over leaving its track and plot alone: > 0, log-likelihood.
+    """Gain of each pair [P] compared with leaving its track and plot alone: > 0, log-likelihood.
 
     size  of the gate, squared Mahalanobis distance
     """
@@ -43,8 +43,8 @@ def associate(track: IntArray, plot: IntArray, gain: Array, tracks: int, plots: 
         plot_of[track] = plot
         return plot_of
     torn = plots_of_track[track] > 1
-    track_free = np.bincount(track, shared, tracks)[track] == 0  # nobody else wants its plots
-    plot_free = np.bincount(plot, torn, plots)[plot] == 0  # its tracks want nothing else
+    track_free = np.bincount(track, shared, tracks)[track] == 0  # no other track wants its plots
+    plot_free = np.bincount(plot, torn, plots)[plot] == 0  # its tracks want no other plot
     for free, group in ((track_free, track), (plot_free & ~track_free, plot)):
         best = _best_of_each(group, gain, free.nonzero()[0])
         plot_of[track[best]] = plot[best]

@@ -1,9 +1,9 @@
 """Which plots could belong to which tracks.
 
-Plots are sorted once into rings of range, and by bearing within a ring; each track reads the few
-stretches of that order which its window covers. Everything is array work, so at 200 to 1,000
-tracks it takes a fifth of the time of a k-d tree's lists of neighbours. The windows only bound
-the search: the exact chi-square test decides.
+Plots are sorted once into rings of range, and by bearing within a ring. Each track reads the few
+parts of that order that its window covers. All of it is array work: at 200 to 1,000 tracks it takes
+a fifth of the time of a k-d tree's lists of neighbours. The windows only limit the search. The
+exact chi-square test decides.
 """
 
 from typing import NamedTuple
@@ -14,12 +14,12 @@ from ..geometry import to_range_bearing, wrap_angle, wrap_bearing
 from ..types import Array, IntArray, Plots, take
 from .expected import Expected
 from .noise import Noise
-from .pair_budget import fullest, nearest
+from .pair_budget import budget, fullest, nearest
 from .sweep import Sweep
 
 TURN = 2 * np.pi
 HAIR = 1e-8  # rad
-OBLIQUE = 0.07  # sin^2 of the widest angle, asin(1/4), between a plot and its track afar
+OBLIQUE = 0.07  # sin^2 of the widest angle, asin(1/4), between a plot and a distant track
 PLOTS_A_RING = 256
 
 
@@ -46,7 +46,7 @@ def split(pairs: Pairs, count: int) -> tuple[Pairs, Pairs]:
 
 
 def gate_size(probability: float) -> float:
-    """Chi-square quantile with two degrees of freedom: the gate holds a plot so often."""
+    """Chi-square quantile with two degrees of freedom, for the given probability to hold a plot."""
     found: float = -2.0 * np.log1p(-probability)
     return found
 
@@ -69,15 +69,15 @@ def window_pairs(
     """
     if not len(bearing) or not len(plot_range):
         return np.zeros(0, np.int64), np.zeros(0, np.int64), 0
-    # Every plot stands there twice, a turn apart, so that no window wraps round; one of a whole
-    # turn ends where no plot is, or it would meet the first one again.
+    # Every plot is there twice, one turn apart, so no window wraps around. A window of a whole turn
+    # ends where no plot is; otherwise it would meet the first plot again.
     whole = half_width > np.pi - HAIR
     start = np.where(whole, 0.0, wrap_bearing(bearing - half_width))
     stop = np.where(whole, TURN - HAIR, start + 2 * half_width)
     track, key = np.arange(len(bearing)), np.minimum(plot_bearing, TURN - 2 * HAIR)
     if len(plot_range) > PLOTS_A_RING:
-        # Rings as wide as two windows, and not so many that they hold hardly a plot. Each has a
-        # line of its own to lay its bearings on, 3 turns long.
+        # Rings are as wide as two windows, but not so many that most are nearly empty. Each has its
+        # own line for bearings, 3 turns long.
         most = plot_range.max()
         width = max(2 * (high - low).sum() / len(low), most * (PLOTS_A_RING / len(plot_range)))
         first = np.maximum(low / width, 0.0).astype(np.int64)
@@ -95,14 +95,16 @@ def window_pairs(
         key, order = np.concatenate([key, key + TURN]), np.concatenate([order, order])
     begin = key.searchsorted(start, 'left')
     count = key.searchsorted(stop, 'right') - begin
-    of_track = np.bincount(track, count, len(bearing)).astype(np.int64)
-    full, most = fullest(of_track)
-    count = np.where(full[track], 0, count)
+    rows, most, left_out = np.zeros(0, np.int64), 0, 0
+    if count.sum() > budget(len(bearing)):
+        of_track = np.bincount(track, count, len(bearing)).astype(np.int64)
+        full, most = fullest(of_track)
+        rows, left_out = full.nonzero()[0], int((of_track[full] - most).sum())
+        count = np.where(full[track], 0, count)
     track = track.repeat(count)
     place = np.arange(len(track)) - (count.cumsum() - count - begin).repeat(count)
-    plot, left_out = order[place], 0
-    if full.any():
-        rows, left_out = full.nonzero()[0], int((of_track[full] - most).sum())
+    plot = order[place]
+    if len(rows):
         middles = distance[rows], bearing[rows], 0.5 * (high - low)[rows], half_width[rows]
         few, near = nearest(*middles, plot_range, plot_bearing, most)
         few = rows[few]
@@ -137,38 +139,38 @@ def gate(
 def _windows(
     expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, reach: float
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """What `window_pairs` asks for: windows that hold every plot within `reach` deviations."""
+    """The arguments of `window_pairs`: windows that hold every plot within `reach` deviations."""
     offset, covariance = expected.position - expected.origin, expected.covariance
     distance, bearing = to_range_bearing(offset)
     range_sigma, bearing_sigma = max(noise.range_sigma, noise.widest), noise.bearing_sigma
     a, b, d = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     sin, cos = offset.T / np.maximum(distance, 1e-9)
     spread = sin * sin * a + 2 * sin * cos * b + cos * cos * d
-    # What grows with a plot's range is taken at the farthest: its noise across, and the second
+    # What grows with a plot's range is taken at the largest range: its noise across; and the second
     # order of a coarse bearing along, shift and spread (geometry.polar_to_position).
     most = distance + reach * np.sqrt(spread + range_sigma**2)
     second = most * bearing_sigma**2
     along = reach * np.sqrt(spread + range_sigma**2 + 1.5 * second * second) + 0.5 * second
     sideways = np.maximum(((distance + along) * bearing_sigma) ** 2, noise.widest**2)
     across = reach * np.sqrt(a + d - spread + sideways + OBLIQUE * range_sigma**2)
-    # Near own ship plots may lie in any direction, each with its noise along its own.
+    # Near own ship plots may be in any direction, each with its own direction of noise.
     radius = along + reach * np.sqrt(a + d + sideways)
     near = distance < 4 * radius
     if near.any():
         along, across = np.where(near, radius, along), np.where(near, radius, across)
     half_width = _half_width(distance, along, across)
     if sweep.period and len(distance):
-        # The plot's time may differ from the track's: by little, but where the revolution
-        # begins by a whole one.
+        # The plot's time may differ from the track's: by little, but by a whole revolution where
+        # the revolution begins.
         turned = np.mod(bearing - sweep.bearing0, TURN)
         seam = (turned < half_width) | (turned > TURN - half_width)
         share = np.where(seam | (half_width > np.pi / 4), 1.0, half_width / TURN)
-        # Own ship moves on meanwhile, too, and ranges count from her.
+        # Own ship also moves meanwhile, and ranges are counted from her.
         moved = np.hypot(*np.ptp(np.concatenate([expected.origin, plots.origin]), axis=0))
         slack = (np.hypot(*expected.velocity.T) * sweep.period + moved) * share
         along, across = along + slack, across + slack
         half_width = _half_width(distance, along, across)
-    # Sideways offsets lie farther out than the arc, the more the nearer the track is.
+    # Sideways offsets are farther out than the arc, more so for near tracks.
     return distance, distance - along, np.hypot(distance + along, across), bearing, half_width
 
 
@@ -181,7 +183,7 @@ def _half_width(distance: Array, along: Array, across: Array) -> Array:
 def _distance(
     expected: Expected, plots: Plots, track: IntArray, plot: IntArray
 ) -> tuple[Array, Array]:
-    """Squared Mahalanobis distance [P] of the pairs and the determinant [P] m^4 it goes by."""
+    """Squared Mahalanobis distance [P] of the pairs, and determinant [P] m^4 of its covariance."""
     later = (plots.time[plot] - expected.time[track])[:, None]
     drifted = later * expected.velocity.take(track, 0)
     apart = plots.position.take(plot, 0) - expected.position.take(track, 0) - drifted

@@ -16,17 +16,23 @@ PAIRS, A_WINDOW = 200_000, 32  # the budget: so many, and so many more for each 
 EVEN = 1e-3  # of a window: by so little plots at one place differ, or a tree could not part them
 
 
+def budget(windows: int) -> int:
+    """The most pairs that so many windows may make together."""
+    return PAIRS + A_WINDOW * windows
+
+
 def fullest(count: IntArray) -> tuple[BoolArray, int]:
     """Mask [N] of the windows that must give way, and how many plots each of them keeps.
 
     count  [N]  plots in each window
     """
-    budget = PAIRS + A_WINDOW * len(count)
-    if count.sum() <= budget:
+    if count.sum() <= budget(len(count)):
         return np.zeros(len(count), bool), 0
     rising = np.sort(count)
     before = np.append(0, rising.cumsum()[:-1])
-    share = (budget - before) // np.arange(len(count), 0, -1)  # if these and all fuller ones share
+    share = (budget(len(count)) - before) // np.arange(
+        len(count), 0, -1
+    )  # if these and all fuller ones share
     most = int(share[(rising > share).argmax()])
     return count > most, most
 

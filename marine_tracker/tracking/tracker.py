@@ -88,7 +88,7 @@ class Tracker:
     ends.
     """
 
-    def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None):
+    def __init__(self, parameters: TrackerParameters, estimator: Estimator | None = None) -> None:
         # Clusters already state the deviation of their middle.
         self.parameters = (
             parameters if parameters.extent == 'none' else replace(parameters, glint_sigma_m=0.0)

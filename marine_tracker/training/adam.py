@@ -1,5 +1,6 @@
 """Adam (Kingma and Ba 2015) on a list of arrays."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,14 +18,16 @@ class Moments(NamedTuple):
     steps: int
 
 
-def start(parameters) -> Moments:
+def start(parameters: Sequence[Array]) -> Moments:
     """The start: no gradients yet."""
     return Moments(
         [np.zeros_like(p) for p in parameters], [np.zeros_like(p) for p in parameters], 0
     )
 
 
-def step(parameters, gradients, moments: Moments, rate: float) -> Moments:
+def step(
+    parameters: Sequence[Array], gradients: Sequence[Array], moments: Moments, rate: float
+) -> Moments:
     """One step down the gradients; parameters and moments are changed in place."""
     count = moments.steps + 1
     for p, g, mean, square in zip(parameters, gradients, moments.mean, moments.square):

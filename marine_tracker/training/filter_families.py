@@ -7,6 +7,7 @@ import numpy as np
 
 from ..estimators import cs_kalman, imm
 from ..estimators.contract import Estimator
+from ..types import Numbers
 from . import training_tracks
 
 PERIOD = 60 / 22  # s, to which the settings refer
@@ -35,7 +36,7 @@ class Family(NamedTuple):
     searched: tuple[str, ...]
     settings: Callable[..., Settings]
 
-    def at(self, point) -> Settings:
+    def at(self, point: Numbers) -> Settings:
         """The settings at a point of the search, each coordinate 0 to 1 over its bounds."""
         low, high = np.log(np.array([BOUNDS[name] for name in self.searched])).T
         return self.settings(*map(float, np.exp(low + np.clip(point, 0, 1) * (high - low))))

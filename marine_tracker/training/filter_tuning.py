@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import optimize
 
 from ..evaluation.report import Figure
-from ..types import take
+from ..types import Array, Numbers, take
 from . import gwnn_samples, ship_tracks, track_trials, training_tracks
 from .filter_families import IMM, Family, Settings, filter_of
 
@@ -53,7 +53,7 @@ class TuningResult(NamedTuple):
     best: list[float]
 
 
-def course(tracks: int, rng, vessel_class: str = 'ship') -> Course:
+def course(tracks: int, rng: np.random.Generator, vessel_class: str = 'ship') -> Course:
     """About `tracks` tracks, the same number of each kind."""
     waters = training_tracks.WATERS[vessel_class]
     names = list(waters.kinds)
@@ -77,14 +77,14 @@ def course(tracks: int, rng, vessel_class: str = 'ship') -> Course:
     return Course(on, tuple(cells), np.stack(counts), kind, np.array(straight))
 
 
-def errors(settings: Settings, on: Course):
+def errors(settings: Settings, on: Course) -> Array:
     """Squared errors [C, B] of a filter summed over the scans of each cell, in true deviations."""
     found = track_trials.run(filter_of(settings), on.trial, gated=True).position
     found = found / np.square(on.trial.radar.truly)[:, None]
     return np.einsum('bk,cbk->cb', found, on.counts)
 
 
-def loss(error, on: Course, target: str) -> float:
+def loss(error: Array, on: Course, target: str) -> float:
     """Mean log RMS, over the cells that count for the target, of errors [C, B]."""
     return float(_weights(on, target) @ _levels(error.sum(1), on.counts.sum((1, 2))))
 
@@ -99,12 +99,19 @@ def _weights(on: Course, target: str):
     return weight / weight.sum()
 
 
-def cell_ratios(error, against, on: Course) -> dict[str, float]:
+def cell_ratios(error: Array, against: Array, on: Course) -> dict[str, float]:
     """Ratio of the RMS of errors [C, B] to that of other errors, by cell."""
     return dict(zip(on.cells, np.sqrt(error.sum(1) / against.sum(1)).tolist()))
 
 
-def compare(error, against, on: Course, target: str, rng, resamples=1000) -> track_trials.Ratio:
+def compare(
+    error: Array,
+    against: Array,
+    on: Course,
+    target: str,
+    rng: np.random.Generator,
+    resamples: int = 1000,
+) -> track_trials.Ratio:
     """Geometric mean of the cells' ratios. Its interval resamples tracks within each kind."""
     weight = _weights(on, target)
     pick = np.concatenate(
@@ -128,7 +135,7 @@ def search(
     judge: Callable[[Settings], float],
     evaluations: int,
     seed: int,
-    start=None,
+    start: Numbers | None = None,
     progress: Progress = lambda done, whole: None,
     family: Family = IMM,
 ) -> TuningResult:

@@ -29,7 +29,7 @@ def _arrays(training: Training) -> dict[str, Array]:
 
 
 def save(path: Path, settings: dict[str, Any], training: Training) -> None:
-    """Write a checkpoint; whoever stops the process meanwhile leaves the last one whole."""
+    """Writes a checkpoint. If the process is stopped meanwhile, the previous file stays."""
     with written(path, 'wb') as file:
         np.savez(
             file,

@@ -12,7 +12,7 @@ import numpy as np
 from ..estimators.gwnn import bank as filters
 from ..estimators.gwnn import gwnn
 from ..networks import wavelet_network as net
-from ..types import Array, take
+from ..types import Array, FloatArray, take
 from . import adam
 from .gwnn_samples import Samples, cell_count
 from .gwnn_symmetry import apply, standardise, symmetries
@@ -41,7 +41,7 @@ class Balance(NamedTuple):
 USUAL = Balance()
 
 
-def fuse(output, batch: Samples):
+def fuse(output: FloatArray, batch: Samples) -> tuple[FloatArray, FloatArray]:
     """Corrections [n, 4] as `gwnn.fuse` computes them, and the experts' weights [n, 13]."""
     log_weight = np.full((len(output), filters.EXPERTS), gwnn.OTHERS, np.float32)
     log_weight[:, :4] = batch.base
@@ -54,7 +54,9 @@ def fuse(output, batch: Samples):
     return out, weight
 
 
-def fuse_backward(gradient, out, weight, batch: Samples):
+def fuse_backward(
+    gradient: FloatArray, out: FloatArray, weight: FloatArray, batch: Samples
+) -> FloatArray:
     """Gradient [n, 19] by the network's outputs, from the gradient by the corrections [n, 4]."""
     back = np.zeros((len(gradient), gwnn.OUTPUTS), np.float32)
     mixed = np.matmul(weight[:, None], batch.apart)[:, 0]
@@ -66,7 +68,7 @@ def fuse_backward(gradient, out, weight, batch: Samples):
     return back
 
 
-def cell_weights(samples: Samples):
+def cell_weights(samples: Samples) -> FloatArray:
     """[n, 2] for position and velocity: each cell counts by its error relative to an IMM's.
 
     Velocity errors count in m/s, not in sigma. So within its cell a sample of noisy plots counts
@@ -82,7 +84,7 @@ def cell_weights(samples: Samples):
     return out
 
 
-def rivals(samples: Samples):
+def rivals(samples: Samples) -> Array:
     """Squared errors [n, 2, 2] of position and velocity, of the base IMM and of the second one."""
     error = np.stack([samples.truth, samples.truth - samples.apart[:, filters.SECOND_IMM]], 1)
     return np.square(error.astype(float)).reshape(-1, 2, 2, 2).sum(3).swapaxes(1, 2)
@@ -177,7 +179,7 @@ def _by_cell(cell, values, count):
     )
 
 
-def emphasize(emphasis, size, against, least):
+def emphasize(emphasis: Array, size: Array, against: Array, least: float) -> Array:
     """Increases the weight of cells where the network gains least on the better IMM."""
     against = against.min(2)
     known = against[:, 0] > 1e-3

@@ -5,6 +5,7 @@ Samples come from the same functions that the estimator runs (`gwnn.advance`, `i
 target's place at that moment or at a later scan.
 """
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from ..estimators.gwnn import bank as filters
 from ..estimators.gwnn import gwnn, inputs, monitor
 from ..gaussian import linear_modes
-from ..types import Array, put, take
+from ..types import Array, BoolArray, IntArray, put, take
 from . import ship_tracks, training_tracks
 
 SCANS = 110
@@ -43,7 +44,7 @@ class Samples(NamedTuple):
     truth: Array
     spread: Array
     area: Array
-    cell: Array
+    cell: IntArray
     truly: Array
 
 
@@ -59,12 +60,14 @@ class Cell(NamedTuple):
     sort: NDArray[np.int64]
 
 
-def cell_number(kind, phase, after, sort):
+def cell_number(
+    kind: IntArray, phase: IntArray | BoolArray, after: int | IntArray, sort: IntArray
+) -> IntArray:
     """Numbers [n] of cells."""
     return ((kind * 2 + phase) * 2 + after) * 2 + sort
 
 
-def cell_of(number) -> Cell:
+def cell_of(number: IntArray) -> Cell:
     """The cells with these numbers [n]."""
     return Cell(number // 8, number // 4 % 2, number // 2 % 2, number % 2)
 
@@ -144,6 +147,6 @@ def _sample(bank, state, memory, ships, k, radar, cell) -> Samples:
     )
 
 
-def join(parts) -> Samples:
+def join(parts: Iterable[Samples]) -> Samples:
     """All samples of several parts."""
     return Samples(*(np.concatenate(columns) for columns in zip(*parts)))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..estimators.gwnn import bank as filters
 from ..estimators.gwnn import inputs
-from ..types import Array
+from ..types import Array, FloatArray
 from .gwnn_samples import Samples
 
 
@@ -79,7 +79,7 @@ def apply(symmetry: Symmetry, batch: Samples) -> Samples:
     )
 
 
-def standardise(seen):
+def standardise(seen: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Centre and scale [I] of the inputs.
 
     Pairs share them. Inputs that change sign are centred on 0. So the symmetries stay exact.

@@ -53,7 +53,7 @@ class Plan(NamedTuple):
         return filters.BANKS[self.vessel_class]
 
 
-def plan(vessel_class: str, seed: int, **other) -> Plan:
+def plan(vessel_class: str, seed: int, **other: Any) -> Plan:
     """The plan of the shipped weights of a vessel class, with changes."""
     return Plan(vessel_class, WATERS[vessel_class], seed, balance=BALANCE[vessel_class])._replace(
         **other

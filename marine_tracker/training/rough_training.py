@@ -22,6 +22,7 @@ from ..estimators.cs_kalman import model
 from ..estimators.rough_features import HIGH, KAPPA, LAMBDA, LOW, inputs
 from ..networks import rough_network as net
 from ..networks.rough_weights import HIDDEN, INPUTS, NEURONS, Quiet, Weights
+from ..types import Array
 
 NARROW = 0.02  # O of F2 while a target keeps its course
 LOG_GAMMA = np.log(10.0) * np.arange(-3, 1.01, 0.5)
@@ -41,7 +42,7 @@ class Samples(NamedTuple):
     wanted: np.ndarray
 
 
-def quiet(gamma: float, y: float):
+def quiet(gamma: float, y: float) -> tuple[Array, Array]:
     """For a target at rest in noise, without missed plots: c [3], and (sqrt p1 + sqrt p2) / sqrt(c
     s).
 
@@ -70,18 +71,18 @@ def quiet(gamma: float, y: float):
 
 
 @cache
-def normalisation() -> tuple[Quiet, np.ndarray]:
+def normalisation() -> tuple[Quiet, Array]:
     """The table of c, and the deviations [G, Y, 3] that belong to it."""
     found = np.array([[quiet(np.exp(g), np.exp(y)) for y in LOG_Y] for g in LOG_GAMMA])
     return Quiet(LOG_GAMMA, LOG_Y, found[:, :, 0]), found[:, :, 1]
 
 
-def label(v):
+def label(v: Array) -> Array:
     """Wanted O [...] for places v [..., 3] between quiet (0) and hard (1)."""
     return 0.02 + 0.96 * (1 - np.prod(1 - 0.72 * v**1.5, -1)) / (1 - 0.28**3)
 
 
-def samples(deviations, neurons: int) -> Samples:
+def samples(deviations: Array, neurons: int) -> Samples:
     """The grid as seen by networks with `neurons` neurons to a node; deviations from
     `normalisation`.
     """

@@ -4,13 +4,14 @@ The radar is at rest at [0, 0]. B tracks of K scans are made at once. Each rotat
 takes SUB_STEPS steps of straight motion, which is fine enough for every turn here.
 """
 
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import polar_to_position, to_range_bearing, unit_vector
-from ..types import Array, Plots
+from ..types import Array, BoolArray, Plots
 
 SUB_STEPS = 4
 LONGEST_PHASE = 8  # scans; a manoeuvre's phase lasts this long after its end
@@ -100,7 +101,14 @@ SMALL_CRAFT = {
 }
 
 
-def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
+def sail(
+    names: Sequence[str],
+    ranges: Array,
+    steps: Array,
+    rng: np.random.Generator,
+    fastest: float | Array = np.inf,
+    kinds: Mapping[str, Kind] = KINDS,
+) -> Ships:
     """Ships of the kinds [B] (names) that begin at the ranges [B] m.
 
     steps [B, K] s: time since the previous scan; fastest m/s, of all or of each [B]; kinds: the
@@ -173,7 +181,7 @@ def sail(names, ranges, steps, rng, fastest=np.inf, kinds=KINDS) -> Ships:
     return Ships(time, positions.swapaxes(0, 1), velocities.swapaxes(0, 1), manoeuvre.T)
 
 
-def phase(manoeuvre):
+def phase(manoeuvre: BoolArray) -> BoolArray:
     """Whether each scan [B, K] lies in a manoeuvre, or so shortly after it that it still has an
     effect.
     """
@@ -201,7 +209,9 @@ class RunRadar(NamedTuple):
     period: Array
 
 
-def observe(ships: Ships, radar: RunRadar, rng, hull=None) -> tuple[list[Plots], NDArray[np.bool_]]:
+def observe(
+    ships: Ships, radar: RunRadar, rng: np.random.Generator, hull: Array | None = None
+) -> tuple[list[Plots], NDArray[np.bool_]]:
     """Plots of every ship, a list over the scans, and which were detected [B, K].
 
     The first two scans are always detected. hull [B] m: how far the plots wander and jump over the

@@ -4,6 +4,7 @@ Errors are those of the expectation one scan ahead, along and across the line of
 in deviations sigma of the plots, velocities in m/s.
 """
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from ..estimators.contract import Estimator
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..geometry import unit_vector
-from ..types import Array, take
+from ..types import Array, BoolArray, take
 from .ship_tracks import RunRadar, Ships, observe, phase
 
 SETTLED = 20  # first scans, left out
@@ -45,7 +46,7 @@ class Outcome(NamedTuple):
     state: Any
 
 
-def trial(ships: Ships, radar: RunRadar, rng) -> TrackTrial:
+def trial(ships: Ships, radar: RunRadar, rng: np.random.Generator) -> TrackTrial:
     """The tracks and a radar's plots of them."""
     plots, seen = observe(ships, radar, rng)
     counts = np.zeros(seen.shape, bool)
@@ -53,7 +54,12 @@ def trial(ships: Ships, radar: RunRadar, rng) -> TrackTrial:
     return TrackTrial(ships, radar, plots, seen, counts, phase(ships.manoeuvre))
 
 
-def run(estimator: Estimator, on: TrackTrial, gated: bool, watch=None) -> Outcome:
+def run(
+    estimator: Estimator,
+    on: TrackTrial,
+    gated: bool,
+    watch: Callable[[int, Any], Estimator | None] | None = None,
+) -> Outcome:
     """Runs one estimator over the trial.
 
     gated  refuse plots far off, as the bank of `gwnn` always does
@@ -101,12 +107,14 @@ class Ratio(NamedTuple):
     high: float
 
 
-def rms(square, chosen) -> float:
+def rms(square: Array, chosen: BoolArray) -> float:
     """Root mean square per axis of squared errors [B, K] where chosen [B, K]."""
     return float(np.sqrt(square[chosen].mean() / 2))
 
 
-def ratio(square, against, chosen, rng, resamples: int = 500) -> Ratio:
+def ratio(
+    square: Array, against: Array, chosen: BoolArray, rng: np.random.Generator, resamples: int = 500
+) -> Ratio:
     """RMS of `square` over that of `against` [B, K], where chosen [B, K]. The interval resamples
     tracks.
     """

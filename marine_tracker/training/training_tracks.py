@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..simulation import motion
 from ..simulation.scenario import Scenario
-from ..types import Array, put, take
+from ..types import Array, IntArray, put, take
 from . import ship_tracks
 from .ship_tracks import Kind, RunRadar, Ships
 
@@ -132,7 +132,7 @@ class Traffic(NamedTuple):
     hull: Array
 
 
-def draw(waters: Waters, kind, scans: int, rng) -> Traffic:
+def draw(waters: Waters, kind: IntArray, scans: int, rng: np.random.Generator) -> Traffic:
     """Tracks of the kinds [B] (numbers), without those that come too near their radar."""
     count = len(kind)
     share = np.array([one.share for one in waters.radars])

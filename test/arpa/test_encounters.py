@@ -122,6 +122,14 @@ def test_it_sounds_again_when_the_cpa_falls_by_half_the_limit(acknowledged):
     assert acknowledged.states == [RAISED, SEEN, RAISED, SEEN]
 
 
+def test_a_danger_at_the_limit_is_worse_below_half_of_it(situate):
+    """Acknowledged at 1,190 m, limit 1,200: no news at 640 m, but at 560 m."""
+    one = Encounter(situate).meet(1190.0, 12).acknowledge()
+    one.meet(1190.0, 5).meet(640.0, 60)
+    assert one.states == [RAISED, SEEN]
+    assert one.meet(560.0, 20).states == [RAISED, SEEN, RAISED]
+
+
 def test_it_sounds_again_when_the_ship_comes_far_sooner_than_expected(acknowledged):
     """Expected in 500 s: in 300 is no news, in 200 it is, a quarter of the limit being 225 s."""
     acknowledged.meet(1000.0, 40, tcpa=300.0)

@@ -458,7 +458,7 @@ class TestWeights:
             ValueError,
             match=(
                 f'of vessel class ship .settings {SHIP.mark}., not those of small_craft .settings '
-                f'{bank.BANKS["small_craft"].mark}.: train anew with --vessel-class small_craft'
+                f'{bank.BANKS["small_craft"].mark}.: train again with --vessel-class small_craft'
             ),
         ):
             gwnn.weights(str(file), 'small_craft')

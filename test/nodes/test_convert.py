@@ -11,6 +11,7 @@ from sensor_msgs.msg import PointCloud2, PointField
 from marine_tracker.geometry import own_ship_at
 from marine_tracker.nodes import convert
 from marine_tracker.nodes.faults import ConversionError
+from marine_tracker.nodes.readable_plots import plots_to_readable
 from marine_tracker.types import OwnShip, PolarPlots, Scan
 
 SECOND = 1_000_000_000
@@ -105,9 +106,9 @@ def test_a_radial_speed_that_is_no_float_is_refused():
 
 def test_radial_speeds_can_be_read():
     sent = with_doppler()
-    channels = {c.name: c.values for c in convert.plots_to_readable(sent, 0).channels}
+    channels = {c.name: c.values for c in plots_to_readable(sent, 0).channels}
     assert channels['radial_speed_mps'] == pytest.approx(sent.plots.radial_speed, abs=1 / 32)
-    channels = {c.name for c in convert.plots_to_readable(scan(), 0).channels}
+    channels = {c.name for c in plots_to_readable(scan(), 0).channels}
     assert 'radial_speed_mps' not in channels
 
 
@@ -235,7 +236,7 @@ def test_random_clouds_are_read_or_refused_and_nothing_else():
 
 def test_the_readable_plots_print_short_numbers():
     sent = scan()
-    message = over_the_wire(convert.plots_to_readable(sent, SECOND))
+    message = over_the_wire(plots_to_readable(sent, SECOND))
     columns = {channel.name: np.array(channel.values) for channel in message.channels}
     assert list(columns) == ['range_m', 'bearing_deg', 'amplitude_db', 'time_offset_s']
     assert columns['range_m'] == pytest.approx(sent.plots.range, abs=0.25)

@@ -172,6 +172,7 @@ def arguments(tmp_path_factory):
         'radar_simulator': {'scenario': 'clean', 'rate': '10.0', 'loop': 'true'},
         'recording_player': {'folder': str(folder), 'rate': '10.0', 'loop': 'true'},
         'nmea_output': {'udp': '127.0.0.1:29117', 'use_sim_time': 'true'},
+        'ppi_display': {'address': '127.0.0.1:0', 'use_sim_time': 'true'},
     }
     return {
         name: [word for key, value in values.items() for word in ('-p', f'{key}:={value}')]

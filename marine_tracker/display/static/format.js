@@ -39,7 +39,11 @@ export function place(latitude, longitude) {
   return `${part(latitude, 2, 'NS')} ${part(longitude, 3, 'EW')}`;
 }
 
-function part(/** @type {number} */ value, /** @type {number} */ width, /** @type {string} */ ends) {
+function part(
+  /** @type {number} */ value,
+  /** @type {number} */ width,
+  /** @type {string} */ ends,
+) {
   const thousandths = Math.round(Math.abs(value) * 60000);
   const whole = String(Math.floor(thousandths / 60000)).padStart(width, '0');
   const rest = ((thousandths % 60000) / 1000).toFixed(3).padStart(6, '0');

@@ -30,7 +30,9 @@ export function placed(labels, widthOf) {
       [label.x - AWAY - width, label.y - AWAY],
       [label.x - AWAY - width, label.y + AWAY],
     ];
-    const free = places.find(([left, middle]) => taken.every((box) => apart(box, left, middle, width)));
+    const free = places.find(([left, middle]) =>
+      taken.every((box) => apart(box, left, middle, width)),
+    );
     const [left, middle] = free ?? places[0];
     if (!free && !label.needed) continue;
     taken.push([left, middle, width]);
@@ -41,6 +43,8 @@ export function placed(labels, widthOf) {
 
 function apart(/** @type {number[]} */ [otherLeft, otherMiddle, otherWidth], left, middle, width) {
   return (
-    left > otherLeft + otherWidth || otherLeft > left + width || Math.abs(middle - otherMiddle) > HEIGHT
+    left > otherLeft + otherWidth ||
+    otherLeft > left + width ||
+    Math.abs(middle - otherMiddle) > HEIGHT
   );
 }

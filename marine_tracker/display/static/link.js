@@ -25,7 +25,9 @@ export class Link {
   }
 
   connect() {
-    const socket = new WebSocket(`${location.protocol.replace('http', 'ws')}//${location.host}/live`);
+    const socket = new WebSocket(
+      `${location.protocol.replace('http', 'ws')}//${location.host}/live`,
+    );
     this.socket = socket;
     this.heard = performance.now();
     socket.onopen = () => {

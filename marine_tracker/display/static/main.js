@@ -1,5 +1,6 @@
 // The page: puts link, state, picture, panel and controls together.
 
+import * as forms from './forms.js';
 import { rangeBearing, toMap, toScreen } from './geometry.js';
 import { Link } from './link.js';
 import * as panel from './panel.js';
@@ -9,19 +10,22 @@ import { emptyState, receive, reconnected, staleness, unacknowledged } from './s
 
 const REDRAW_MS = 250; // at least: echoes fade, dangers flash
 const PANEL_MS = 200;
+const MOST_LINES = 2;
 const STEP_PX = 8; // of the cursor by a key
 
 const state = emptyState();
 const settings = load(location.search);
 const canvas = /** @type {HTMLCanvasElement} */ (panel.element('picture'));
 const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
-/** @type {{id: number|null, cursor: number[]|null, marker: number[]|null}} */
-const marks = { id: null, cursor: null, marker: null };
+/** @type {import('./surround.js').Marks} */
+const marks = { id: null, cursor: null, lines: [], drag: null };
 const sorted = { column: 6, sign: 1, danger: true };
 /** @type {[number, number]|null} */
 let pointer = null; // px, while the mouse is over the picture
 let courseUp = 0; // rad, when course-up was chosen
+let dragged = false; // own ship's vector, by the last press of the mouse
 let dirty = true;
+let saidUntil = 0;
 let drawn = -Infinity;
 let panelShown = -Infinity;
 /** @type {Record<string, string>} */
@@ -33,7 +37,7 @@ const link = new Link(
   (message) => {
     receive(state, message, seconds());
     if (message.kind === 'alarms') showTitle();
-    if (message.kind === 'limits') fillLimits(message);
+    if (message.kind === 'limits') forms.fillLimits(message);
     dirty = true;
   },
   () => reconnected(state),
@@ -78,7 +82,7 @@ function showPanel() {
   for (const id of ['acknowledge-all', 'acquire', 'cancel', 'trial-off']) {
     /** @type {HTMLButtonElement} */ (panel.element(id)).disabled = !mayCommand;
   }
-  for (const form of document.forms) form.querySelector('button').disabled = !mayCommand;
+  for (const button of document.querySelectorAll('form .submit')) button.disabled = !mayCommand;
 }
 
 /** Goes on in a hidden tab: what waits for an answer stands in its title. */
@@ -100,12 +104,25 @@ function showStale() {
 }
 
 function applySettings() {
-  document.documentElement.dataset.palette = settings.palette;
+  document.documentElement.dataset.obcTheme = settings.palette;
   const style = getComputedStyle(document.documentElement);
   colors = Object.fromEntries(
-    ['sea', 'ring', 'scale', 'echo', 'trail', 'target', 'coasting', 'danger', 'label', 'own', 'selected', 'cursor', 'marker', 'safe'].map(
-      (name) => [name, style.getPropertyValue(`--${name}`).trim()],
-    ),
+    [
+      'sea',
+      'ring',
+      'scale',
+      'echo',
+      'trail',
+      'target',
+      'coasting',
+      'danger',
+      'label',
+      'own',
+      'selected',
+      'cursor',
+      'marker',
+      'safe',
+    ].map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),
   );
   const words = {
     orientation: settings.orientation,
@@ -124,14 +141,6 @@ function applySettings() {
   dirty = true;
 }
 
-/** The tracker's limits into their form, unless somebody types there. */
-function fillLimits(/** @type {Record<string, number>} */ limits) {
-  const form = /** @type {HTMLFormElement} */ (panel.element('limits'));
-  if (form.contains(document.activeElement)) return;
-  form.elements.cpa_nm.value = limits.cpa_limit_nm;
-  form.elements.tcpa_min.value = limits.tcpa_limit_min;
-}
-
 // -- in --------------------------------------------------------------------------------------
 
 function change(/** @type {string} */ name, /** @type {any} */ value) {
@@ -148,8 +157,9 @@ function zoom(/** @type {number} */ step) {
 async function command(/** @type {string} */ name, values = {}) {
   const { ok, text } = await link.send(name, values);
   const said = panel.element('said');
-  panel.say(said, `${ok ? '' : 'Not done: '}${text}`);
-  setTimeout(() => said.textContent.endsWith(text) && panel.say(said, ''), 6000);
+  panel.say(said, `${ok ? '' : 'Not done: '}${text.split(';')[0]}`);
+  clearTimeout(saidUntil);
+  saidUntil = setTimeout(() => panel.say(said, ''), 6000);
 }
 
 const chosen = () => state.targets.find((target) => target.id === marks.id);
@@ -189,26 +199,50 @@ function cancel() {
   if (target?.number) command('cancel', { number: target.number });
 }
 
+/** A bearing line with a range marker at the cursor; after two of them, none. */
 function mark() {
-  marks.marker = marks.marker ? null : (marks.cursor ?? (pointer && toMap(scopeNow().view, ...pointer)));
+  const place = marks.cursor ?? (pointer && toMap(scopeNow().view, ...pointer));
+  if (marks.lines.length === MOST_LINES) marks.lines = [];
+  else if (place && state.own) {
+    marks.lines.push(rangeBearing(state.own.x, state.own.y, place[0], place[1]));
+  }
   dirty = true;
 }
 
-const at = (/** @type {MouseEvent} */ event) => /** @type {[number, number]} */ ([event.offsetX, event.offsetY]);
+const at = (/** @type {MouseEvent} */ event) =>
+  /** @type {[number, number]} */ ([event.offsetX, event.offsetY]);
+canvas.addEventListener('pointerdown', (event) => {
+  const handle = forms.handleOf(state, settings, scopeNow().view);
+  marks.drag = state.role.commands && forms.grips(handle, at(event)) ? at(event) : null;
+  dragged = false;
+  if (marks.drag) canvas.setPointerCapture(event.pointerId);
+});
 canvas.addEventListener('pointermove', (event) => {
   pointer = at(event);
   dirty = true;
+  if (!marks.drag) return;
+  dragged = true;
+  marks.drag = pointer;
+  forms.dragTo(state, settings, scopeNow().view, pointer);
+});
+canvas.addEventListener('pointerup', () => {
+  if (marks.drag && dragged) forms.tryIt();
+  marks.drag = null;
 });
 canvas.addEventListener('pointerleave', () => {
   pointer = null;
   dirty = true;
 });
-canvas.addEventListener('click', (event) => selectAt(...at(event)));
+canvas.addEventListener('click', (event) => {
+  if (!dragged) selectAt(...at(event));
+});
 canvas.addEventListener('dblclick', (event) => {
   selectAt(...at(event));
   if (marks.id === null) acquire();
 });
-canvas.addEventListener('wheel', (event) => zoom(Math.sign(event.deltaY)), { passive: true });
+canvas.addEventListener('wheel', (event) => zoom(Math.sign(event.deltaY)), {
+  passive: true,
+});
 
 const KEYS = {
   '+': () => zoom(-1),
@@ -224,13 +258,22 @@ const KEYS = {
   n: chooseNext,
   e: mark,
   q: acquire,
-  a: () => (chosen()?.alarm ? command('acknowledge', { number: chosen().number }) : command('acknowledge_all')),
+  a: () =>
+    chosen()?.alarm
+      ? command('acknowledge', { number: chosen().number })
+      : command('acknowledge_all'),
   Delete: cancel,
   Escape: () => choose(null),
 };
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const ARROWS = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
 document.addEventListener('keydown', (event) => {
-  if (event.ctrlKey || event.altKey || event.metaKey || event.target instanceof HTMLInputElement) return;
+  if (event.ctrlKey || event.altKey || event.metaKey || event.target instanceof HTMLInputElement)
+    return;
   if (document.activeElement === canvas) {
     const step = ARROWS[event.key];
     if (step) {
@@ -259,16 +302,10 @@ for (const [id, act] of Object.entries({
 })) {
   panel.element(id).addEventListener('click', act);
 }
-for (const [id, name] of [
-  ['trial', 'trial'],
-  ['limits', 'limits'],
-]) {
-  panel.element(id).addEventListener('submit', (event) => {
-    event.preventDefault();
-    const form = new FormData(/** @type {HTMLFormElement} */ (event.target));
-    command(name, Object.fromEntries([...form].map(([key, value]) => [key, Number(value)])));
-  });
-}
+forms.listen(command);
+panel.element('trial-box').addEventListener('toggle', () => {
+  if (!dragged) forms.fillTrial(state);
+});
 panel.makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;
@@ -285,4 +322,13 @@ setInterval(showStale, 500);
 requestAnimationFrame(frame);
 
 // For tests, and for whoever looks from the console.
-window.ppi = { state, settings, marks, scopeNow, toScreen, toMap, rangeBearing, CHOICES };
+window.ppi = {
+  state,
+  settings,
+  marks,
+  scopeNow,
+  toScreen,
+  toMap,
+  rangeBearing,
+  CHOICES,
+};

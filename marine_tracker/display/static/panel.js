@@ -1,12 +1,20 @@
 // What stands beside the picture: own ship, alarms, the selected target, the table, the state.
 
-import { NAUTICAL_MILE, rangeBearing, toMap } from './geometry.js';
+import { rangeBearing, toMap } from './geometry.js';
 import * as format from './format.js';
 import { COASTING, LOST, ACQUIRING, nameOf } from './state.js';
 import { RANGES } from './settings.js';
 
-const STATUS = { [ACQUIRING]: 'acquiring', 1: 'tracking', [COASTING]: 'coasting', [LOST]: 'lost' };
+const STATUS = {
+  [ACQUIRING]: 'acquiring',
+  1: 'tracking',
+  [COASTING]: 'coasting',
+  [LOST]: 'lost',
+};
 const MOTION = ['steady', 'manoeuvring', 'at rest'];
+/** Of alerts, as they are listed. */
+const STATES = ['active unacknowledged', 'rectified unacknowledged', 'active acknowledged'];
+const CLOCK_S = 30; // a larger difference of the time of day is told
 const NEVER = 1e12; // sorts behind all numbers
 /** Columns of the table: head, what a cell shows, what it is sorted by. */
 export const COLUMNS = [
@@ -38,8 +46,9 @@ function fill(/** @type {HTMLElement} */ list, /** @type {string[][]} */ figures
     }
     say(list.children[2 * row], term);
     const [main, small] = list.children[2 * row + 1].children;
-    say(main, value);
-    say(small, deviation && deviation !== format.NONE ? `±${deviation}` : '');
+    say(main, value.startsWith(format.NONE) ? format.NONE : value); // no unit of nothing
+    const known = deviation && deviation !== format.NONE && !value.startsWith(format.NONE);
+    say(small, known ? `±${deviation}` : '');
   });
 }
 
@@ -59,18 +68,20 @@ export function showOwnShip(/** @type {import('./state.js').State} */ state) {
 export function showSelected(/** @type {import('./state.js').Target|undefined} */ target) {
   say(
     element('selected-name'),
-    target ? `${nameOf(target)}, ${STATUS[target.status]}, ${MOTION[target.motion]}` : 'No target selected',
+    target
+      ? `${nameOf(target)}, ${STATUS[target.status]}, ${MOTION[target.motion]}`
+      : 'No target selected',
   );
   if (!target) return fill(element('selected'), []);
   const figures = [
-    ['Range', `${format.miles(target.range)} NM`, format.miles(target.range_sd)],
+    ['Range', `${format.miles(target.range)} NM`, format.miles(target.range_sd, 3)],
     ['Bearing', `${format.bearing(target.bearing)}°`, angleSd(target.bearing_sd)],
     ['Course', `${format.bearing(target.course)}°`, angleSd(target.course_sd)],
     ['Speed', `${format.knots(target.speed)} kn`, format.knots(target.speed_sd)],
     ['CPA', `${format.miles(target.cpa)} NM`, format.miles(target.cpa_sd)],
     ['TCPA', `${format.minutes(target.tcpa)} min`, format.minutes(target.tcpa_sd)],
     ['Bow', `${format.miles(target.bow_range)} NM`, format.miles(target.bow_range_sd)],
-    ['in', `${format.minutes(target.bow_time)} min`, format.minutes(target.bow_time_sd)],
+    ['Bow in', `${format.minutes(target.bow_time)} min`, format.minutes(target.bow_time_sd)],
     ['P(danger)', `${format.number(100 * target.danger_probability, 0)} %`],
     ['Acquired', target.acquired ? 'by hand' : 'automatic'],
   ];
@@ -92,15 +103,21 @@ export function showAlarms(state, mayCommand, acknowledge) {
   const list = element('alarms');
   const priority = ['alarm', 'warning', 'caution'];
   const waits = (alarm) => alarm.state.endsWith('unacknowledged');
-  const alarms = [...state.alarms].sort(
-    (a, b) => Number(waits(b)) - Number(waits(a)) || priority.indexOf(a.priority) - priority.indexOf(b.priority),
-  );
+  const rank = (alarm) => STATES.indexOf(alarm.state) * 3 + priority.indexOf(alarm.priority);
+  const alarms = [...state.alarms].sort((a, b) => rank(a) - rank(b));
   const old = new Map([...list.children].map((item) => [item.dataset.name, item]));
   const items = alarms.map((alarm) => {
     const item = old.get(alarm.name) ?? newAlarm(alarm.name);
-    item.className = `${alarm.priority} ${waits(alarm) ? 'unacknowledged' : ''}`;
-    const [text, button] = item.children;
-    say(text, alarm.text || `${alarm.name}, ${alarm.state}`);
+    item.className = `${alarm.priority} ${alarm.state}`;
+    const over = alarm.state.startsWith('rectified') ? 'Over: ' : '';
+    const [icon, text, button] = item.children;
+    const about = {
+      type: alarm.priority,
+      active: !over,
+      acknowledged: !waits(alarm),
+    };
+    Object.assign(icon, about);
+    say(text, over + (alarm.text || alarm.name));
     button.hidden = !(waits(alarm) && alarm.number);
     button.disabled = !mayCommand;
     button.onclick = () => acknowledge(alarm.number);
@@ -114,10 +131,10 @@ export function showAlarms(state, mayCommand, acknowledge) {
 function newAlarm(/** @type {string} */ name) {
   const item = document.createElement('li');
   item.dataset.name = name;
-  const button = document.createElement('button');
+  const button = document.createElement('obc-button');
   button.textContent = 'Ack';
   button.title = `Acknowledge ${name}`;
-  item.append(document.createElement('span'), button);
+  item.append(document.createElement('obc-alert-icon'), document.createElement('span'), button);
   return item;
 }
 
@@ -147,7 +164,8 @@ export function showTargets(targets, sorted, chosen, choose) {
     .filter((t) => t.status !== LOST)
     .sort((a, b) => (sorted.danger ? b.alarm - a.alarm : 0) || sorted.sign * (order(a) - order(b)));
   say(element('count'), String(inOrder.length));
-  for (const [id, row] of rows) if (!inOrder.some((t) => t.id === id)) rows.delete(id) && row.remove();
+  for (const [id, row] of rows)
+    if (!inOrder.some((t) => t.id === id)) rows.delete(id) && row.remove();
   inOrder.forEach((target, place) => {
     let row = rows.get(target.id);
     if (!row) {
@@ -182,23 +200,23 @@ export function showCorners(state, settings, scope, marks, pointer) {
   say(
     element('scale'),
     `${range} NM\n${settings.rings === 'on' ? `rings ${rings} NM` : 'no rings'}\n` +
-      `${scope.orientation}, relative motion${missing}`,
+      `${scope.orientation}\nrelative motion${missing}`,
   );
   say(
     element('modes'),
     `vectors ${settings.vectors}, ${settings.vectorMinutes} min\n` +
       `trails ${settings.trails}${settings.trails === 'off' ? '' : `, ${settings.trailMinutes} min`}`,
   );
-  const places = [
-    ['cursor', pointer ? toMap(scope.view, ...pointer) : marks.cursor],
-    ['EBL/VRM', marks.marker],
-  ];
-  const lines = places.flatMap(([name, at]) => {
-    if (!at || !state.own) return [];
-    const [away, bearing] = rangeBearing(state.own.x, state.own.y, at[0], at[1]);
-    return [`${name} ${format.bearing(bearing)}° ${(away / NAUTICAL_MILE).toFixed(2)} NM`];
-  });
-  say(element('cursor'), lines.join('\n'));
+  const lines = [];
+  const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
+  if (place && state.own) {
+    lines.push(['cursor', rangeBearing(state.own.x, state.own.y, place[0], place[1])]);
+  }
+  marks.lines.forEach((line, k) => lines.push([`EBL${k + 1}/VRM${k + 1}`, line]));
+  const told = lines.map(
+    ([name, [away, angle]]) => `${name} ${format.bearing(angle)}° ${format.miles(away)} NM`,
+  );
+  say(element('cursor'), told.join('\n'));
   say(element('time'), state.scan ? `${format.clock(state.scan.time)} UTC` : '');
 }
 
@@ -206,26 +224,41 @@ export function showCorners(state, settings, scope, marks, pointer) {
 export function showState(state) {
   const parts = Object.entries(state.health).filter(([, part]) => part.level !== 'ok');
   const estimator = Object.values(state.health).find((part) => part.estimator)?.estimator ?? '';
-  say(element('health-is'), `${parts.length ? `${parts.length} to look at` : 'all well'}${estimator && `, estimator ${estimator}`}`);
-  const lines = Object.entries(state.health).map(([name, part]) => `${part.level}: ${name}: ${part.text}`);
+  say(
+    element('health-is'),
+    `${parts.length ? `${parts.length} to look at` : 'all well'}${estimator && `, estimator ${estimator}`}`,
+  );
+  const lines = Object.entries(state.health).map(
+    ([name, part]) => `${part.level}: ${name}: ${part.text}`,
+  );
   const list = element('health');
   while (list.children.length > lines.length) list.lastChild?.remove();
-  lines.forEach((line, k) => say(list.children[k] ?? list.appendChild(document.createElement('li')), line));
+  lines.forEach((line, k) =>
+    say(list.children[k] ?? list.appendChild(document.createElement('li')), line),
+  );
   const limits = state.limits;
   say(
     element('limits-are'),
     limits ? `CPA ${limits.cpa_limit_nm} NM in ${limits.tcpa_limit_min} min` : format.NONE,
   );
-  say(element('role'), state.role.commands ? '' : state.role.why || 'Looking only.');
+  const off = Math.abs(state.clockError) > CLOCK_S;
+  const clock = off
+    ? `This device's clock is ${Math.round(state.clockError)} s off; ages do not depend on it. `
+    : '';
+  say(element('role'), clock + (state.role.commands ? '' : state.role.why || 'Looking only.'));
   say(element('trial-says'), trialSays(state.trial));
 }
 
 function trialSays(trial) {
   if (!trial.on) return '';
   if (!trial.safe_deg) return trial.text;
-  const safe = trial.safe_deg.map(([a, b]) => `${String(a).padStart(3, '0')}–${String(b).padStart(3, '0')}`);
+  const safe = trial.safe_deg.map(
+    ([a, b]) => `${String(a).padStart(3, '0')}–${String(b).padStart(3, '0')}`,
+  );
   const dangers = trial.targets.filter((target) => target.danger);
-  const told = dangers.map((t) => `${t.name} CPA ${format.number(t.cpa_nm, 2)} NM in ${format.number(t.tcpa_min, 1)} min`);
+  const told = dangers.map(
+    (t) => `${t.name} CPA ${format.number(t.cpa_nm, 2)} NM in ${format.number(t.tcpa_min, 1)} min`,
+  );
   return (
     `TRIAL ${format.number(trial.course_deg, 0)}°, ${format.number(trial.speed_kn, 1)} kn` +
     `${trial.countdown_min ? `, begins in ${format.number(trial.countdown_min, 1)} min` : ''}. ` +

@@ -6,12 +6,12 @@ import {
   direction,
   edge,
   ellipse,
-  radians,
   toScreen,
   turned,
 } from './geometry.js';
 import { placed } from './labels.js';
 import { RANGES } from './settings.js';
+import { drawMarks, drawScale, drawTrial } from './surround.js';
 import {
   ACQUIRING,
   ACKNOWLEDGED,
@@ -24,7 +24,7 @@ import {
 } from './state.js';
 import * as symbols from './symbols.js';
 
-const MARGIN = 34; // px, for the bearing scale
+const MARGIN = 40; // px, for the bearing scale
 const GLOW_S = 30; // an echo has faded after so long
 const OFF = 0.5; // of the radius: how far own ship is moved back when off-centre
 const ELLIPSE_SIGMA = 2;
@@ -82,7 +82,7 @@ export function vectorOf(/** @type {Settings} */ settings, own, vx, vy) {
  * @param {CanvasRenderingContext2D} canvas  in CSS pixels
  * @param {State} state @param {Settings} settings @param {Scope} scope
  * @param {Record<string, string>} colors
- * @param {{id: number|null, cursor: number[]|null, marker: number[]|null}} marks  map positions
+ * @param {import('./surround.js').Marks} marks
  * @param {number} local s
  */
 export function draw(canvas, state, settings, scope, colors, marks, local) {
@@ -127,8 +127,8 @@ function drawPlots(canvas, state, { view, radius, middleX, middleY }, colors, lo
     const newest = place === state.plots.length - 1;
     const fade = 1 - Math.max(now - scan.at, 0) / GLOW_S;
     if (fade <= 0 && !newest) return;
-    canvas.globalAlpha = newest ? 1 : 0.5 * fade ** 2;
-    const size = newest ? 4 : 3;
+    canvas.globalAlpha = newest ? 0.9 : 0.4 * fade ** 2;
+    const size = newest ? 3.5 : 3;
     for (let k = 0; k < scan.x.length; k++) {
       const [x, y] = toScreen(view, scan.x[k], scan.y[k]);
       if (Math.abs(x - middleX) < radius && Math.abs(y - middleY) < radius) {
@@ -192,9 +192,15 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
     if (target.x === null || target.status === LOST) continue;
     const [x, y] = toScreen(view, target.x, target.y);
     const danger = target.alarm >= ACKNOWLEDGED;
-    const color = danger ? colors.danger : target.status === COASTING ? colors.coasting : colors.target;
+    const color = danger
+      ? colors.danger
+      : target.status === COASTING
+        ? colors.coasting
+        : colors.target;
     const [right, down] = turned(view, ...vectorOf(settings, state.own, target.vx, target.vy));
-    if (Math.hypot(x - middleX, y - middleY) > radius + Math.hypot(right, down)) continue;
+    const beyond = Math.hypot(x - middleX, y - middleY) - radius;
+    if (danger && beyond > 0 && shown) drawBeyond(canvas, scope, target, colors);
+    if (beyond > Math.hypot(right, down)) continue;
     if (target.id === chosen) {
       symbols.selected(canvas, x, y, colors.selected);
       drawEllipse(canvas, view, target, colors);
@@ -215,7 +221,7 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
     if (!shown && alarm.state.endsWith('unacknowledged')) continue;
     const [x, y] = toScreen(view, alarm.x, alarm.y);
     symbols.lost(canvas, x, y, colors.danger);
-    if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: true });
+    if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: false });
   }
   canvas.font = '600 13px system-ui, sans-serif';
   canvas.textBaseline = 'middle';
@@ -224,6 +230,19 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
   for (const { label, left, middle } of placed(labels, (text) => canvas.measureText(text).width)) {
     canvas.fillText(label.text, left, middle);
   }
+}
+
+/** A dangerous target beyond the edge: a triangle on its bearing. */
+function drawBeyond(canvas, { view, middleX, middleY, radius }, target, colors) {
+  const bearing = Math.atan2(target.x - view.originX, target.y - view.originY);
+  const [x, y] = edge(view, bearing, middleX, middleY, radius - 3);
+  const [right, down] = [(x - middleX) / radius, (y - middleY) / radius];
+  canvas.fillStyle = colors.danger;
+  canvas.beginPath();
+  canvas.moveTo(x, y);
+  canvas.lineTo(x - 16 * right - 8 * down, y - 16 * down + 8 * right);
+  canvas.lineTo(x - 16 * right + 8 * down, y - 16 * down - 8 * right);
+  canvas.fill();
 }
 
 function drawEllipse(canvas, view, target, colors) {
@@ -235,98 +254,6 @@ function drawEllipse(canvas, view, target, colors) {
   const size = ELLIPSE_SIGMA * view.scale;
   canvas.ellipse(x, y, long * size, short * size, canvasAngle(view, bearing), 0, 2 * Math.PI);
   canvas.stroke();
-}
-
-/** Cursor, and the marker with its electronic bearing line and variable range marker. */
-function drawMarks(canvas, { view, middleX, middleY, radius }, colors, marks) {
-  if (marks.marker) {
-    const [x, y] = toScreen(view, marks.marker[0], marks.marker[1]);
-    const bearing = Math.atan2(marks.marker[0] - view.originX, marks.marker[1] - view.originY);
-    canvas.strokeStyle = colors.marker;
-    canvas.lineWidth = 1.2;
-    canvas.setLineDash([9, 5]);
-    canvas.beginPath();
-    canvas.moveTo(view.centreX, view.centreY);
-    canvas.lineTo(...edge(view, bearing, middleX, middleY, radius));
-    canvas.stroke();
-    canvas.beginPath();
-    canvas.arc(view.centreX, view.centreY, Math.hypot(x - view.centreX, y - view.centreY), 0, 2 * Math.PI);
-    canvas.stroke();
-    canvas.setLineDash([]);
-  }
-  if (marks.cursor) {
-    const [x, y] = toScreen(view, marks.cursor[0], marks.cursor[1]);
-    canvas.strokeStyle = colors.cursor;
-    canvas.lineWidth = 1.4;
-    canvas.beginPath();
-    for (const [right, down] of [
-      [1, 0],
-      [-1, 0],
-      [0, 1],
-      [0, -1],
-    ]) {
-      canvas.moveTo(x + 4 * right, y + 4 * down);
-      canvas.lineTo(x + 14 * right, y + 14 * down);
-    }
-    canvas.stroke();
-  }
-}
-
-/** The bearing scale around the picture: marks each 5 degrees, numbers each 30. */
-function drawScale(canvas, { view, middleX, middleY, radius }, colors) {
-  canvas.strokeStyle = colors.scale;
-  canvas.fillStyle = colors.scale;
-  canvas.font = '600 12px system-ui, sans-serif';
-  canvas.textAlign = 'center';
-  canvas.textBaseline = 'middle';
-  canvas.lineWidth = 1;
-  canvas.beginPath();
-  canvas.arc(middleX, middleY, radius, 0, 2 * Math.PI);
-  for (let mark = 0; mark < 360; mark++) {
-    if (mark % 5 && radius < 250) continue;
-    const [x, y] = edge(view, radians(mark), middleX, middleY, radius);
-    const length = mark % 10 === 0 ? 10 : mark % 5 === 0 ? 6 : 3;
-    const out = [(x - middleX) / radius, (y - middleY) / radius];
-    canvas.moveTo(x, y);
-    canvas.lineTo(x + length * out[0], y + length * out[1]);
-    if (mark % 30 === 0) {
-      canvas.fillText(String(mark).padStart(3, '0'), x + 22 * out[0], y + 20 * out[1]);
-    }
-  }
-  canvas.stroke();
-}
-
-/** Safe and unsafe courses of a trial around the picture, and the T that says that it is one. */
-function drawTrial(canvas, state, scope, colors) {
-  const { view, middleX, middleY, radius } = scope;
-  const around = 5;
-  canvas.lineWidth = 6;
-  const safe = new Set();
-  for (const [first, last] of state.trial.safe_deg ?? []) {
-    for (let k = 0; k <= (last - first + 360) % 360; k++) safe.add((first + k) % 360);
-  }
-  for (let course = 0; course < 360; course++) {
-    canvas.strokeStyle = safe.has(course) ? colors.safe : colors.danger;
-    if (!safe.has(course) && course % 4 > 1) continue; // broken: not by colour alone
-    const angle = canvasAngle(view, radians(course));
-    canvas.beginPath();
-    canvas.arc(middleX, middleY, radius - around, angle, angle + radians(1.2));
-    canvas.stroke();
-  }
-  canvas.fillStyle = colors.danger;
-  canvas.font = '700 40px system-ui, sans-serif';
-  canvas.textAlign = 'center';
-  canvas.fillText('T', middleX, middleY + radius - 34);
-  if (state.trial.course_deg !== null && state.own) {
-    canvas.strokeStyle = colors.safe;
-    canvas.lineWidth = 2;
-    canvas.setLineDash([2, 6]);
-    canvas.beginPath();
-    canvas.moveTo(view.centreX, view.centreY);
-    canvas.lineTo(...edge(view, radians(state.trial.course_deg), middleX, middleY, radius));
-    canvas.stroke();
-    canvas.setLineDash([]);
-  }
 }
 
 /** The target under a pixel, or null. */
@@ -343,4 +270,3 @@ export function targetAt(/** @type {State} */ state, /** @type {View} */ view, x
   }
   return found;
 }
-

@@ -28,6 +28,7 @@ export const UNACKNOWLEDGED = 2;
  * @property {Message|null} limits
  * @property {{commands: boolean, why: string}} role
  * @property {number} heard          s of this browser's clock; -Infinity before the first message
+ * @property {number} clockError     s, how far this browser's time of day is ahead of the server's
  * @property {number[]} differences  s, of the server's clock to this browser's, of late
  */
 
@@ -46,6 +47,7 @@ export function emptyState() {
     role: { commands: false, why: '' },
     heard: -Infinity,
     differences: [],
+    clockError: 0,
   };
 }
 
@@ -60,7 +62,11 @@ export function receive(state, message, local) {
   switch (message.kind) {
     case 'targets':
       state.targets = rows(message.columns);
-      state.scan = { at: message.at, time: message.time, period: message.period };
+      state.scan = {
+        at: message.at,
+        time: message.time,
+        period: message.period,
+      };
       break;
     case 'plots':
       if (state.plots.length && message.stamp < state.plots[state.plots.length - 1].stamp) {
@@ -77,6 +83,9 @@ export function receive(state, message, local) {
       break;
     case 'role':
       state.role = { commands: message.commands, why: message.why };
+      break;
+    case 'pulse':
+      state.clockError = Date.now() / 1000 - message.utc || 0;
       break;
     case 'own':
     case 'trails':

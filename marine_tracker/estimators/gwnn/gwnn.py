@@ -137,7 +137,7 @@ def weights(path: str = '', vessel_class: str = 'ship') -> gwnn_weights.Weights:
     if theirs[1] != ours[1]:
         raise ValueError(
             f'GWNN weights {file} were trained over the filters of vessel class {theirs[0]} '
-            f'(settings {theirs[1]}), not those of {ours[0]} (settings {ours[1]}): train anew '
+            f'(settings {theirs[1]}), not those of {ours[0]} (settings {ours[1]}): train again '
             f'with --vessel-class {vessel_class}'
         )
     return found

@@ -28,23 +28,23 @@ LEVELS, TRANSLATIONS, WIDTH = 1, 5, 1.2
 RULE = Rule(step=0.02, rounds=3)
 SEED = 1  # every track begins with the same weights
 
-# D: what an output of 1 stands for, m in range and across, m/s, rad.
+# D: the meaning of an output of 1: m in range and across, m/s, rad.
 POSITION_UNIT, SPEED_UNIT, COURSE_UNIT = 60.0, 0.2, np.radians(5)
-# What an input of 1 stands for, and how far from their slow mean the inputs are told apart.
+# The meaning of an input of 1, and the scale of the inputs' distance from their slow mean.
 INPUT_UNIT = np.array([1000.0, 1000.0, 2.0, np.radians(20)])
 INPUT_LIMIT, INPUT_GAIN = 3.0, 2.0
 CENTRE_RATE = 0.05
-WANTED_LIMIT = 3.0  # in D: the course of a ship at rest may be any next scan
+WANTED_LIMIT = 3.0  # in D; the course of a ship at rest may change completely in a scan
 
-# E1 and E2 follow "from the accuracy" (paper, below eq 10): its own for its noise of 0.3 m, or a
-# share of the posterior's deviation.
+# E1 and E2 follow "from the accuracy" (paper, below eq 10): the paper's values for its noise of 0.3
+# m, or a share of the posterior's deviation.
 FINEST, FAR_TO_NEAR = 1.852, 5.0  # m
 NEAR_SHARE = 0.5
-LEAST_GAIN = 0.01  # a plot that tells less is no plot: z(k) stays
-SHORTEST, LONGEST = 0.3, 3.0  # scans from plot to plot that can teach a difference
+LEAST_GAIN = 0.01  # a plot with less gain is ignored: z(k) does not change
+SHORTEST, LONGEST = 0.3, 3.0  # scans between plots from which a difference can be learnt
 WARM_UP = 5  # plots
-# Squared distances from the filter, in its own covariance: up to the first the network answers,
-# beyond the second it begins anew. In between it may be the filter that lags.
+# Squared distances from the filter, in its own covariance. Up to the first the network is used;
+# beyond the second it starts again. In between, the filter may be the one that lags.
 BELIEVED, HOPELESS = 2.0, 100.0
 
 
@@ -158,7 +158,7 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
         mine = take(state, rows)
         here, now = mine.mean[:, :2], mine.mean[:, 2:]
         scans = ((time[rows] - mine.time) / period)[:, None]
-        # A network gone bad may overflow; what comes of it is not believed.
+        # A network that has gone wrong may overflow. Its output is then not used.
         with np.errstate(all='ignore'):
             z = polar(mine.mean, mine.origin)
             output = forward(design, mine.weights, network_inputs(z, mine.centre)).output
@@ -214,7 +214,7 @@ def gwnn_paper(manoeuvre: Manoeuvre, max_speed: float, period: float) -> Estimat
         )
 
     def teach(state: PaperState, lesson: Lesson) -> PaperState:
-        """The rows with their networks taught; one that overflows begins anew."""
+        """The rows with their networks trained; one that overflows starts again."""
         wanted = np.clip(lesson.wanted, -WANTED_LIMIT, WANTED_LIMIT)
         near = np.maximum(FINEST, NEAR_SHARE * lesson.deviation)
         with np.errstate(all='ignore'):

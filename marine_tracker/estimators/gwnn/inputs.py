@@ -1,8 +1,8 @@
-"""What the network of `gwnn` sees of a track: how its filters disagree, and how plots fit them.
+"""The inputs of the network of `gwnn`: how a track's filters disagree, and how plots fit them.
 
-Everything is told in the line of sight of the last plot, [along, across], positions in the plot's
-deviations sigma and velocities in sigma / (4 scans), so that near and far targets look alike.
-Turning or mirroring the picture permutes the inputs and changes signs; `KINDS` says how.
+All inputs are in the line of sight of the last plot, [along, across]. Positions are in the plot's
+deviations sigma, and velocities in sigma / (4 scans), so near and far targets look alike. Turning
+or mirroring the scene permutes the inputs and changes signs; `KINDS` says how.
 """
 
 from typing import NamedTuple
@@ -13,20 +13,20 @@ from ...gaussian import linear_modes
 from ...types import Array, BoolArray, Plots
 from . import bank as filters
 
-SCAN = filters.PERIOD  # s: the unit of time of every input, whatever the radar's period
+SCAN = filters.PERIOD  # s; the unit of time of every input, for any period of the radar
 VELOCITY = 4 * SCAN  # s
 VAGUER = 1.5  # times; sigma grows by no more from plot to plot: a plot shared
 # by several targets may be as vague as it likes
 TELLS = 100.0  # times; a plot still vaguer is no plot to count
-FARTHEST = 25.0  # sigma: experts farther from the base are drawn in to this
+FARTHEST = 25.0  # sigma; larger distances of experts from the base are cut to this
 MEMORIES = (2.0, 5.0, 12.0)  # plots over which the base's innovations are averaged
-SLOW_KEEP = (0.6, 0.85)  # part kept of the slow filters' mean innovations, a plot
+SLOW_KEEP = (0.6, 0.85)  # share of the slow filters' mean innovations that is kept at a plot
 NIS_KEEP = (0.8, 0.95)
-WORST = 25.0  # squared residual that counts at most
+WORST = 25.0  # largest squared residual that counts
 DETAIL_KEEP = 0.96
 DETAIL_SCALE = float(np.sqrt(np.pi / 2))  # makes the mean size of a unit normal 1
 TRENDS = len(MEMORIES) + len(SLOW_KEEP) * 4
-# Experts whose residuals are remembered beside the base's.
+# Experts whose residuals are kept in addition to the base's.
 JUDGED = (4, filters.CS, filters.SECOND_IMM)
 LONE = (0, 1, 4, 7, 8, 9, 10, 11, 12)  # experts without a mirror image
 

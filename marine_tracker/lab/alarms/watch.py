@@ -3,7 +3,7 @@
 The truth is computed beside it: when each ship was a danger, from the true motion of all ships.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +42,7 @@ class Watch(NamedTuple):
     ship: NDArray[np.int64]
 
 
-def keep(scenario: Scenario, seed: int, swing: float = 0.0, **parameters) -> Watch:
+def keep(scenario: Scenario, seed: int, swing: float = 0.0, **parameters: Any) -> Watch:
     """Runs the scenario from beginning to end.
 
     swing  s, period of own ship's yaw: her true velocity is the mean over one period; 0: the

@@ -174,7 +174,7 @@ def hf_figures(found: dict[str, Summary]) -> list[report.Figure]:
     return figures
 
 
-def marine_figures(track: str, leg, runs: int, seed: int) -> list[report.Figure]:
+def marine_figures(track: str, leg: marine_table.Leg, runs: int, seed: int) -> list[report.Figure]:
     """`hf_soft` on one track of the marine table, with Doppler and without it."""
     figures = []
     for doppler in (True, False):

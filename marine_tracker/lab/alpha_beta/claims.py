@@ -1,5 +1,8 @@
 """What paper 002 claims for its adaptive alpha-beta filter, and what was found."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from ...evaluation.report import Claim
@@ -8,7 +11,7 @@ from ...evaluation.result import IN_PART, NOT_BORNE_OUT, verdict
 SOURCE = 'paper 002'
 
 
-def claims(found, faster) -> list[Claim]:
+def claims(found: Mapping[str, Any], faster: Mapping[str, float]) -> list[Claim]:
     """Verdicts from the summaries by filter name, and from the shares lost with a faster crossing
     ship (alpha_beta.py).
     """

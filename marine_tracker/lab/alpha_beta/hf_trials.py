@@ -105,7 +105,7 @@ def observe(on: Scene, runs: int, seed: int) -> Iterator[tuple[Array, NDArray[np
         )
 
 
-def as_plots(polar, time: float, sigma) -> Plots:
+def as_plots(polar: Array, time: float, sigma: Array) -> Plots:
     """Plots from range, radial speed and bearing [N, 3], for a radar at the origin."""
     distance, speed, bearing = polar.T
     position, covariance = polar_to_position(distance, bearing, sigma[0], sigma[2])
@@ -122,7 +122,7 @@ def as_plots(polar, time: float, sigma) -> Plots:
     )
 
 
-def run(estimator: Estimator, on: Scene, runs: int, seed: int, gate=GATE) -> Outcome:
+def run(estimator: Estimator, on: Scene, runs: int, seed: int, gate: Array = GATE) -> Outcome:
     """Runs the filter on all runs and ships. The same seed gives every filter the same plots.
 
     gate  [3]  sigma of range, radial speed and bearing; inf where a filter cannot judge

@@ -1,6 +1,7 @@
 """Pictures of the HF scene: tracks of one run by each filter; errors and losses over time."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +28,7 @@ def pictures(on: Scene, outcomes: dict[str, Outcome]) -> list[Picture]:
     ]
 
 
-def tracks(figure, on: Scene, outcomes: dict[str, Outcome]) -> None:
+def tracks(figure: Any, on: Scene, outcomes: dict[str, Outcome]) -> None:
     """One plan for each mode: the true paths and the tracks. A track ends where it is lost."""
     way = (
         on.truth[..., 0, None]
@@ -76,7 +77,7 @@ def tracks(figure, on: Scene, outcomes: dict[str, Outcome]) -> None:
     )
 
 
-def errors(figure, on: Scene, outcomes: dict[str, Outcome]) -> None:
+def errors(figure: Any, on: Scene, outcomes: dict[str, Outcome]) -> None:
     """RMS errors of the crossing ship over the runs whose track lives, and the share of lost
     tracks.
     """

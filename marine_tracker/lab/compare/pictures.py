@@ -1,6 +1,6 @@
 """Every estimator's errors relative to those of the IMM, scene by scene."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -32,7 +32,7 @@ def picture(found: Mapping[str, Mapping[str, Any]]) -> Picture:
     )
 
 
-def paint(figure, found, scenes) -> None:
+def paint(figure: Any, found: Mapping[str, Mapping[str, Any]], scenes: Sequence[str]) -> None:
     """Two panels, position and velocity; one row a scene. Left of 1 is better than the IMM."""
     panels = figure.subplots(1, 2, sharey=True)
     others = [name for name in found if name != BESIDE]

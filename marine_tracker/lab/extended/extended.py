@@ -42,7 +42,7 @@ def run(runs: int, seed: int, progress: Progress = silent, workers: Workers = No
     )
 
 
-def plan(runs: int, seed: int):
+def plan(runs: int, seed: int) -> tuple[dict[tuple[str, str], Job], dict[int, Job]]:
     """Jobs of the paper's cases by case and filter, and of the ship by aspect.
 
     Every filter of a case sees the same points.

@@ -15,7 +15,7 @@ from ...extent import gaussian_process, outline_measures, random_matrix, ship_ou
 from ...extent.gaussian_process import GpState
 from ...extent.random_matrix import RandomMatrixState
 from ...geometry import unit_vector
-from ...types import Array
+from ...types import Array, IntArray
 from .trials import cluster_of
 
 LENGTH, BEAM = 200.0, 32.0  # m
@@ -36,7 +36,9 @@ class Errors(NamedTuple):
     centre: float
 
 
-def points(middle, course: float, rng, runs: int):
+def points(
+    middle: Array, course: float, rng: np.random.Generator, runs: int
+) -> tuple[Array, IntArray]:
     """Points [runs, C, 2] m of a ship whose middle is at [2] m from the radar, and their number
     [runs].
     """
@@ -89,7 +91,7 @@ def trial(aspect: float, runs: int, seed: int) -> tuple[Errors, Errors]:
     )
 
 
-def first_matrix(centroid, velocity) -> RandomMatrixState:
+def first_matrix(centroid: Array, velocity: Array) -> RandomMatrixState:
     """For ships first seen at [N, 2] m, with velocities [N, 2] m/s known to 1 m/s."""
     count = len(centroid)
 

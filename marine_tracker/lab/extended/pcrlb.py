@@ -12,9 +12,19 @@ wider bound. The bound of gp counts only the noise of the cells.
 import numpy as np
 
 from ...extent.gaussian_process import GpState, Model, measure, predict
+from ...types import Array, FloatArray, IntArray
 
 
-def bound_step(bound, time: float, truth: GpState, cells, count, noise, model: Model, rng=None):
+def bound_step(
+    bound: Array,
+    time: float,
+    truth: GpState,
+    cells: Array,
+    count: IntArray,
+    noise: Array,
+    model: Model,
+    rng: np.random.Generator | None = None,
+) -> FloatArray:
     """The bound [n, n] one scan later.
 
     bound is the bound at `time`. truth has N rows at the scan's time; only their mean and semi_axes

@@ -1,6 +1,7 @@
 """Outlines as the filters see them, with error bars: Figs 4 and 5 of paper 004, redrawn."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -38,7 +39,7 @@ def pictures(found: Findings) -> list[Picture]:
     ]
 
 
-def outlines(figure, found: Findings) -> None:
+def outlines(figure: Any, found: Findings) -> None:
     """The first run of each case and filter after 100 s, with bands of 3 deviations."""
     figure.suptitle(
         'Outlines after 100 s, the first run of each: truth dashed, estimates with '
@@ -64,7 +65,7 @@ def outlines(figure, found: Findings) -> None:
         ax.set_xlabel('east, m')
 
 
-def error_bars(figure, found: Findings, case: str) -> None:
+def error_bars(figure: Any, found: Findings, case: str) -> None:
     """Errors of the radii of the first run, with 3 deviations; larger errors are highlighted."""
     figure.suptitle(f'Errors of the radius with 3 deviations, the first run after 100 s: {case}')
     angle = np.degrees(PRIOR.angle)

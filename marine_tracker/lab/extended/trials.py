@@ -16,7 +16,7 @@ from ...extent import gaussian_process, outline_measures, random_matrix
 from ...extent.gaussian_process import FIRST_RADIUS, GpState, Model
 from ...extent.radial_function import contour as contour_prior
 from ...geometry import unit_vector
-from ...types import Array
+from ...types import Array, IntArray
 from .pcrlb import bound_step
 
 PERIOD, SCANS = 1.0, 100  # s
@@ -93,7 +93,7 @@ class ExtendedTrial(NamedTuple):
     drawn: Drawn
 
 
-def scene(case: Case, runs: int, rng) -> Scene:
+def scene(case: Case, runs: int, rng: np.random.Generator) -> Scene:
     """Truth and points."""
     angle = np.linspace(0, 2 * np.pi, FINE + 1)
     outline = SHAPES[case.shape](angle)[:, None] * unit_vector(angle)
@@ -115,7 +115,7 @@ def scene(case: Case, runs: int, rng) -> Scene:
     return Scene(truth, cells + SIGMA * rng.standard_normal(cells.shape), count)
 
 
-def first_guess(runs: int, drawn: bool, rng):
+def first_guess(runs: int, drawn: bool, rng: np.random.Generator) -> Array:
     """[N, 6] where the filters start: at the true start, as in the paper, or drawn around it."""
     off = np.sqrt(START_VARIANCE) * rng.standard_normal((runs, 6))
     return START + drawn * off
@@ -216,7 +216,7 @@ def _against(found: outline_measures.Outline, case: Case, seen: Scene, mean):
     return _rms(shape), _rms(np.hypot(*(mean[:, :2] - truth[:, :2]).T))
 
 
-def cluster_of(cells, number):
+def cluster_of(cells: Array, number: IntArray) -> tuple[IntArray, Array, Array, IntArray]:
     """The rows [K] that have any cells, and centroid, scatter and count of each.
 
     cells [N, C, 2] m, of which the first `number` [N] of each row are points.

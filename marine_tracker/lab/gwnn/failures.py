@@ -10,6 +10,7 @@ import numpy as np
 from ...estimators.gwnn import gwnn, monitor
 from ...networks.gwnn_weights import Weights
 from ...training import track_trials
+from ...types import Array
 from .trials import FLEETS, SCANS, fallback, network, trial
 
 BREAK_SCAN, BREAK_SIZE = 40, 3.0  # scan; sigma, offset of the network's position
@@ -17,14 +18,16 @@ LATER = 6  # scans left out after the break
 COST_TRACKS, COST_SCANS = 1000, 30
 
 
-def broken(weights: Weights, shift) -> Weights:
+def broken(weights: Weights, shift: Array) -> Weights:
     """Weights whose positions are wrong by shift [2] sigma."""
     bias = weights.fusion.bias.copy()
     bias[gwnn.AT_ONCE] += shift
     return weights._replace(fusion=weights.fusion._replace(bias=bias))
 
 
-def scans_to_fallback(vessel_class: str, kind: str, runs: int, seed: int, weights: Weights):
+def scans_to_fallback(
+    vessel_class: str, kind: str, runs: int, seed: int, weights: Weights
+) -> tuple[Array, track_trials.Ratio]:
     """Scans [B] from a sudden break of the network to the fallback, and the error afterwards.
 
     The error is the RMS relative to that of CS-Kalman, over all scans from the sixth after the
@@ -58,7 +61,9 @@ def _over_cs(own, vessel_class, on, rng) -> track_trials.Ratio:
     return track_trials.ratio(own.position, cs.position, chosen, rng)
 
 
-def rubbish(vessel_class: str, runs: int, seed: int, weights: Weights):
+def rubbish(
+    vessel_class: str, runs: int, seed: int, weights: Weights
+) -> list[track_trials.Ratio | None]:
     """Position ratio to CS-Kalman with random weights, and with weights that are not numbers.
 
     None if any result is not a number.

@@ -13,6 +13,7 @@ from ...geodesy import LocalFrame
 from ...geometry import unit_vector
 from ...simulation import ais, ais_file, motion
 from ...training.ship_tracks import Ships
+from ...types import Array
 
 TURN_SCAN, TURN_RADIUS, TURN_ANGLE = 100, 200.0, float(np.radians(50))  # paper 000, 5.2
 TURNING = 0.04  # m/s^2, acceleration that counts as a manoeuvre
@@ -27,12 +28,12 @@ def _clock(steps):
     return np.cumsum(steps, 1) - steps[:, :1]
 
 
-def nomoto(steps, rng) -> Ships:
+def nomoto(steps: Array, rng: np.random.Generator) -> Ships:
     """Ships under autopilot with first-order Nomoto steering, ordered to new courses and speeds.
 
     A steady current, of about 1 m/s at most, moves them over the ground.
     """
-    count, scans = steps.shape
+    count, scans = len(steps), steps.shape[1]
     position = rng.uniform(1500, 15000, count)[:, None] * unit_vector(
         rng.uniform(0, 2 * np.pi, count)
     )
@@ -72,7 +73,7 @@ def nomoto(steps, rng) -> Ships:
     return Ships(_clock(steps), positions, velocities, manoeuvre)
 
 
-def paper_turn(steps, rng) -> Ships:
+def paper_turn(steps: Array, rng: np.random.Generator) -> Ships:
     """The sharp turn of paper 000: radius 200 m through 50 deg, the same for every run."""
     count, scans = steps.shape
     position = np.tile(4600 * unit_vector(np.radians(30)), (count, 1))
@@ -96,7 +97,7 @@ def paper_turn(steps, rng) -> Ships:
     return Ships(_clock(steps), positions, velocities, manoeuvre)
 
 
-def real_ships(file: Path, steps, rng) -> Ships:
+def real_ships(file: Path, steps: Array, rng: np.random.Generator) -> Ships:
     """Stretches of AIS tracks. Every vessel is used equally often; half of the stretches have a
     manoeuvre if possible.
 
@@ -139,7 +140,7 @@ def real_ships(file: Path, steps, rng) -> Ships:
     return _place(draw, steps, rng)
 
 
-def recorded_boats(file: Path, steps, rng) -> Ships:
+def recorded_boats(file: Path, steps: Array, rng: np.random.Generator) -> Ships:
     """Stretches of the true tracks of a recording: smoothed, turned and moved at random."""
     rows: dict[str, list[tuple[float, float, float]]] = {}
     with open(file, newline='') as table:

@@ -1,6 +1,7 @@
 """The comparison as a picture: every estimator's error relative to the IMM's, cell by cell."""
 
 from functools import partial
+from typing import Any
 
 from ...evaluation.result import Picture
 from .figures import SHIPPED, Findings, fair_cells
@@ -36,7 +37,7 @@ def pictures(found: Findings) -> list[Picture]:
     return made
 
 
-def compare(figure, cells: list[Cell], title: str) -> None:
+def compare(figure: Any, cells: list[Cell], title: str) -> None:
     """Rows of cells: straight courses, manoeuvres, then kinds of motion outside the training."""
     groups: dict[str, list[Cell]] = {'straight': [], 'manoeuvre': [], 'never trained on': []}
     for cell in cells:

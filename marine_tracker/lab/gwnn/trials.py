@@ -5,7 +5,7 @@ deviations sigma. A cell is one kind of motion in one phase, under one set of ra
 """
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -99,12 +99,20 @@ def kinds(vessel_class: str) -> tuple[str, ...]:
     return *WATERS[vessel_class].kinds, *FLEETS[vessel_class].held_out
 
 
-def trial(vessel_class: str, kind: str, runs: int, radar: Conditions, rng, data: Path | None):
+def trial(
+    vessel_class: str,
+    kind: str,
+    runs: int,
+    radar: Conditions,
+    rng: np.random.Generator,
+    data: Path | None,
+) -> track_trials.TrackTrial:
     """Tracks of one kind and a radar's plots of them; ValueError where a file is needed."""
     fleet = FLEETS[vessel_class]
     period = 60 / radar.rpm
     steps = period * (1 + radar.jitter * np.clip(rng.standard_normal((2 * runs, SCANS)), -3, 3))
-    ranges = np.exp(rng.uniform(*np.log(fleet.ranges), 2 * runs))
+    low, high = np.log(fleet.ranges)
+    ranges = np.exp(rng.uniform(low, high, 2 * runs))
     if kind in HELD_OUT:
         ships = HELD_OUT[kind](_file(data, kind), steps, rng)
         if kind in RECORDED:  # recorded tracks may lie anywhere: move them to where the others are
@@ -165,7 +173,9 @@ def fallback(vessel_class: str) -> Estimator:
     return cs_kalman.cs_kalman(bank.SETTINGS[vessel_class].manoeuvre, SPEED)
 
 
-def network(vessel_class: str, weights: gwnn_weights.Weights, period: float, **options):
+def network(
+    vessel_class: str, weights: gwnn_weights.Weights, period: float, **options: Any
+) -> Estimator:
     """The estimator `gwnn` with its own options."""
     return gwnn.gwnn(weights, SPEED, period, vessel_class=vessel_class, **options)
 

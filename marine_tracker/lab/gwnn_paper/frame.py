@@ -7,9 +7,10 @@ frame of L2 for a = 2, 0 < b <= 3.5. Their sigmoid is the one with q = 0.5 here.
 import numpy as np
 
 from ...networks.wavelets import DILATION, D, P
+from ...types import Array
 
 
-def spectrum(frequency, q: float, d: float = D, p: float = P):
+def spectrum(frequency: float | Array, q: float, d: float = D, p: float = P) -> Array:
     """PSI(w) = 8 pi q sin(w d) sin(w p) / sinh(pi q w) for w [...] rad, odd.
 
     The Fourier transform of psi, without the factor i.
@@ -22,7 +23,9 @@ def spectrum(frequency, q: float, d: float = D, p: float = P):
         return np.where(w == 0, 0.0, np.sign(w) * np.sin(w * d) * np.sin(w * p) * size)
 
 
-def estimated_bounds(q: float, b: float, a: float = DILATION, both_signs: bool = False):
+def estimated_bounds(
+    q: float, b: float, a: float = DILATION, both_signs: bool = False
+) -> tuple[float, float]:
     """Frame bounds (A, B) of the psi_mk, d = p = 1, as estimated by Daubechies' theorem.
 
         A, B = (1/b) (inf, sup_w sum_m |PSI(a^m w)|^2  -, +  2 sum_k [beta(s_k) beta(-s_k)]^(1/2))
@@ -52,7 +55,7 @@ def estimated_bounds(q: float, b: float, a: float = DILATION, both_signs: bool =
     return float((power.min() - cross) / b), float((power.max() + cross) / b)
 
 
-def measured_bounds(q: float, b: float, octaves: int = 5):
+def measured_bounds(q: float, b: float, octaves: int = 5) -> tuple[float, float]:
     """Lowest and highest eigenvalue of the frame operator of the psi_mk, a = 2, d = p = 1.
 
     The operator acts on a circle of length 2^octaves b. It is restricted to the trigonometric
@@ -75,7 +78,9 @@ def measured_bounds(q: float, b: float, octaves: int = 5):
     return float(values[0]), float(values[-1])
 
 
-def width_exponent(signal_band, wavelet_band, a: float = DILATION) -> int:
+def width_exponent(
+    signal_band: tuple[float, float], wavelet_band: tuple[float, float], a: float = DILATION
+) -> int:
     """q0 of eq 23. By the paper, with q > a^q0 the wavelets' spectra cover the signal's.
 
     signal_band   (w0, w1)        rad, lowest and highest frequency of the signal

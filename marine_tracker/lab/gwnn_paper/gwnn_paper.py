@@ -5,6 +5,8 @@ can be read from the paper's pictures, so each claim of the paper is listed with
 a verdict.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ...evaluation import report
@@ -115,7 +117,7 @@ def frame(s: Study) -> list[report.Figure]:
     ]
 
 
-def signal_band():
+def signal_band() -> tuple[float, float]:
     """Frequencies of the paper's track, rad a scan: the wave of the speed, and the sharp turn of 19
     s.
     """
@@ -127,7 +129,7 @@ def claims_of(s: Study) -> list[report.Claim]:
     return [*claims_of_learning(s), *claims_of_tracking(s), *claims_of_theory(s)]
 
 
-def claims_of_learning(s: Study):
+def claims_of_learning(s: Study) -> Iterator[report.Claim]:
     """Fig 1 to 3."""
     plots = {name: float(np.median(values)) for name, values in s.plots.items()}
     ours, plain = plots['GWNN, variable step'], plots['BP, equal step']
@@ -149,7 +151,7 @@ def claims_of_learning(s: Study):
     )
 
 
-def claims_of_tracking(s: Study):
+def claims_of_tracking(s: Study) -> Iterator[report.Claim]:
     """Fig 4 and 5."""
     noise, (real, seen) = s.noise_rms, s.real_noise
     yield report.Claim(
@@ -179,7 +181,7 @@ def claims_of_tracking(s: Study):
     )
 
 
-def claims_of_theory(s: Study):
+def claims_of_theory(s: Study) -> Iterator[report.Claim]:
     """Eq 14 and 20 to 23."""
     norm, gradient = s.broken[0.9]
     yield report.Claim(

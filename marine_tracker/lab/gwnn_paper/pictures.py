@@ -1,6 +1,7 @@
 """Pictures of the results of `study`: the paper's Figs 1 to 5 and eq 20-22, redrawn."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +26,7 @@ def pictures(s: Study) -> list[Picture]:
     ]
 
 
-def steady(figure, s):
+def steady(figure: Any, s: Study) -> None:
     """Fig 1."""
     figure.suptitle('Steady error of the GWNN, no noise (Fig 1)')
     left, right = figure.subplots(1, 2)
@@ -47,7 +48,7 @@ def steady(figure, s):
         axes.grid(color='0.92')
 
 
-def convergence(figure, s):
+def convergence(figure: Any, s: Study) -> None:
     """Fig 2 and 3."""
     axes = figure.add_subplot(
         title='Learning to extrapolate, medians of the seeds (Fig 2 and 3)',
@@ -77,7 +78,7 @@ def convergence(figure, s):
     axes.legend()
 
 
-def noise(figure, s):
+def noise(figure: Any, s: Study) -> None:
     """Fig 4."""
     figure.suptitle(
         'Error of the GWNN one scan ahead in noise N(0.5, 0.3) m, medians of the seeds (Fig 4)'
@@ -95,7 +96,7 @@ def noise(figure, s):
     axes.set_xlabel('scan')
 
 
-def sharp_turn(figure, s):
+def sharp_turn(figure: Any, s: Study) -> None:
     """Fig 5."""
     axes = figure.add_subplot(
         title='Turn of 50 deg on a radius of 200 m at scan 500, no noise (Fig 5)',
@@ -123,7 +124,7 @@ def sharp_turn(figure, s):
     axes.legend(title='curves: median of the seeds; peaks: median of theirs', title_fontsize=8)
 
 
-def robustness(figure, s):
+def robustness(figure: Any, s: Study) -> None:
     """Eq 20 to 22."""
     axes = figure.add_subplot(
         title='Steepest wavelet against the steepest sigmoid (eq 20-22)',
@@ -150,7 +151,7 @@ def robustness(figure, s):
     axes.grid(color='0.92')
 
 
-def band(axes, place):
+def band(axes: Any, place: tuple[int, str]) -> None:
     """The paper's two error thresholds, named at (x, alignment)."""
     x, side = place
     for value, name in ((NEAR, 'E1'), (FAR, 'E2')):

@@ -26,7 +26,7 @@ from ...evaluation.result import Progress, silent
 from ...networks import backpropagation as net
 from ...networks import wavelets
 from ...simulation import motion
-from ...types import Array
+from ...types import Array, IntArray
 from .frame import spectrum
 
 PERIOD = 60 / 22  # s
@@ -65,7 +65,7 @@ TURNERS = {
 
 def track(
     scans: int, speed: float = SPEED, wave: motion.Wave | None = WAVE, turn_at: int | None = None
-):
+) -> Array:
     """z [scans, 4]: range m, bearing rad, speed m/s, course rad of the paper's target."""
     legs = (
         ()
@@ -77,7 +77,7 @@ def track(
     return to_z(position, velocity)
 
 
-def to_z(position, velocity):
+def to_z(position: Array, velocity: Array) -> Array:
     """z [..., 4] of positions and velocities [..., 2]."""
     return np.stack(
         [
@@ -90,7 +90,13 @@ def to_z(position, velocity):
     )
 
 
-def noisy(truth, runs: int, rng, mean: float = NOISE_MEAN, sigma: float = NOISE_SIGMA):
+def noisy(
+    truth: Array,
+    runs: int,
+    rng: np.random.Generator,
+    mean: float = NOISE_MEAN,
+    sigma: float = NOISE_SIGMA,
+) -> Array:
     """The track [N, 4] as seen with N(mean, sigma) m on range and across, [runs, N, 4].
 
     The paper does not give the noise of speed and course. A radar computes them from positions.
@@ -111,7 +117,7 @@ def noisy(truth, runs: int, rng, mean: float = NOISE_MEAN, sigma: float = NOISE_
     return seen
 
 
-def predict(design: net.Design, rule: net.Rule, seen, rng):
+def predict(design: net.Design, rule: net.Rule, seen: Array, rng: np.random.Generator) -> Array:
     """Prediction one scan ahead of each plot [B, N, 4], learning on line; nan for the first two
     plots.
     """
@@ -138,7 +144,7 @@ def predict(design: net.Design, rule: net.Rule, seen, rng):
     return ahead
 
 
-def two_point(z):
+def two_point(z: Array) -> Array:
     """Prediction [N, 4] by the straight line through the last two plots of a track [N, 4]."""
     position = z[:, :1] * np.stack([np.sin(z[:, 1]), np.cos(z[:, 1])], 1)
     ahead = np.full_like(z, np.nan)
@@ -146,12 +152,12 @@ def two_point(z):
     return ahead
 
 
-def radial_error(ahead, truth):
+def radial_error(ahead: Array, truth: Array) -> Array:
     """E_R [..., N] m."""
     return np.hypot(ahead[..., 0] - truth[..., 0], truth[..., 0] * (ahead[..., 1] - truth[..., 1]))
 
 
-def plots_to_converge(error, over: int = 10):
+def plots_to_converge(error: Array, over: int = 10) -> IntArray:
     """Plots learnt from [B] until errors [B, N] are RMS at most E1 over ten scans; N if never.
 
     Column j of the errors is the error after j + 1 plots.
@@ -161,7 +167,7 @@ def plots_to_converge(error, over: int = 10):
     return np.where(good.any(1), np.argmax(good, 1) + 1, error.shape[1])
 
 
-def rms(values, axis=None):
+def rms(values: Array, axis: int | None = None) -> Array:
     """Root mean square, ignoring nan."""
     return np.sqrt(np.nanmean(np.square(values), axis))
 
@@ -235,7 +241,7 @@ def study(runs: int, seed: int, progress: Progress = silent) -> Study:
     )
 
 
-def steady(runs, rng, scans=400):
+def steady(runs: int, rng: np.random.Generator, scans: int = 400) -> tuple[Array, Array, Array]:
     """Fig 1: speeds, range and bearing errors."""
     speeds = np.arange(2.0, 20.5, 2.0)
     truth = np.repeat([track(scans, speed, None) for speed in speeds], runs, 0)
@@ -244,7 +250,9 @@ def steady(runs, rng, scans=400):
     return speeds, off[:, 0], np.degrees(off[:, 1])
 
 
-def learning(runs, rng, scans=500):
+def learning(
+    runs: int, rng: np.random.Generator, scans: int = 500
+) -> tuple[dict[str, Array], dict[str, IntArray]]:
     """Fig 2 and 3: error curves of the learners, and the number of plots until they converge."""
     truth = np.repeat(track(scans)[None], runs, 0)
     error = {
@@ -257,7 +265,9 @@ def learning(runs, rng, scans=500):
     )
 
 
-def under_noise(runs, rng, scans=500):
+def under_noise(
+    runs: int, rng: np.random.Generator, scans: int = 500
+) -> tuple[Array, tuple[float, float, float], tuple[float, float]]:
     """Fig 4: errors of all four outputs against the truth; and at the noise of a real radar."""
     truth = track(scans)
     ahead = predict(GWNN, VARIABLE, noisy(truth, runs, rng), rng)
@@ -270,11 +280,11 @@ def under_noise(runs, rng, scans=500):
     return (
         np.median(np.abs(off), 0),
         (radial[0], float(rms(late[..., 2])), float(rms(late[..., 3]))),
-        tuple(radial[1:]),
+        (radial[1], radial[2]),
     )
 
 
-def turning(runs, rng):
+def turning(runs: int, rng: np.random.Generator) -> tuple[dict[str, Array], dict[str, float]]:
     """Fig 5: errors and peaks around the sharp turn, and those of the two-point line."""
     truth = track(TURN_AT + 40, turn_at=TURN_AT)
     around = slice(TURN_AT - 10, TURN_AT + 40)
@@ -290,7 +300,7 @@ def turning(runs, rng):
     )
 
 
-def broken(width: float, rng, tries: int = 20000):
+def broken(width: float, rng: np.random.Generator, tries: int = 20000) -> tuple[float, float]:
     """Shares of random inputs at which the inequalities behind eq 22 fail.
 
     Norm: |D| of a group of wavelet units against that of as many units S, all at one net input,
@@ -311,7 +321,7 @@ def broken(width: float, rng, tries: int = 20000):
     return float(np.mean(ours >= theirs)), float(np.mean(gradient[0] >= gradient[1]))
 
 
-def half_band(width: float):
+def half_band(width: float) -> tuple[float, float]:
     """Lowest and highest frequency, rad, at which psi's spectrum reaches half its peak."""
     w = np.linspace(0.001, np.pi, 20001)
     size = np.abs(spectrum(w, width))

@@ -1,5 +1,7 @@
 """Tracked hulls with the cells that the radar saw of them: one scan of both scenarios."""
 
+from typing import Any
+
 import numpy as np
 
 from .traffic import Snapshot
@@ -7,7 +9,7 @@ from .traffic import Snapshot
 NEAR = 350.0  # m around a ship that is shown enlarged
 
 
-def paint(figure, hulls: Snapshot | None, coast: Snapshot | None) -> None:
+def paint(figure: Any, hulls: Snapshot | None, coast: Snapshot | None) -> None:
     """Left the whole coast; right the ships of `hulls`, each enlarged."""
     assert hulls is not None and coast is not None
     left, right = figure.subfigures(1, 2, width_ratios=(1, 1.25))

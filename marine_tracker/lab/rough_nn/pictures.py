@@ -1,11 +1,13 @@
 """The filters' answers to a step of the acceleration: Figs 3 to 5 of paper 001, and at sea."""
 
+from collections.abc import Mapping
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from ...evaluation.result import Picture
-from .trials import BP, CS, IMM, ROUGH, SETTINGS
+from .trials import BP, CS, IMM, ROUGH, SETTINGS, Answer
 
 # Colours of Okabe and Ito, as in `lab.gwnn.pictures`. The BP network's line is wide, because the
 # other one covers it.
@@ -19,7 +21,7 @@ PAPER = {'0 -> 5': 'weak (Fig 3)', '0 -> 40': 'strong (Fig 4)', '5 -> 25': 'step
 BEFORE = 10  # scans shown before the step
 
 
-def pictures(found) -> list[Picture]:
+def pictures(found: Mapping[tuple[str, str, str], Answer]) -> list[Picture]:
     """One for the paper's scenario, one at sea."""
     return [
         Picture(
@@ -31,7 +33,7 @@ def pictures(found) -> list[Picture]:
     ]
 
 
-def paint(figure, found, name: str) -> None:
+def paint(figure: Any, found: Mapping[tuple[str, str, str], Answer], name: str) -> None:
     """Top: the mean acceleration. Bottom: the mean O (for the IMM the weight of its F1)."""
     setting = SETTINGS[name]
     above, below = figure.subplots(2, len(setting.steps), sharex=True, height_ratios=(3, 1.3))

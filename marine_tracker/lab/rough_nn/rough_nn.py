@@ -7,6 +7,7 @@ the plain CS filter with the same a_max, and with an IMM of the same two filters
 the mean of the estimated accelerations has made 63 % of the step.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -103,7 +104,7 @@ def figures(found: Found) -> list[report.Figure]:
     return out
 
 
-def calmness(calm) -> list[report.Figure]:
+def calmness(calm: Mapping[str, Mapping[str, float]]) -> list[report.Figure]:
     """Mean O by radar and kind of network."""
     return [
         report.Figure(f'share O on a straight course, {kind}: {name}', value)

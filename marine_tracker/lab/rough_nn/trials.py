@@ -125,7 +125,7 @@ class Answer(NamedTuple):
     share: Array
 
 
-def truth(setting: Setting, step: tuple[float, float]):
+def truth(setting: Setting, step: tuple[float, float]) -> Array:
     """[scans, 3] position, velocity and acceleration of an axis."""
     t, x = setting.period, np.zeros((setting.scans, 3))
     x[:, 2] = np.where(np.arange(setting.scans) < setting.change, *step)
@@ -136,7 +136,9 @@ def truth(setting: Setting, step: tuple[float, float]):
     return x
 
 
-def plots_of(setting: Setting, position, runs: int, rng) -> Iterator[Plots]:
+def plots_of(
+    setting: Setting, position: Array, runs: int, rng: np.random.Generator
+) -> Iterator[Plots]:
     """Scan by scan, the plots of (runs + 1) // 2 tracks."""
     count = (runs + 1) // 2
     nothing = np.zeros(count)
@@ -175,7 +177,7 @@ def _states(estimator, setting, scans, of):
         yield of(state)
 
 
-def run_cs(setting, scans):
+def run_cs(setting: Setting, scans: Iterator[Plots]) -> Iterator[tuple[Array, Any]]:
     """The plain filter."""
     estimator = cs_kalman.cs_kalman(setting.manoeuvre, 1.0)
     return _states(estimator, setting, scans, lambda s: (s.mean.reshape(-1, 3), np.nan))
@@ -193,7 +195,7 @@ def run_parallel(kind: str) -> Filter:
     return go
 
 
-def run_imm(setting, scans):
+def run_imm(setting: Setting, scans: Iterator[Plots]) -> Iterator[tuple[Array, Any]]:
     """Blom and Bar-Shalom's IMM of F1 and a calm F2, on each axis separately."""
     frequency, limit = setting.manoeuvre.frequency, setting.manoeuvre.max_acceleration
     phi, q = cs_kalman.model(frequency, np.array([setting.period]))

@@ -8,6 +8,7 @@ positions and of the course and speed that the ARPA shows. They are taken every 
 minute on, for the six ships that both radars see. Ratios have a 95 % interval over the runs.
 """
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from ...service import Service, service_for
 from ...simulation import radar, scenario
 from ...tracking.lifecycle import LOST
 from ...tracking.radars import fused, merged
-from ...types import Array, take
+from ...types import Array, Scan, take
 
 HELP = 'the fused track of two radars against that of each alone, with one of them failing'
 RUNS = 100
@@ -125,7 +126,7 @@ def scene(estimator: str, seed: int) -> list[Course]:
     ]
 
 
-def follow(service: Service, scans, truth: scenario.Scenario) -> Course:
+def follow(service: Service, scans: Iterable[Scan], truth: scenario.Scenario) -> Course:
     """Runs the service on the scans and takes its errors."""
     memory, output, due = service.start(), None, SETTLED
     errors: list[Array] = []

@@ -1,17 +1,24 @@
 """Pictures of the wavelet experiment: the paper's Fig 1 redrawn, and a_max at sea."""
 
+from collections.abc import Mapping
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from ...evaluation.result import Picture
+from ...types import Array
 from .study import SCENES, SIZE
 
 CS_COLOUR, OURS_COLOUR, LATE_COLOUR, OTHER = '#c2571a', '#1f5fa8', '#009e73', '0.35'
 SMOOTH = 20  # s of averaging, so that the curves can be told apart
 
 
-def pictures(errors, sea, sea_imm) -> list[Picture]:
+def pictures(
+    errors: Mapping[tuple[str, str], Array],
+    sea: Mapping[tuple[str, float], tuple[float, float]],
+    sea_imm: tuple[float, float],
+) -> list[Picture]:
     """Both."""
     return [
         Picture('wavelet_fig1', (9, 6.0), partial(over_time, errors=errors)),
@@ -19,7 +26,7 @@ def pictures(errors, sea, sea_imm) -> list[Picture]:
     ]
 
 
-def over_time(figure, errors):
+def over_time(figure: Any, errors: Mapping[tuple[str, str], Array]) -> None:
     """Fig 1: error of x over time."""
     figure.suptitle(f'RMS error along x, mean of {SMOOTH} s (Fig 1, reconstructed scenes)')
     styles = {
@@ -50,7 +57,9 @@ def over_time(figure, errors):
     axes.legend(ncols=2, fontsize=8)
 
 
-def limits(figure, sea, sea_imm):
+def limits(
+    figure: Any, sea: Mapping[tuple[str, float], tuple[float, float]], sea_imm: tuple[float, float]
+) -> None:
     """Sensitivity to a_max in turns of 1.5 deg/s, whose acceleration is 0.21 m/s^2."""
     figure.suptitle('Turns of 1.5 deg/s at 8 m/s (0.21 m/s²), 15 m and 0.5 deg, 22 rpm, no latency')
     for which, (axes, unit) in enumerate(

@@ -5,7 +5,8 @@ the constant acceleration of the paper's initial state the target would move 3,8
 acceleration decays (`singer`), or it ends after 20 s and turns follow (`manv`).
 """
 
-from typing import NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -79,7 +80,7 @@ def truth(scene: str) -> Array:
     return np.array(out)
 
 
-def case(scene: str, runs: int, rng) -> Case:
+def case(scene: str, runs: int, rng: np.random.Generator) -> Case:
     """The scene as both radars see it."""
     path = truth(scene)
     distance, bearing = to_range_bearing(path[:, POSITION])
@@ -103,7 +104,7 @@ def case(scene: str, runs: int, rng) -> Case:
     )
 
 
-def sea_case(runs: int, rng) -> Case:
+def sea_case(runs: int, rng: np.random.Generator) -> Case:
     """The turns of `marine_table`. Each run begins with its first plot."""
     position, velocity = marine_table.truth(marine_table.TRACKS['turns'])
     distance, bearing = to_range_bearing(position)
@@ -120,7 +121,12 @@ def sea_case(runs: int, rng) -> Case:
     return Case(path[1:last], [], seen[:, 1:last], noise[:, 1:last], first.mean, first.covariance)
 
 
-def kalman(on: Case, manoeuvre: Manoeuvre, plots=None, hold: int = 1) -> Filtered:
+def kalman(
+    on: Case,
+    manoeuvre: Manoeuvre,
+    plots: Sequence[tuple[Array, Array]] | None = None,
+    hold: int = 1,
+) -> Filtered:
     """CS-Kalman with the plots of each second one after another, by default the fused one.
 
     hold  number of plots for which mean and variance of the acceleration are kept, as within a
@@ -163,7 +169,7 @@ def smoothed(found: Filtered, frequency: float) -> Array:
     return mean
 
 
-def late(on: Case, manoeuvre: Manoeuvre, **how) -> Array:
+def late(on: Case, manoeuvre: Manoeuvre, **how: Any) -> Array:
     """`wavelet_block.smooth`: means [B, K, 6]."""
     time = np.tile(np.arange(1.0 + on.position.shape[1]), (len(on.mean), 1))
     return wavelet_block.smooth(
@@ -195,7 +201,7 @@ def interacting(on: Case) -> Array:
     return out
 
 
-def each_second(on: Case):
+def each_second(on: Case) -> Iterator[Plots]:
     """The fused plots in the form an estimator takes."""
     return (_plots(1.0 + k, on.position[:, k], on.noise[:, k]) for k in range(on.position.shape[1]))
 

@@ -5,6 +5,8 @@ position per axis after 40 s. "Late" states come at the end of their block of fo
 the error of the mean position of a block. Then the turns of `marine_table`, without latency.
 """
 
+from collections.abc import Iterator, Mapping
+
 import numpy as np
 
 from ...estimators import cs_kalman, imm, wavelet_block, wavelet_cs
@@ -81,18 +83,18 @@ def filters(on: Case) -> dict[str, Array]:
     }
 
 
-def rms(error) -> float:
+def rms(error: Array) -> float:
     """RMS of the position per axis of errors [B, K, 6], after settling."""
     return float(np.sqrt(np.mean(error[:, SETTLED:, POSITION] ** 2)))
 
 
-def block_mean(error) -> float:
+def block_mean(error: Array) -> float:
     """The same of the mean position of each block."""
     blocks = error.reshape(len(error), -1, SIZE, 6).mean(2)
     return float(np.sqrt(np.mean(blocks[:, SETTLED // SIZE :, POSITION] ** 2)))
 
 
-def block_end(error) -> float:
+def block_end(error: Array) -> float:
     """The same of the last state of each block, from which the filter continues."""
     ends = error[:, SIZE - 1 :: SIZE]
     return float(np.sqrt(np.mean(ends[:, SETTLED // SIZE :, POSITION] ** 2)))
@@ -160,7 +162,7 @@ def _whole(on: Case, manoeuvre: Manoeuvre, wavelet: str) -> Array:
     return np.concatenate(out, 1)
 
 
-def scenes(errors) -> list[report.Figure]:
+def scenes(errors: Mapping[tuple[str, str], Array]) -> list[report.Figure]:
     """Every filter on both scenes, and the limits for the late coarse level."""
     figures = []
     for scene in study.SCENES:
@@ -182,7 +184,9 @@ def scenes(errors) -> list[report.Figure]:
     return figures
 
 
-def at_sea(runs: int, seed: int):
+def at_sea(
+    runs: int, seed: int
+) -> tuple[dict[tuple[str, float], tuple[float, float]], tuple[float, float]]:
     """RMS of position and velocity in turns of 1.5 deg/s, by filter and a_max; and of `imm`."""
     leg, found = marine_table.TRACKS['turns'], {}
     for limit in LIMITS:
@@ -192,7 +196,9 @@ def at_sea(runs: int, seed: int):
     return found, marine_table.errors(imm.imm(imm.PRESETS['ship'], 30.0), leg, runs, seed)
 
 
-def sea_figures(sea, sea_imm) -> list[report.Figure]:
+def sea_figures(
+    sea: Mapping[tuple[str, float], tuple[float, float]], sea_imm: tuple[float, float]
+) -> list[report.Figure]:
     """Figures by a_max, and the limits."""
     figures = []
     for limit in (0.1, 0.3, 1.0):
@@ -253,7 +259,7 @@ def noise_figures(runs: int, seed: int) -> list[report.Figure]:
     return figures
 
 
-def claims_of_accuracy(errors):
+def claims_of_accuracy(errors: Mapping[tuple[str, str], Array]) -> Iterator[report.Claim]:
     """Claims of section 5."""
     told, level, better = [], [], []
     for scene in study.SCENES:
@@ -273,7 +279,9 @@ def claims_of_accuracy(errors):
     )
 
 
-def claims_of_equations(errors, literal: study.Literal, at_sea_m: float):
+def claims_of_equations(
+    errors: Mapping[tuple[str, str], Array], literal: study.Literal, at_sea_m: float
+) -> Iterator[report.Claim]:
     """Claims of eq 13 to 15. literal: the equations as printed, in the turns at sea; at_sea_m: its
     error there.
     """
@@ -310,7 +318,9 @@ def claims_of_equations(errors, literal: study.Literal, at_sea_m: float):
     )
 
 
-def claim_at_sea(sea, sea_imm) -> report.Claim:
+def claim_at_sea(
+    sea: Mapping[tuple[str, float], tuple[float, float]], sea_imm: tuple[float, float]
+) -> report.Claim:
     """A claim of this project."""
     ours, plain = (sea[name, 1.0] for name in (CAUSAL, CS))
     return report.Claim(

@@ -9,7 +9,7 @@ from ...types import Array
 NORMAL = 0.6745  # median of |z| of a normal z of deviation 1
 
 
-def noise_deviation(series, wavelet: str = 'db2') -> Array:
+def noise_deviation(series: Array, wavelet: str = 'db2') -> Array:
     """Deviation [...] of the white noise in evenly spaced series [..., K], e.g. ranges in m.
 
     The finest details of a smooth motion are noise. Their median size is robust: a few wild plots

@@ -7,8 +7,8 @@ import pytest
 
 pytest.importorskip('rclpy')
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from nav_msgs.msg import Odometry
 
+from marine_tracker.geometry import own_ship_at
 from marine_tracker.nodes import convert, topics
 
 ACTIVE, SEEN, RECTIFIED, NORMAL = (
@@ -213,13 +213,14 @@ def test_silent_sensors_are_told_one_by_one(bridge, sea):
 
     # Plots, and a position without an orientation: only the heading is missing then.
     heading, position, plots = missing
-    blind = Odometry()
-    blind.pose.pose.orientation.w = 0.0
     pause = 0.05  # the sensors are looked at every second, and the scene has 250 scans
 
     def without_heading():
         time.sleep(pause)
         here._played += 1
+        end = here.last.end
+        blind = here.odometry(here.stamp(end), *own_ship_at(here.last.own_ship, end))
+        blind.pose.pose.orientation.w = blind.pose.pose.orientation.z = 0.0
         here.own_ship.publish(blind)
         here.send([here.last])
         return {name: here.standing().get(name) for name in missing} == {

@@ -57,7 +57,10 @@ def test_what_is_published_is_what_the_core_says(rig, clean):
             assert message.header.frame_id == 'map'
             stamp = convert.nanoseconds(message.header.stamp) - EPOCH_NS
             assert stamp * 1e-9 == pytest.approx(estimate.time[k], abs=1e-5)
-            position, velocity = convert.odometry_to_own_ship(message)
+            pose, speed = message.pose.pose, message.twist.twist.linear.x
+            yaw = convert.yaw_of(pose.orientation)
+            position = [pose.position.x, pose.position.y]
+            velocity = [speed * np.cos(yaw), speed * np.sin(yaw)]
             assert position == pytest.approx(estimate.position[k], abs=0.05)
             assert velocity == pytest.approx(estimate.velocity[k], abs=0.01)
             assert message.pose.covariance.reshape(6, 6)[:2, :2] == pytest.approx(

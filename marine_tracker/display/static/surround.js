@@ -1,0 +1,115 @@
+// What is drawn around and over the picture: bearing scale, cursor, markers, a trial's courses.
+
+import { canvasAngle, edge, radians, toScreen } from './geometry.js';
+
+/**
+ * What the viewer has marked.
+ * @typedef {object} Marks
+ * @property {number|null} id           of the selected target's track
+ * @property {number[]|null} cursor     map position, m
+ * @property {number[][]} lines         range, m, and bearing, rad: electronic bearing lines
+ * @property {number[]|null} drag       px, to where own ship's vector is being dragged
+ */
+
+/** Cursor, bearing lines with their range markers, and the vector that is being dragged. */
+export function drawMarks(
+  canvas,
+  { view, middleX, middleY, radius },
+  colors,
+  /** @type {Marks} */ marks,
+) {
+  marks.lines.forEach(([range, bearing], place) => {
+    canvas.strokeStyle = colors.marker;
+    canvas.lineWidth = 1.2;
+    canvas.setLineDash(place ? [3, 5] : [9, 5]);
+    canvas.beginPath();
+    canvas.moveTo(view.centreX, view.centreY);
+    canvas.lineTo(...edge(view, bearing, middleX, middleY, radius));
+    canvas.stroke();
+    canvas.beginPath();
+    canvas.arc(view.centreX, view.centreY, range * view.scale, 0, 2 * Math.PI);
+    canvas.stroke();
+    canvas.setLineDash([]);
+  });
+  if (marks.drag) {
+    canvas.strokeStyle = colors.safe;
+    canvas.lineWidth = 2;
+    canvas.beginPath();
+    canvas.moveTo(view.centreX, view.centreY);
+    canvas.lineTo(...marks.drag);
+    canvas.stroke();
+  }
+  if (marks.cursor) {
+    const [x, y] = toScreen(view, marks.cursor[0], marks.cursor[1]);
+    canvas.strokeStyle = colors.cursor;
+    canvas.lineWidth = 1.4;
+    canvas.beginPath();
+    for (const [right, down] of [
+      [1, 0],
+      [-1, 0],
+      [0, 1],
+      [0, -1],
+    ]) {
+      canvas.moveTo(x + 4 * right, y + 4 * down);
+      canvas.lineTo(x + 14 * right, y + 14 * down);
+    }
+    canvas.stroke();
+  }
+}
+
+/** The bearing scale around the picture: marks each 5 degrees, numbers each 30. */
+export function drawScale(canvas, { view, middleX, middleY, radius }, colors) {
+  canvas.strokeStyle = colors.scale;
+  canvas.fillStyle = colors.scale;
+  canvas.font = '600 12px system-ui, sans-serif';
+  canvas.textAlign = 'center';
+  canvas.textBaseline = 'middle';
+  canvas.lineWidth = 1;
+  canvas.beginPath();
+  canvas.arc(middleX, middleY, radius, 0, 2 * Math.PI);
+  for (let mark = 0; mark < 360; mark++) {
+    if (mark % 5 && radius < 250) continue;
+    const [x, y] = edge(view, radians(mark), middleX, middleY, radius);
+    const length = mark % 10 === 0 ? 10 : mark % 5 === 0 ? 6 : 3;
+    const out = [(x - middleX) / radius, (y - middleY) / radius];
+    canvas.moveTo(x, y);
+    canvas.lineTo(x + length * out[0], y + length * out[1]);
+    if (mark % 30 === 0) {
+      canvas.fillText(String(mark).padStart(3, '0'), x + 22 * out[0], y + 20 * out[1]);
+    }
+  }
+  canvas.stroke();
+}
+
+/** Safe and unsafe courses of a trial around the picture, and the T that says that it is one. */
+export function drawTrial(canvas, state, scope, colors) {
+  const { view, middleX, middleY, radius } = scope;
+  const around = 5;
+  canvas.lineWidth = 6;
+  const safe = new Set();
+  for (const [first, last] of state.trial.safe_deg ?? []) {
+    for (let k = 0; k <= (last - first + 360) % 360; k++) safe.add((first + k) % 360);
+  }
+  for (let course = 0; course < 360; course++) {
+    canvas.strokeStyle = safe.has(course) ? colors.safe : colors.danger;
+    if (!safe.has(course) && course % 4 > 1) continue; // broken: not by colour alone
+    const angle = canvasAngle(view, radians(course));
+    canvas.beginPath();
+    canvas.arc(middleX, middleY, radius - around, angle, angle + radians(1.2));
+    canvas.stroke();
+  }
+  canvas.fillStyle = colors.danger;
+  canvas.font = '700 40px system-ui, sans-serif';
+  canvas.textAlign = 'center';
+  canvas.fillText('T', middleX, middleY + radius - 34);
+  if (state.trial.course_deg !== null && state.own) {
+    canvas.strokeStyle = colors.safe;
+    canvas.lineWidth = 2;
+    canvas.setLineDash([2, 6]);
+    canvas.beginPath();
+    canvas.moveTo(view.centreX, view.centreY);
+    canvas.lineTo(...edge(view, radians(state.trial.course_deg), middleX, middleY, radius));
+    canvas.stroke();
+    canvas.setLineDash([]);
+  }
+}
