@@ -81,12 +81,14 @@ def sentence(here, kind, number='01'):
     """Fields of the last such sentence of the scan played last; of TTM and TLL that of a target."""
     here.wait(lambda: abs((here.output._last_ns or 0) - here.stamp(here.last.end)) < 9)
     here.wait(lambda: len(here.nmea) == here.output._count['sentences'])
-    for message in reversed(here.nmea.messages):
-        fields = message.data.split('*')[0].split(',')
+    said = [message.data.split('*')[0].split(',') for message in here.nmea.messages]
+    kinds = [fields[0][3:] for fields in said]
+    middle = len(kinds) - 1 - kinds[::-1].index('OSD')  # RMC and others before it, targets after
+    first = middle - 1 - kinds[:middle][::-1].index('RMC')
+    after = kinds[middle:].index('RMC') if 'RMC' in kinds[middle:] else len(kinds)
+    for fields in said[first : middle + after]:
         if fields[0][3:] == kind and (kind not in ('TTM', 'TLL') or fields[1] == number):
             return fields
-        if fields[0][3:] == 'RMC':
-            return None
     return None
 
 
