@@ -6,7 +6,7 @@ import pytest
 from marine_tracker.arpa.own_motion import lately, own_motion
 from marine_tracker.arpa.yaw import HISTORY, mean_velocity
 from marine_tracker.geometry import unit_vector
-from marine_tracker.types import OwnShip, take
+from marine_tracker.types import OwnShip, append, take
 
 SPEED = 7.5
 
