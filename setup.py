@@ -16,7 +16,7 @@ def tree(folder):
 
 setup(
     name=NAME,
-    version='0.1.0',
+    version='0.2.0',
     description='ARPA marine-radar tracking for ROS 2, with a radar simulator.',
     author='marine_tracker maintainers',
     maintainer='marine_tracker maintainers',

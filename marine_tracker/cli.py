@@ -19,6 +19,7 @@ COMMANDS = (
     'tune',
     'scenario',
     'imo',
+    'soak',
     'doctor',
 )
 

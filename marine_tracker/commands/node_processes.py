@@ -27,35 +27,51 @@ class Child(NamedTuple):
 
 @contextlib.contextmanager
 def children_of(nodes: dict[str, dict[str, Any]]) -> Iterator[list[Child]]:
-    """The nodes, by name with their parameters, as processes. All end with the context."""
+    """The nodes, by name with their parameters, as processes. All end with the context, and this
+    process is to end soon after them (processes.closing)."""
     with contextlib.ExitStack() as logs:
         children: list[Child] = []
         try:
             for name, parameters in nodes.items():
-                log = logs.enter_context(tempfile.TemporaryFile())
-                children.append(Child(name, _start(name, parameters, log), log))
+                children.append(_start(name, parameters, logs))
             yield children
         finally:
             closing()
-            for ask in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
-                for child in children:
-                    if ask == signal.SIGKILL and child.process.poll() is None:
-                        print(f'{child.name} does not end, and is killed', file=sys.stderr)
-                    child.process.send_signal(ask)  # no effect if it has ended
-                until = time.monotonic() + STOP_S
-                for child in children:
-                    with contextlib.suppress(subprocess.TimeoutExpired):
-                        child.process.wait(max(until - time.monotonic(), 0.0))
+            _end(children)
 
 
-def _start(name: str, parameters: dict[str, Any], log: IO[bytes]) -> subprocess.Popen:
+@contextlib.contextmanager
+def child_of(name: str, parameters: dict[str, Any]) -> Iterator[Child]:
+    """One node as a process, which ends with the context; this process goes on."""
+    with contextlib.ExitStack() as logs:
+        child = _start(name, parameters, logs)
+        try:
+            yield child
+        finally:
+            _end([child])
+
+
+def _end(children: list[Child]) -> None:
+    for ask in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+        for child in children:
+            if ask == signal.SIGKILL and child.process.poll() is None:
+                print(f'{child.name} does not end, and is killed', file=sys.stderr)
+            child.process.send_signal(ask)  # nothing where it has ended
+        until = time.monotonic() + STOP_S
+        for child in children:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                child.process.wait(max(until - time.monotonic(), 0.0))
+
+
+def _start(name: str, parameters: dict[str, Any], logs: contextlib.ExitStack) -> Child:
+    log = logs.enter_context(tempfile.TemporaryFile())
     arguments = [sys.executable, '-P', '-m', 'marine_tracker.nodes.run', name, '--ros-args']
     for key, value in parameters.items():
         arguments += ['-p', f'{key}:={json.dumps(value)}']
     package_home = os.fspath(Path(__file__).resolve().parents[2])
     search = os.pathsep.join(filter(None, [package_home, os.environ.get('PYTHONPATH')]))
     # A session of its own: Ctrl-C reaches only this command, which then ends its children.
-    return subprocess.Popen(
+    process = subprocess.Popen(
         arguments,
         stdin=subprocess.DEVNULL,
         stdout=log,
@@ -64,3 +80,4 @@ def _start(name: str, parameters: dict[str, Any], log: IO[bytes]) -> subprocess.
         env={**os.environ, 'PYTHONPATH': search},
         preexec_fn=end_with_parent,
     )
+    return Child(name, process, log)

@@ -20,6 +20,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import SubscriptionEventCallbacks
 from sensor_msgs.msg import PointCloud2
 
+from ..arpa.arpa import Picture
 from ..arpa.view import Standing
 from ..parameters import ArpaParameters, TrackerParameters
 from ..service import Service
@@ -173,6 +174,11 @@ class TrackerNode(RunnableNode):
         for heard, radar in zip(self.inputs, radars_of(tracker.parameters), strict=True):
             heard.radar = radar
         self.get_logger().info(f'parameters changed; estimator {tracker.parameters.estimator}')
+
+    @property
+    def picture(self) -> Picture | None:
+        """The targets after the last scan; None before the first."""
+        return self._operator.picture
 
     @property
     def period(self) -> float:

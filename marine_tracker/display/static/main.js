@@ -116,6 +116,7 @@ function applySettings() {
       'target',
       'coasting',
       'danger',
+      'lost',
       'label',
       'own',
       'selected',

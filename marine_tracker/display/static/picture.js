@@ -220,7 +220,7 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
   for (const alarm of lostTargets(state)) {
     if (!shown && alarm.state.endsWith('unacknowledged')) continue;
     const [x, y] = toScreen(view, alarm.x, alarm.y);
-    symbols.lost(canvas, x, y, colors.danger);
+    symbols.lost(canvas, x, y, colors.lost);
     if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: false });
   }
   canvas.font = '600 13px system-ui, sans-serif';
