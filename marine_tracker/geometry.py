@@ -45,6 +45,13 @@ def bearing_from_yaw(yaw: Angle) -> Angle:
     return wrap_bearing(np.pi / 2 - yaw)
 
 
+def on_deck(ahead: float, starboard: float, heading: Angle) -> Array:
+    """East and north [..., 2] m from one place on own ship to another that lies so many m ahead and
+    to starboard of it, or of a velocity likewise; at the headings [...] rad."""
+    bow = unit_vector(heading)
+    return ahead * bow + starboard * np.stack([bow[..., 1], -bow[..., 0]], -1)
+
+
 def heading_from(velocity: Array, stated: Array) -> Array:
     """Heading [...] rad: the course of the velocity [..., 2] m/s, or of who makes no way the stated
     one [...], nan for none."""

@@ -16,12 +16,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .arpa.arpa import Arpa, ArpaMemory, Picture
+from .arpa.stabilisation import ALL_WELL, OwnSensors
 from .arpa.view import Standing, standing
 from .estimators import Estimator
 from .extent.extents import Extents, ExtentsMemory
 from .extent.hulls import Shapes
 from .geometry import heading_from
 from .parameters import ArpaParameters, TrackerParameters, from_mapping
+from .tracking.mounting import mounted
 from .tracking.tracker import Report, Tracker, TrackerMemory
 from .types import Extrapolation, OwnShip, Scan, take
 
@@ -37,7 +39,8 @@ class ServiceMemory(NamedTuple):
 class Tracking(NamedTuple):
     """What a scan did to the N tracks; lost ones and those just initiated are among them.
 
-    scan      as the tracker took it: with extents one plot a cluster
+    scan      as the tracker took it: from own ship's reference point; with extents one plot a
+              cluster
     report    of the tracker
     estimate  N rows, at the report's times
     shapes    N rows: sizes and headings; None with extent none
@@ -86,24 +89,34 @@ class Service:
         return ServiceMemory(self.tracker.start(), self.extents.start(), self.arpa.start())
 
     def step(
-        self, memory: ServiceMemory, scan: Scan, heading: float | None = None
+        self,
+        memory: ServiceMemory,
+        scan: Scan,
+        heading: float | None = None,
+        sensors: OwnSensors = ALL_WELL,
     ) -> tuple[ServiceMemory, Output]:
         """One antenna revolution.
 
         heading  rad, own ship's, true; nan where it is not known; None: see `heading_of`
+        sensors  what is known of own ship beside her positions
         """
-        memory, done = self.track(memory, scan)
-        fares = standing(done.report, self.tracker.estimator)
         if heading is None:
             heading = heading_of(scan.own_ship)
+        memory, done = self.track(memory, scan, heading)
+        fares = standing(done.report, self.tracker.estimator)
         known, picture = self.arpa.step(
-            memory.arpa, done.scan, done.report, heading, fares.fallen_at
+            memory.arpa, done.scan, done.report, heading, fares.fallen_at, sensors
         )
         return memory._replace(arpa=known), Output(*done, fares, picture)
 
-    def track(self, memory: ServiceMemory, scan: Scan) -> tuple[ServiceMemory, Tracking]:
+    def track(
+        self, memory: ServiceMemory, scan: Scan, heading: float | None = None
+    ) -> tuple[ServiceMemory, Tracking]:
         """The first half of `step`: tracks and their sizes, without targets and alarms."""
         tracker, extents = self.tracker, self.extents
+        if heading is None:
+            heading = heading_of(scan.own_ship)
+        scan = mounted(scan, tracker.radars[scan.radar], heading)
         seen = None
         if extents.on:
             sure = take(memory.tracker.tracks, memory.tracker.tracks.number > 0)

@@ -26,7 +26,7 @@ class OwnShip(NamedTuple):
     """Samples of own ship's motion, in time order; a scan needs at least one.
 
     time      [K]     s
-    position  [K, 2]  m, east and north: where the antenna is
+    position  [K, 2]  m, east and north, of the reference point that ranges are measured from
     velocity  [K, 2]  m/s, east and north, over ground
     heading   [K]     rad, true, as it is told; nan where it is not, None: of no sample
     """
@@ -67,6 +67,7 @@ class Scan(NamedTuple):
     plots       M plots, in any order
     own_ship    K samples that cover the revolution as well as is known
     radar       which of the tracker's radars it comes from, counted from 0
+    antenna     the same K samples of the antenna; None: it is at own ship's reference point
     """
 
     start: float
@@ -74,6 +75,12 @@ class Scan(NamedTuple):
     plots: PolarPlots
     own_ship: OwnShip
     radar: int = 0
+    antenna: OwnShip | None = None
+
+    @property
+    def measured_from(self) -> OwnShip:
+        """Where the plots were measured from."""
+        return self.own_ship if self.antenna is None else self.antenna
 
 
 class Truth(NamedTuple):

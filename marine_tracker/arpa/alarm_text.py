@@ -39,7 +39,9 @@ def parts(alerts: Alerts, zones: Zones, radars: Sequence[str] = ('',)) -> list[s
 
 def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
     first, second, third, fourth, fifth = values
-    where = f'{first / NAUTICAL_MILE:.2f} NM, {round(math.degrees(second), 1) % 360:05.1f} deg'
+    where = f'{first / NAUTICAL_MILE:.2f} NM'
+    if math.isfinite(second):  # nan without a heading
+        where += f', {round(math.degrees(second), 1) % 360:05.1f} deg'
     if kind == alarms.DANGER:
         when = f'in {fourth / 60:.1f} min' if math.isfinite(fourth) else 'at an unknown time'
         return (
@@ -63,4 +65,5 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
         return f"own ship's speed as told is {first / KNOT:.1f} kn off the way of her positions"
     silent = f'for {first:.0f} s' if math.isfinite(first) else 'so far'
     of = f' of radar {part}' if kind == alarms.PLOTS_MISSING and part != NO_LONGER else ''
-    return f'no {alarms.NAMES[kind].removesuffix(" missing")}{of} {silent}'
+    then = ': relative bearings only' if kind == alarms.HEADING_MISSING and second == 1 else ''
+    return f'no {alarms.NAMES[kind].removesuffix(" missing")}{of} {silent}{then}'

@@ -13,7 +13,8 @@ alerts.py has the states of an alert. These are the kinds and their causes:
                      there, and whether it is a target already or not; one alert for each zone
     near capacity    NEARLY_FULL of the largest number of targets
     capacity         the largest number of targets
-    heading, position, plots missing    not received for too long; plots of each radar
+    heading, position, plots, log missing    not received for too long; plots of each radar;
+                     the log if it is to be used
     fallback         at least a share of the confirmed targets have fallen back from their filter
     swap risk        the gate of a target overlaps that of another track
     own speed        what is told of own ship's velocity is not the way that her positions make
@@ -45,6 +46,7 @@ NAMES = (
     'fallback',
     'swap risk',
     'own speed doubtful',
+    'log missing',
 )
 (
     DANGER,
@@ -58,6 +60,7 @@ NAMES = (
     FALLBACK,
     SWAP_RISK,
     OWN_SPEED,
+    LOG_MISSING,
 ) = range(len(NAMES))
 PRIORITY = (
     'alarm',
@@ -70,6 +73,7 @@ PRIORITY = (
     'warning',
     'caution',
     'caution',
+    'warning',
     'warning',
 )
 CAUTION = np.array([priority == 'caution' for priority in PRIORITY])
@@ -120,12 +124,16 @@ class Silence(NamedTuple):
     """Time, s, since each was last received; inf for never. plots: of each radar.
 
     speed_off  m/s, how far own ship's velocity as told is off that of her positions; 0: they agree
+    log        s; 0 where it is not asked for
+    bow_only   whether bearings are told relative to the bow only, for want of the heading
     """
 
     heading: float
     position: float
     plots: tuple[float, ...]
     speed_off: float = 0.0
+    log: float = 0.0
+    bow_only: bool = False
 
 
 def step(
@@ -186,10 +194,11 @@ def watch(
     sensors = [
         (HEADING_MISSING, 0, silence.heading),
         (POSITION_MISSING, 0, silence.position),
+        (LOG_MISSING, 0, silence.log),
         *((PLOTS_MISSING, radar, silent) for radar, silent in enumerate(silence.plots)),
     ]
     causes = [
-        (kind, part, _causes(silent > settings.sensor_timeout, silent))
+        (kind, part, _causes(silent > settings.sensor_timeout, silent, silence.bow_only))
         for kind, part, silent in sensors
     ]
     causes.append((OWN_SPEED, 0, _causes(silence.speed_off > 0, silence.speed_off)))

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry import KNOT, NAUTICAL_MILE, polar_to_position, unit_vector
+from ..geometry import NAUTICAL_MILE, polar_to_position
 from ..parameters import ArpaParameters, TrackerParameters
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
@@ -31,6 +31,7 @@ from .cpa import Approach, OwnMotion, approach
 from .motion import Motion
 from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
+from .stabilisation import ALL_WELL, NONE, OwnSensors, Stabilisation, stabilisation
 from .swap_risk import swap_risk
 from .targets import Events, Targets
 
@@ -58,7 +59,7 @@ class Picture(NamedTuple):
     own       own ship then
     row       [T]  of each target in the tracker's report
     targets   T rows, including those that were lost in this scan
-    motion    T rows, as stabilised: course and speed through the water if a current is given
+    motion    T rows, as stabilised: course and speed over ground or through the water
     approach  T rows
     past      past positions of all tracks
     harmless  [T]  own ship is at anchor and the target does not certainly come nearer
@@ -67,6 +68,7 @@ class Picture(NamedTuple):
     events    what happened to targets in this scan
     alerts    those that are not normal
     changed   the alerts that changed in this scan, also those that became normal
+    stabilised   the reference of courses and speeds
     """
 
     time: float
@@ -82,6 +84,7 @@ class Picture(NamedTuple):
     events: Events
     alerts: Alerts
     changed: Alerts
+    stabilised: Stabilisation
 
 
 class Arpa:
@@ -107,13 +110,7 @@ class Arpa:
         self.motion = motion.PRESETS[tracker.vessel_class]._replace(
             speed_sigma=0.5 * tracker.max_target_speed_mps
         )
-        self.current = p.current_drift_kn * KNOT * unit_vector(np.radians(p.current_set_deg))
         self.gate_size = gate_size(tracker.gate_probability)
-
-    @property
-    def stabilised(self) -> str:
-        """The reference of courses and speeds: 'sea' if a current is given, else 'ground'."""
-        return 'sea' if self.current.any() else 'ground'
 
     def start(self) -> ArpaMemory:
         """No targets yet."""
@@ -128,16 +125,23 @@ class Arpa:
         )
 
     def step(
-        self, memory: ArpaMemory, scan: Scan, report: Report, heading: float, fallen: Mask = False
+        self,
+        memory: ArpaMemory,
+        scan: Scan,
+        report: Report,
+        heading: float,
+        fallen: Mask = False,
+        sensors: OwnSensors = ALL_WELL,
     ) -> tuple[ArpaMemory, Picture]:
         """Processes one antenna revolution. All results are for its end.
 
         heading  rad, own ship's, true; nan if unknown
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
+        sensors  what is known of own ship beside her positions
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
-        samples = lately(memory.own, scan.own_ship, now)
-        own = own_motion(samples, now, heading)
+        samples, p = lately(memory.own, scan.own_ship, now), self.parameters
+        own = own_motion(samples, now, heading)._replace(north=sensors.north)
 
         # motion: course and speed from a memory of their own
         plots = noise_of(radar, scan).locate(scan)
@@ -146,8 +150,8 @@ class Arpa:
         past = past_positions.step(memory.past, tracks.id, tracks.first_time, moving, own, now)
 
         # cpa: how the tracks pass own ship
-        own, no_danger = self._anchored(samples, moving, own, now)
-        moving, own = sea_stabilised(moving, own, self.current)
+        own, no_danger = self._anchored(samples, moving, own, now, sensors)
+        moving, own, against = self._stabilised(moving, own, sensors, tracks)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
             tracks, report.reason, moving.position, passing, no_danger, self.zones, own, self.limits
@@ -159,26 +163,35 @@ class Arpa:
         row = row_of(tracks.id, targets.id)
 
         # alarms: those after the scan, and those that changed
-        overlap, other = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        down = _fallen(fallen, acquired, tracks)
-        tracking = alarms.Tracking(self.acquisition.capacity, down, overlap, other)
+        swap = self._swap_risk(tracks, remembered, passing, own, now, radar)
+        tracking = alarms.Tracking(p.max_targets, _fallen(fallen, acquired, tracks), *swap)
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
 
         # the picture: the rows of the targets
         moving, passing = take(moving, row), take(passing, row)
-        told = no_danger[row], seen.danger[row], overlap[row], events, *alarm
-        return (
-            ArpaMemory(samples, remembered, acquired, alarm[0], past),
-            Picture(now, own, row, targets, moving, passing, past, *told),
-        )
+        told = no_danger[row], seen.danger[row], swap[0][row], events, *alarm, against
+        known = ArpaMemory(samples, remembered, acquired, alarm[0], past)
+        return known, Picture(now, own, row, targets, moving, passing, past, *told)
+
+    def _stabilised(
+        self, moving: Motion, own: OwnMotion, sensors: OwnSensors, tracks: Tracks
+    ) -> tuple[Motion, OwnMotion, Stabilisation]:
+        """Motion of the tracks and of own ship relative to ground or water, and to which."""
+        number, stationary = self.parameters.reference_target, np.full(2, np.nan)
+        row = ((tracks.number == number) & (tracks.status != LOST) & (number > 0)).nonzero()[0]
+        if len(row):
+            stationary = moving.velocity[row[0]]
+        against = stabilisation(self.parameters, own, sensors, stationary)
+        return *sea_stabilised(moving, own, against.drift), against
 
     def _anchored(
-        self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float
+        self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float, sensors: OwnSensors
     ) -> tuple[OwnMotion, BoolArray]:
         """Own ship, at rest if she is at anchor; and the tracks [N] that are no danger then."""
-        if not at_anchor(samples, own, now, self.parameters.own_ship_status):
+        status = self.parameters.own_ship_status
+        if sensors.way == NONE or not at_anchor(samples, own, now, status):
             return own, np.zeros(len(moving.position), bool)
         return own._replace(velocity=np.zeros(2)), harmless(moving, own)
 

@@ -24,12 +24,15 @@ class OwnMotion(NamedTuple):
     covariance  [4, 4]  of position and velocity, relative to the positions from which the plots
                         were placed. An error common to both (a wrong log, for example) does not
                         change range, relative motion and CPA
+    north       whether the heading is known. If not, it is the last one, and is right only for what
+                is relative to the bow
     """
 
     position: Array
     velocity: Array
     heading: float
     covariance: Array
+    north: bool = True
 
 
 class Approach(NamedTuple):

@@ -23,7 +23,8 @@ from .nmea_fields import (
 
 LOST, ACQUIRING, TRACKING = 'L', 'Q', 'T'
 AUTOMATIC, MANUAL, REPORTED = 'A', 'M', 'R'
-GROUND, WATER = 'P', 'W'  # references of OSD: position fixes; a log through the water
+# References of OSD: position fixes, a log through the water, set by hand, a stationary target.
+GROUND, WATER, BY_HAND, FIXED_TARGET = 'P', 'W', 'M', 'R'
 NORTH_UP, HEAD_UP, COURSE_UP = 'N', 'H', 'C'
 LENGTH = 82  # IEC 61162-1: characters of a sentence, $ and CR LF included
 NAME = 20  # OpenCPN: characters of a target's name
@@ -60,9 +61,12 @@ class OwnShipData(NamedTuple):
     """Own ship at one moment; nan for an unknown value.
 
     latitude, longitude  deg
-    speed m/s, course rad  over ground or through the water, as `reference` (GROUND, WATER) says
+    speed m/s, course rad  over ground or through the water, as `reference` says: GROUND, WATER,
+                         BY_HAND or FIXED_TARGET
     heading              rad, true
     estimated            whether the position goes on from an old fix by dead reckoning
+    water                m/s, speed through the water
+    set rad, drift m/s   of the current, where they are set by hand
     """
 
     latitude: float = np.nan
@@ -72,6 +76,9 @@ class OwnShipData(NamedTuple):
     heading: float = np.nan
     reference: str = GROUND
     estimated: bool = False
+    water: float = np.nan
+    set: float = np.nan
+    drift: float = np.nan
 
 
 def as_acquired(targets: Targets) -> Targets:
@@ -86,13 +93,19 @@ def as_acquired(targets: Targets) -> Targets:
 
 
 def ttm(
-    targets: Targets, time: float, talker: str = 'RA', decimals: int = 3, reference: int = 0
+    targets: Targets,
+    time: float,
+    talker: str = 'RA',
+    decimals: int = 3,
+    reference: int = 0,
+    relative: bool = False,
 ) -> list[str]:
     """TTM, tracked target message: always 15 fields, one sentence a target.
 
     time       s of UTC since 1970; nan for an empty field
     decimals   of the distances
     reference  number of the target from which own ship's drift is taken; 0 for none
+    relative   whether bearings count from own ship's bow, as they do without a heading
 
     Distances in NM, speed in knots, TCPA in minutes. Targets without bearing, or without a range up
     to 999.999 NM, are left out. A range that would be written as 0 is written as the smallest value
@@ -110,7 +123,7 @@ def ttm(
             f'{number:02d}',
             figure(max(distance, least), MILES, decimals),
             degrees(bearing),
-            'T',
+            'R' if relative else 'T',
             figure(speed, KNOTS, 2),
             degrees(course),
             'T',
@@ -163,7 +176,7 @@ def tll(
 
 
 def osd(own: OwnShipData, talker: str = 'RA') -> str:
-    """OSD, own ship data: heading, course and speed with their reference; set and drift empty."""
+    """OSD, own ship data: heading, course and speed with their reference; set and drift by hand."""
     heading = degrees(own.heading)
     speed, course = figure(own.speed / KNOT, KNOTS, 2), degrees(own.course)
     return sentence(
@@ -176,8 +189,8 @@ def osd(own: OwnShipData, talker: str = 'RA') -> str:
             own.reference if course else '',
             speed,
             own.reference if speed else '',
-            '',
-            '',
+            degrees(own.set),
+            figure(own.drift / KNOT, KNOTS, 2),
             'N',
         ),
     )
@@ -244,6 +257,12 @@ def rmc(own: OwnShipData, time: float, talker: str = 'II') -> str:
             mode,
         ),
     )
+
+
+def vhw(own: OwnShipData, talker: str = 'II') -> str:
+    """VHW, own ship's heading and speed through the water."""
+    knots, kmh = (figure(own.water / unit, KNOTS, 2) for unit in (KNOT, 1 / 3.6))
+    return sentence(talker, 'VHW', (degrees(own.heading), 'T', '', 'M', knots, 'N', kmh, 'K'))
 
 
 def hdt(own: OwnShipData, talker: str = 'II') -> str:

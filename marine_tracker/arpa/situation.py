@@ -28,7 +28,7 @@ class Situation(NamedTuple):
     id, number, status  [N]     as in the report's tracks
     reason              [N]     why a lost one was lost (lifecycle.MISSED ...)
     position            [N, 2]  m; of a lost one the last
-    range, bearing      [N]     m, rad true, from own ship
+    range, bearing      [N]     m, rad true, from own ship; nan where north is not known
     cpa, tcpa           [N]     m, s
     probability         [N]     of danger
     nearest             [N]     m, least distance to own ship from now until the TCPA limit
@@ -83,7 +83,7 @@ def look(
         reason,
         position,
         approach.range,
-        approach.bearing,
+        approach.bearing if own.north else np.full_like(approach.bearing, np.nan),
         approach.cpa,
         approach.tcpa,
         approach.danger_probability,

@@ -7,6 +7,7 @@ import numpy as np
 from ..estimators import Account, Estimator
 from ..extent.hull_clearance import hull_clearance
 from ..extent.hulls import Shapes
+from ..geometry import wrap_bearing
 from ..tracking import lifecycle
 from ..tracking.lifecycle import CONFIRMED
 from ..tracking.tracker import Report
@@ -16,6 +17,7 @@ from .alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
 from .arpa import Picture
 from .cpa import Approach
 from .motion import Motion
+from .stabilisation import NONE
 from .targets import label
 
 
@@ -36,7 +38,10 @@ class View(NamedTuple):
     reason      [N]  why a lost one was lost: index into lifecycle.REASONS
     acquired    [N]  AUTOMATIC or MANUAL
     motion      N rows, at the end of the scan
-    approach    N rows
+    approach    N rows; nan for what cannot be told, see `told`
+    bow         [N]  rad, bearing relative to own ship's bow; nan without a heading
+    reference   [N]  the stationary target that tells the motion of the ground
+    stabilised  the reference of courses and speeds: ground, sea or none
     harmless    [N]  own ship is at anchor and the target does not certainly come nearer
     dangerous   [N]  a danger alarm is active
     swap_risk   [N]  the gate overlaps that of another track
@@ -55,6 +60,9 @@ class View(NamedTuple):
     acquired: CodeArray
     motion: Motion
     approach: Approach
+    bow: Array
+    reference: BoolArray
+    stabilised: str
     harmless: BoolArray
     dangerous: BoolArray
     swap_risk: BoolArray
@@ -85,7 +93,10 @@ def view(
         report.reason[picture.row],
         targets.acquired,
         picture.motion,
-        picture.approach,
+        told(picture),
+        wrap_bearing(picture.approach.bearing - picture.own.heading),
+        (tracks.number > 0) & (tracks.number == picture.stabilised.target),
+        picture.stabilised.reference,
         picture.harmless,
         np.isin(targets.id, alerts.id[active]),
         picture.overlap < 1,
@@ -94,6 +105,20 @@ def view(
         picture.time - tracks.first_time,
         estimator.account(tracks.state) if estimator.account else no_account(len(tracks.id)),
         None if shapes is None else _hulls(picture, take(shapes, picture.row)),
+    )
+
+
+def told(picture: Picture) -> Approach:
+    """The approach, with nan for what cannot be known: courses and speeds without stabilisation,
+    and without a heading all that counts from north. Range, CPA, TCPA and bow crossing remain."""
+    fields: list[str] = []
+    if picture.stabilised.reference == NONE:
+        fields += ['course', 'speed']
+    if not picture.own.north:
+        fields += ['bearing', 'course', 'relative_course']
+    unknown = np.full_like(picture.approach.range, np.nan)
+    return picture.approach._replace(
+        **{name + sigma: unknown for name in fields for sigma in ('', '_sigma')}
     )
 
 

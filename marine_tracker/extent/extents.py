@@ -112,9 +112,9 @@ class Extents:
         """
         p = self.parameters
         cells = locate(
-            scan.plots, scan.own_ship, p.range_sigma_m, float(np.radians(p.bearing_sigma_deg))
+            scan.plots, scan.measured_from, p.range_sigma_m, float(np.radians(p.bearing_sigma_deg))
         )
-        own, _ = own_ship_at(scan.own_ship, 0.5 * (scan.start + scan.end))
+        own, _ = own_ship_at(scan.measured_from, 0.5 * (scan.start + scan.end))
         gates, row = self._gates(memory, ids, ahead, own)
         place = in_gates(cells, gates)
         along = unit_vector(cells.bearing)
@@ -227,7 +227,7 @@ class Extents:
         covariance = (
             cell_covariance(extent, chosen.noise) / count + np.square(length)[:, None, None] * stray
         )
-        origin, _ = own_ship_at(scan.own_ship, chosen.time)
+        origin, _ = own_ship_at(scan.measured_from, chosen.time)
         range_, bearing = to_range_bearing(chosen.position + shift - origin)
         _, single = polar_to_position(
             range_, bearing, p.range_sigma_m, np.radians(p.bearing_sigma_deg)

@@ -12,6 +12,7 @@ from ..arpa.alerts import NORMAL, Alerts
 from ..arpa.arpa import Arpa, Picture
 from ..arpa.own_path import TrialManoeuvre, countdown
 from ..arpa.situation import LIKELY
+from ..arpa.stabilisation import NONE
 from ..arpa.targets import label
 from ..arpa.trial_manoeuvre import safe_courses, trial_approach
 from ..arpa.zones import Zones
@@ -92,14 +93,14 @@ def trial_message(
     target follows. If own ship's course at the start of the turn is unknown, T says so.
     """
     p, limits, own = arpa.parameters, arpa.limits, picture.own
+    lacking = ''
     if not own.velocity.any() and np.isnan(own.heading):
+        lacking = 'own ship lies still, heading unknown'
+    elif not own.north or picture.stabilised.reference == NONE:
+        lacking = "own ship's course and speed are not known"
+    if lacking:
         return diagnostics.array(
-            time_ns,
-            [
-                diagnostics.status(
-                    TRIAL, hardware_id, WARN, 'no TRIAL: own ship lies still, heading unknown', {}
-                )
-            ],
+            time_ns, [diagnostics.status(TRIAL, hardware_id, WARN, f'no TRIAL: {lacking}', {})]
         )
     trial = countdown(
         TrialManoeuvre(
@@ -125,7 +126,7 @@ def trial_message(
             {
                 'course_deg': degrees(p.trial_course_deg),
                 'speed_kn': figure(p.trial_speed_kn, 1),
-                'stabilised': arpa.stabilised,
+                'stabilised': picture.stabilised.reference,
                 'countdown_min': figure(trial.delay / 60, 1),
                 'safe_courses_deg': sectors or 'none',
             },

@@ -109,7 +109,7 @@ def cloud_message(rows: NDArray[np.void], time_ns: int) -> PointCloud2:
 
 def plots_positions(scan: Scan) -> Array:
     """Where the plots [M, 2] lie in the ground-stabilised frame, m."""
-    origin, _ = own_ship_at(scan.own_ship, scan.plots.time)
+    origin, _ = own_ship_at(scan.measured_from, scan.plots.time)
     return origin + scan.plots.range[:, None] * unit_vector(scan.plots.bearing)
 
 

@@ -12,6 +12,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ..arpa import past_positions
 from ..arpa.arpa import Picture
 from ..arpa.own_motion import vectors
+from ..arpa.stabilisation import NONE
 from ..arpa.view import View
 from ..arpa.zone_outlines import outlines as zone_outlines
 from ..arpa.zones import Zones
@@ -43,7 +44,7 @@ class MarkersWriter:
         alive = (seen.status != LOST) & np.isfinite(seen.motion.position).all(1)
         ids, position = seen.id[alive], seen.motion.position[alive]
         covariance = seen.motion.covariance[alive, :2, :2]
-        relative = parameters.vectors == 'relative'
+        relative = parameters.vectors == 'relative' or seen.stabilised == NONE
         ends = vectors(seen.motion, picture.own, 60 * parameters.vector_time_min, relative)[alive]
         arrows = np.stack([position, ends], 1)
         circle = np.stack([np.cos(CORNERS), np.sin(CORNERS)], -1)

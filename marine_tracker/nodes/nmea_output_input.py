@@ -14,16 +14,20 @@ from sensor_msgs.msg import NavSatFix, NavSatStatus
 from ..arpa.nmea import (
     ACQUIRING,
     AUTOMATIC,
+    BY_HAND,
+    FIXED_TARGET,
     LOST,
     MANUAL,
     TRACKING,
+    WATER,
     OwnShipData,
     Targets,
     as_acquired,
 )
+from ..arpa.stabilisation import CURRENT, HAND, LOG, POSITIONS
 from ..files import shown
 from ..geodesy import LocalFrame
-from ..geometry import AT_REST, KNOT, NAUTICAL_MILE, to_range_bearing
+from ..geometry import AT_REST, KNOT, NAUTICAL_MILE, on_deck, to_range_bearing
 from ..tracking import own_ship
 from ..types import Array
 from .convert import heading_of_odometry, nanoseconds, odometry_to_own_ship
@@ -69,6 +73,9 @@ def read_targets(message: DiagnosticArray) -> Targets:
                 *(_figure(values.get(key, ''), unit) for key, unit in FIGURES.items()),
             )
         )
+        if not values.get('bearing_deg'):  # without a heading: from the bow
+            bearing = _figure(values.get('relative_bearing_deg', ''), FIGURES['bearing_deg'])
+            rows[-1] = (*rows[-1][:5], bearing, *rows[-1][6:])
     number, status, acquired, name, *figures = zip(*rows) if rows else ((),) * 10
     return as_acquired(
         Targets(
@@ -79,6 +86,45 @@ def read_targets(message: DiagnosticArray) -> Targets:
             *(np.array(column, float) for column in figures),
         )
     )
+
+
+def frame_of(message: DiagnosticArray) -> tuple[bool, int]:
+    """Of a message on `targets`: whether bearings count from the bow, without a heading; and the
+    number of the stationary target that tells the motion of the ground, 0 for none.
+    """
+    relative, reference = False, 0
+    for entry in message.status:
+        values = {pair.key: pair.value for pair in entry.values}
+        relative |= bool(values.get('relative_bearing_deg')) and not values.get('bearing_deg')
+        found = NAMED.fullmatch(entry.name)
+        if values.get('reference') and found:
+            reference = int(found[2])
+    return relative, reference
+
+
+def own_ship_told(message: DiagnosticArray, own: OwnShipData) -> OwnShipData:
+    """Own ship with what the tracker says on `own_ship/state` of her motion: what course and speed
+    are measured against, and by what. By positions, course and speed are those of `own`."""
+    values = {pair.key: pair.value for entry in message.status[:1] for pair in entry.values}
+    number = {
+        key: _figure(values.get(key, ''), unit)
+        for key, unit in (
+            ('course_deg', math.radians(1)),
+            ('speed_kn', KNOT),
+            ('water_speed_kn', KNOT),
+            ('set_deg', math.radians(1)),
+            ('drift_kn', KNOT),
+        )
+    }
+    own = own._replace(water=number['water_speed_kn'])
+    by = values.get('stabilised by', POSITIONS)
+    if by == POSITIONS:
+        return own
+    own = own._replace(course=number['course_deg'], speed=number['speed_kn'])
+    if by == CURRENT:
+        return own._replace(reference=WATER, set=number['set_deg'], drift=number['drift_kn'])
+    codes = {LOG: WATER, HAND: BY_HAND}
+    return own._replace(reference=codes.get(by, FIXED_TARGET))
 
 
 def _figure(text: str, unit: float) -> float:
@@ -122,6 +168,7 @@ class OwnShipInput:
     origin   the frame `map`; None: fixes tell where own ship is
     trust    what tells her velocity (own_velocity.chosen)
     timeout  s without a fix, after which the position is an estimate; six of them: is not known
+    gps      m ahead and to starboard of the reference point, the place that odometry tells
     count    count(reason, detail) of what is wrong with a message
     """
 
@@ -130,15 +177,16 @@ class OwnShipInput:
         origin: LocalFrame | None,
         trust: str,
         timeout: float,
+        gps: tuple[float, float],
         count: Callable[[str, str], None],
     ) -> None:
         self._from_fixes = origin is None
         self.anchor = None if origin is None else Anchor(np.zeros(2), origin)
-        self._trust, self._timeout, self._count = trust, timeout, count
+        self._trust, self._timeout, self._gps, self._count = trust, timeout, gps, count
         self.log = own_ship.empty_log()
         self._base_ns: int | None = None  # the log's times are seconds after this
         self.time_ns: int | None = None  # of the last odometry
-        self._heading = math.nan
+        self._heading = self._last_heading = math.nan
         self._fixed = -math.inf  # s of the wall, the last good fix
 
     def hear_odometry(self, message: Odometry, arrival: float, now_ns: int) -> bool:
@@ -166,6 +214,8 @@ class OwnShipInput:
         if reason not in ('', own_ship.OWN_REBASED):
             return False
         self._heading = heading_of_odometry(message, doubtful=self.log.off > 0)
+        if math.isfinite(self._heading):
+            self._last_heading = self._heading
         return True
 
     def hear_fix(self, message: NavSatFix, now_ns: int) -> None:
@@ -193,8 +243,12 @@ class OwnShipInput:
         return time.monotonic() - self._fixed if self._from_fixes else 0.0
 
     def position(self, time_ns: int) -> Array:
-        """Own ship's position [2] m at a time; the last one where that is far from her stamps."""
-        return self._now(time_ns)[0]
+        """Position [2] m of own ship's reference point at a time; the last one where that is far
+        from her stamps. Before the first heading it is that of the GPS antenna."""
+        antenna = self._now(time_ns)[0]
+        if math.isnan(self._last_heading):
+            return antenna
+        return antenna - on_deck(*self._gps, self._last_heading)
 
     @property
     def placed(self) -> bool:

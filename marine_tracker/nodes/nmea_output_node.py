@@ -34,13 +34,15 @@ from .nmea_output_input import (
     FIX_BY_ARRIVAL,
     TIME_BY_ARRIVAL,
     OwnShipInput,
+    frame_of,
     named,
+    own_ship_told,
     read_origin,
     read_targets,
 )
 from .nmea_output_links import Clients, Datagrams
 
-SENTENCES = ('RMC', 'HDT', 'OSD', 'RSD', 'TTM', 'TLL')
+SENTENCES = ('RMC', 'HDT', 'OSD', 'RSD', 'TTM', 'TLL', 'VHW')
 SILENT_S = 10.0  # s of the wall without own ship or targets: they count as missing
 SERVE_S = 0.2  # s between two looks for new TCP clients
 NOT_SENT, REFUSED = 'datagrams not sent', 'datagrams refused, for nobody listens there'
@@ -66,12 +68,14 @@ class NmeaOutputNode(RunnableNode):
             read_origin(p.origin),
             p.own_ship_velocity,
             p.fix_timeout_s,
+            (p.gps_ahead_m, p.gps_starboard_m),
             lambda reason, detail: self._bad.add(reason, time.monotonic(), detail=detail),
         )
         self._udp, self._signalk = Datagrams('udp', p.udp), Datagrams('signalk_udp', p.signalk_udp)
         self._tcp = Clients('tcp', p.tcp)
         self._told = nothing_told()
         self._heard = {topics.ODOMETRY: -np.inf, topics.TARGETS: -np.inf}  # s of the wall
+        self._state, self._state_heard = DiagnosticArray(), -np.inf
         self._said_own = -np.inf
         self._last_ns: int | None = None  # stamp of the last `targets`
         self._count = {'targets': 0, 'targets waiting for a number': 0, 'sentences': 0}
@@ -97,6 +101,7 @@ class NmeaOutputNode(RunnableNode):
         for kind, topic, callback, quality in (
             (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort()),
+            (DiagnosticArray, topics.OWN_SHIP_STATE, self._on_state, topics.best_effort(1)),
             (DiagnosticArray, topics.TARGETS, self._on_targets, topics.latched()),
         ):
             self.create_subscription(kind, topic, callback, quality)
@@ -124,6 +129,9 @@ class NmeaOutputNode(RunnableNode):
         if wall - self._said_own >= self._settings.own_ship_period_s:
             self._send(self._own_ship(nanoseconds(message.header.stamp)))
 
+    def _on_state(self, message: DiagnosticArray) -> None:
+        self._state, self._state_heard = message, time.monotonic()
+
     def _on_fix(self, message: NavSatFix) -> None:
         self._own.hear_fix(message, self._arrival()[1])
 
@@ -149,16 +157,20 @@ class NmeaOutputNode(RunnableNode):
         p, seconds = self._settings, time_ns * 1e-9
         lines = self._own_ship(time_ns)
         if 'OSD' in self._wanted:
-            lines.append(nmea.osd(self._own_data(time_ns), p.talker))
+            lines.append(nmea.osd(self._as_told(self._own_data(time_ns)), p.talker))
+        relative, reference = frame_of(message)
+        slot = self._told.slots.get(reference, 0)
         if 'RSD' in self._wanted:
-            lines.append(nmea.rsd(p.range_scale_nm * NAUTICAL_MILE, talker=p.talker))
+            up = nmea.HEAD_UP if relative else nmea.NORTH_UP
+            lines.append(nmea.rsd(p.range_scale_nm * NAUTICAL_MILE, up, talker=p.talker))
         if 'TTM' in self._wanted:
-            lines += nmea.ttm(now.targets, seconds, p.talker)
+            lines += nmea.ttm(now.targets, seconds, p.talker, reference=slot, relative=relative)
+        bearing = np.full_like(now.targets.range, np.nan) if relative else now.targets.bearing
         latitude, longitude = self._own.target_places(
-            time_ns, now.targets.range[:, None] * unit_vector(now.targets.bearing)
+            time_ns, now.targets.range[:, None] * unit_vector(bearing)
         )
         if 'TLL' in self._wanted:
-            lines += nmea.tll(now.targets, latitude, longitude, seconds, p.talker)
+            lines += nmea.tll(now.targets, latitude, longitude, seconds, p.talker, slot)
         self._send(lines)
         if self._signalk.destinations:
             self._send_datagrams(
@@ -184,6 +196,11 @@ class NmeaOutputNode(RunnableNode):
             return nmea.OwnShipData()
         return self._own.at(time_ns)
 
+    def _as_told(self, own: nmea.OwnShipData) -> nmea.OwnShipData:
+        """The same with what the tracker says of her motion."""
+        late = time.monotonic() - self._state_heard > SILENT_S
+        return own if late else own_ship_told(self._state, own)
+
     def _own_ship(self, time_ns: int) -> list[str]:
         """RMC and HDT; a void RMC tells that there is no position, HDT is left out then."""
         self._said_own = time.monotonic()
@@ -193,6 +210,8 @@ class NmeaOutputNode(RunnableNode):
             lines.append(nmea.rmc(own, time_ns * 1e-9, talker))
         if 'HDT' in self._wanted and np.isfinite(own.heading):
             lines.append(nmea.hdt(own, talker))
+        if 'VHW' in self._wanted:
+            lines.append(nmea.vhw(self._as_told(own), talker))
         return lines
 
     def _send(self, lines: list[str]) -> None:

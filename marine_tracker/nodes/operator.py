@@ -30,6 +30,7 @@ from . import diagnostics, topics
 from .arpa_messages import alarms_message, trial_message
 from .base_node import RunnableNode
 from .diagnostics import Tally, answered
+from .own_sensors import SensorsInput
 
 REFUSED = 'commands refused'
 OVERDUE = 3  # revolutions without plots: they are missing, not just to come
@@ -39,25 +40,27 @@ class Operator:
     """Of one tracker node: the service, its memory, and what the operator does to it.
 
     service  what is running
+    sensors  own ship's, as heard
     memory   all that it knows; kept nowhere else
     picture  of the last scan; None before the first
     """
 
-    def __init__(self, node: RunnableNode, service: Service, hardware_id: str) -> None:
+    def __init__(
+        self, node: RunnableNode, service: Service, sensors: SensorsInput, hardware_id: str
+    ) -> None:
         self._node = node
         self._hardware_id = hardware_id
+        self.sensors = sensors
         self.service = service
         self.memory = service.start()
         self._trial_since: float | None = None  # s, when the trial manoeuvre was switched on
         self.refused = Tally((REFUSED,), node.tell)
         # Of the wall, s: when each was last heard, and between the last plots of each radar.
-        self._heard_heading = self._heard_position = time.monotonic()
-        self._heard_plots = [self._heard_heading] * len(self.arpa.radars)
+        self._heard_plots = [time.monotonic()] * len(self.arpa.radars)
         self._spacing = [
             deque([radar.parameters.scan_period_s], maxlen=9) for radar in self.arpa.radars
         ]
         self._scanned = [False] * len(self.arpa.radars)
-        self._heading = np.nan
         self._end, self._end_ns = 0.0, 0  # s, and stamp, of the last scan's end
         self.picture: Picture | None = None
 
@@ -76,14 +79,6 @@ class Operator:
 
     # -- in ------------------------------------------------------------------------------------
 
-    def hear_own_ship(self, placed: bool, heading: float) -> None:
-        """An odometry message came: whether with a position; its heading, rad, nan for none."""
-        wall = time.monotonic()
-        if placed:
-            self._heard_position = wall
-        if np.isfinite(heading):
-            self._heard_heading, self._heading = wall, heading
-
     @property
     def arpa(self) -> Arpa:
         """That of the service."""
@@ -94,8 +89,8 @@ class Operator:
         self.memory = service.adopt(self.memory, self.service)
         self.service = service
 
-    def step(self, scan: Scan, end_ns: int) -> Output:
-        """One scan, which ends at the stamp end_ns.
+    def step(self, scan: Scan, end_ns: int, fallback: str) -> Output:
+        """One scan, which ends at the stamp end_ns; fallback: of own ship's place in it.
 
         The alarms that changed are published, and the trial manoeuvre while it is on.
         """
@@ -103,7 +98,8 @@ class Operator:
         if self._scanned[scan.radar]:
             self._spacing[scan.radar].append(wall - self._heard_plots[scan.radar])
         self._heard_plots[scan.radar], self._scanned[scan.radar] = wall, True
-        self.memory, output = self.service.step(self.memory, scan, self._heading_now(wall))
+        heading, sensors = self.sensors.told(self.arpa.parameters, self.arpa.radars, fallback)
+        self.memory, output = self.service.step(self.memory, scan, heading, sensors)
         if scan.end >= self._end or self.picture is None:  # of a slow radar they come later
             self._end, self._end_ns = scan.end, end_ns
         self.picture = output.picture
@@ -123,9 +119,9 @@ class Operator:
         speed_off  m/s, how far own ship's velocity as told is off that of her positions
         """
         wall = time.monotonic()
-        silence = alarms.Silence(
-            wall - self._heard_heading, wall - self._heard_position, self._overdue(wall), speed_off
-        )
+        heading, position, log = self.sensors.silent(wall, self.arpa.parameters)
+        bow_only = not self.sensors.told(self.arpa.parameters, self.arpa.radars, '')[1].north
+        silence = alarms.Silence(heading, position, self._overdue(wall), speed_off, log, bow_only)
         found, changed = alarms.watch(
             self.memory.arpa.alerts, self.arpa.alarms, silence, self._now()
         )
@@ -135,11 +131,6 @@ class Operator:
     def _put(self, **parts) -> None:
         """Replace parts of the ARPA's memory."""
         self.memory = self.memory._replace(arpa=self.memory.arpa._replace(**parts))
-
-    def _heading_now(self, wall: float) -> float:
-        """rad; nan where it was not heard lately."""
-        old = wall - self._heard_heading > self.arpa.parameters.sensor_timeout_s
-        return np.nan if old else self._heading
 
     def _overdue(self, wall: float) -> tuple[float, ...]:
         """s without plots of each radar; 0 while the next may still be to come: antennas and
@@ -178,7 +169,7 @@ class Operator:
                 f'the point to acquire is in frame {frame!r}; it must be '
                 f'{topics.FRAME} or {topics.OWN_SHIP_FRAME}'
             )
-        heading = self._heading_now(time.monotonic())
+        heading = self.sensors.heading
         if self.picture is None or not np.isfinite(heading):
             raise ValueError(
                 f'a point in {topics.OWN_SHIP_FRAME} cannot be acquired before '

@@ -11,7 +11,7 @@ from sensor_msgs.msg import PointCloud2
 from ..estimators import WANT_DOPPLER
 from ..tracking import intake, own_ship
 from ..tracking.radars import Radar
-from ..types import Scan
+from ..types import Array, Scan
 from . import convert
 from .diagnostics import OK, WARN, Tally
 from .faults import HEADER_REASONS, NO_STAMP, ConversionError, check_frame
@@ -82,11 +82,15 @@ class RadarInput:
         came: Arrival,
         own_log: own_ship.OwnShipLog,
         others: Sequence[intake.TimeOrder],
+        way: Array,
+        heading: float,
     ) -> tuple[Scan, str, own_ship.OwnShipLog] | None:
         """The scan in the tracker's time, the fallback for own ship, and her log, in which what
         waited may be confirmed by the scan; None where the scan is rejected.
 
-        others  the orders of the other radars
+        others   the orders of the other radars
+        way      [2] m/s, own ship's way through the water, should her positions be lost; nan: none
+        heading  rad, hers now; nan: not known
         """
         self._heard = wall = time.monotonic()
         try:
@@ -124,17 +128,15 @@ class RadarInput:
             self._stamped_alike = not plots.time.any()
         length = 0.0 if self._stamped_alike else max(period, plots.time.max(initial=0.0))
         end, shift = start + length, self.order.shift
-        own_log = own_ship.confirmed(own_log, end)
+        own_log, timeout = own_ship.confirmed(own_log, end), parameters.own_ship_timeout_s
+        own_log = own_ship.reckoned(own_log, end, came.arrival, timeout, way, heading)
         own, fallback = own_ship.own_ship_for(
-            own_log,
-            start,
-            end,
-            parameters.own_ship_timeout_s,
-            parameters.own_ship_velocity,
-            self._lead(own_log, end),
+            own_log, start, end, timeout, parameters.own_ship_velocity, self._lead(own_log, end)
         )
         if fallback == own_ship.OWN_BY_ARRIVAL:
             self.bad.add(fallback, wall)
+        if own_log.reckoned:
+            fallback = own_ship.OWN_RECKONED
         self.taken += 1
         self._plots_in_scan = len(plots.time)
         scan = Scan(

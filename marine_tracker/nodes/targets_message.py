@@ -30,12 +30,14 @@ MEASURED = (
 )
 COLUMNS = (
     *(f'{key}_{unit}' for key, unit, *_ in MEASURED),
+    'relative_bearing_deg',
     'danger_probability',
     'motion',
     'motion_since_min',
     'acquired',
     'swap_risk',
     'stabilised',
+    'reference',
     'position_sd_m',
     *(f'{key}_sd_{unit}' for key, unit, *_ in MEASURED),
     'estimator',
@@ -60,11 +62,9 @@ class TargetsWriter:
         self._keys: tuple[str, ...] = COLUMNS
         self._entries: list[DiagnosticStatus] = []
 
-    def message(
-        self, seen: View, estimator: str, stabilised: str, time: float, time_ns: int
-    ) -> DiagnosticArray:
+    def message(self, seen: View, estimator: str, time: float, time_ns: int) -> DiagnosticArray:
         """The targets of a view at `time` s, stamped time_ns; valid until the next call."""
-        rows = table(seen, estimator, stabilised, time)
+        rows = table(seen, estimator, time)
         keys = COLUMNS if seen.hulls is None else COLUMNS + hull_columns.COLUMNS
         if keys != self._keys:
             self._keys, self._entries = keys, []
@@ -95,7 +95,7 @@ class TargetsWriter:
         return message
 
 
-def table(seen: View, estimator: str, stabilised: str, time: float) -> list[tuple[str, ...]]:
+def table(seen: View, estimator: str, time: float) -> list[tuple[str, ...]]:
     """One row of texts for each target, in the order of COLUMNS; with hulls, their columns too."""
     motion, account = seen.motion, seen.account
     # A target at rest has no course.
@@ -121,12 +121,14 @@ def table(seen: View, estimator: str, stabilised: str, time: float) -> list[tupl
     position_sd = np.sqrt(np.trace(motion.covariance[:, :2, :2], axis1=1, axis2=2))
     columns = [
         *values,
+        [degrees(number) for number in np.degrees(seen.bow).tolist()],
         [figure(number, 2) for number in approach.danger_probability.tolist()],
         [words[which] for which in rest],
         [figure(number, 1) for number in ((time - motion.since) / 60).tolist()],
         [LETTERS[how] for how in seen.acquired.tolist()],
         ['yes' if risk else '' for risk in seen.swap_risk.tolist()],
-        [stabilised] * len(rest),
+        [seen.stabilised] * len(rest),
+        ['R' if fixed else '' for fixed in seen.reference.tolist()],
         [figure(number, 0) for number in position_sd.tolist()],
         *deviations,
         [estimator] * len(rest),

@@ -26,6 +26,7 @@ from ..parameters import ArpaParameters, TrackerParameters
 from ..service import Service
 from ..tracking import clocks, own_ship
 from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
+from ..tracking.mounting import needs_heading
 from ..tracking.own_velocity import AUTO, POSITIONS
 from ..tracking.radars import radars_of
 from . import convert, diagnostics, topics
@@ -34,6 +35,8 @@ from .declare import declare, follow
 from .diagnostics import FAILED, OK, WARN, Durations, Tally
 from .faults import HEADER_REASONS, NO_STAMP, ConversionError, bare, check_frame
 from .operator import Operator
+from .own_sensors import LOG_REASONS, SensorsInput
+from .own_ship_state import sources
 from .radar_input import Arrival, RadarInput
 from .tracker_output import TrackerOutput
 
@@ -57,14 +60,19 @@ class TrackerNode(RunnableNode):
             RadarInput(radar, place, partial(self._tell_of, radar.name))
             for place, radar in enumerate(radars_of(parameters))
         ]
-        self.bad_own_ship = Tally((*own_ship.OWN_REASONS, *HEADER_REASONS), self.tell)
+        self.bad_own_ship = Tally((*own_ship.OWN_REASONS, *HEADER_REASONS, *LOG_REASONS), self.tell)
+        self._sensors = SensorsInput(
+            self,
+            lambda reason, detail: self.bad_own_ship.add(reason, time.monotonic(), detail=detail),
+        )
 
-        self._operator = Operator(self, service, self.hardware_id)
+        self._operator = Operator(self, service, self._sensors, self.hardware_id)
         follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
         self._output = TrackerOutput(self, self.hardware_id)
         self._to_diagnostics = self.publisher(
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
+        self._to_state = self.publisher(DiagnosticArray, topics.OWN_SHIP_STATE, topics.latched())
 
         # Own ship first: of messages that wait together it is taken first.
         self._inputs: dict[str, tuple[Any, ...]] = {}
@@ -112,17 +120,16 @@ class TrackerNode(RunnableNode):
             time_ns = came.now_ns
             self.bad_own_ship.add(NO_STAMP, wall)
         position, velocity = convert.odometry_to_own_ship(message)
+        heading = convert.heading_of_odometry(message, doubtful=self._own_log.off > 0)
         self._own_log, reason = own_ship.admit_own_ship(
-            self._own_log, self._seconds(time_ns), position, velocity, came.arrival
+            self._own_log, self._seconds(time_ns), position, velocity, came.arrival, heading
         )
         if reason:
             self.bad_own_ship.add(reason, wall, detail=f'at {position}')
         placed = reason in ('', own_ship.OWN_REBASED)
         if placed and bare(message.child_frame_id) not in ('', topics.FRAME):
             self._own_frame = bare(message.child_frame_id)
-        self._operator.hear_own_ship(
-            placed, convert.heading_of_odometry(message, doubtful=self._own_log.off > 0)
-        )
+        self._sensors.hear_own_ship(placed, heading)
 
     def _arrival(self) -> Arrival:
         """How a message comes that comes now: in simulated time where there is one."""
@@ -133,18 +140,21 @@ class TrackerNode(RunnableNode):
         return Arrival(arrival, now_ns, self._seconds, self._own_frame)
 
     def _on_plots(self, heard: RadarInput, message: PointCloud2) -> None:
-        began = time.perf_counter()
+        began, p = time.perf_counter(), self._operator.arpa.parameters
         found = heard.scan_of(
             message,
             self._arrival(),
             self._own_log,
             [other.order for other in self.inputs if other is not heard],
+            self._sensors.way(p)[0],
+            self._sensors.heading_now(time.monotonic(), p),
         )
         if found is None:
             return
         scan, self._fallback, self._own_log = found
         end_ns = int(self._stamps(heard, scan.end))
-        output = self._operator.step(scan, end_ns)
+        output = self._operator.step(scan, end_ns, self._fallback)
+        self._to_state.publish(diagnostics.array(end_ns, [self._own_ship_status(time.monotonic())]))
         self._output.publish(
             self._operator.service, output, heard.period, partial(self._stamps, heard)
         )
@@ -265,6 +275,15 @@ class TrackerNode(RunnableNode):
             source = 'positions' if off else 'twist'
         if off and self._trusted != POSITIONS:
             worries.append(f'twist is {off:.1f} m/s off the positions: velocity from {source}')
+        more, known = sources(
+            self._operator.picture,
+            self._sensors,
+            source,
+            self._fallback,
+            self._operator.arpa.parameters,
+            needs_heading(radar.parameters for radar in self._operator.arpa.radars),
+        )
+        worries += more
         fresh = self.bad_own_ship.fresh(wall)
         if fresh:
             worries.append('lately: ' + ', '.join(fresh))
@@ -272,6 +291,7 @@ class TrackerNode(RunnableNode):
         values = {
             'samples': self._samples,
             'velocity from': source,
+            **known,
             'twist off positions_mps': f'{off:.2f}',
             **self.bad_own_ship.counts,
         }

@@ -53,9 +53,7 @@ class TrackerOutput:
         name = service.tracker.parameters.estimator
         arpa = service.arpa
         seen = view(output.picture, output.report, service.tracker.estimator, output.shapes)
-        self._to_targets.publish(
-            self._targets.message(seen, name, arpa.stabilised, output.scan.end, end_ns)
-        )
+        self._to_targets.publish(self._targets.message(seen, name, output.scan.end, end_ns))
         if self._to_numeric.get_subscription_count():
             self._to_numeric.publish(targets_cloud.message(seen, output.picture.alerts, end_ns))
         if self._to_markers.get_subscription_count():

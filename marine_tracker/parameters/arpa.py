@@ -103,6 +103,31 @@ class ArpaParameters:
     current_drift_kn: float = parameter(
         0.0, 'Speed of the current.', unit='kn', low=0.0, high=20.0, live=True
     )
+    stabilisation: str = parameter(
+        'current',
+        "What own ship's way through the water is known by: the current that is set (current), "
+        'the speed on `own_ship/log` (log; where it is silent, water_speed_kn), or water_speed_kn '
+        '(hand). Courses and speeds are then through the water.',
+        choices=('current', 'log', 'hand'),
+        live=True,
+    )
+    water_speed_kn: float = parameter(
+        -1.0,
+        "Own ship's speed through the water, set by hand, along her heading; below 0: none. It "
+        'also moves her on where positions and log are lost.',
+        unit='kn',
+        low=-1.0,
+        high=100.0,
+        live=True,
+    )
+    reference_target: int = parameter(
+        0,
+        'Number of a target that is surely stationary, from which courses and speeds over ground '
+        'are taken; 0: none.',
+        low=0,
+        high=1000000000,
+        live=True,
+    )
     trial_course_deg: float = parameter(
         0.0,
         'Trial manoeuvre: course of own ship, stabilised as the targets are.',

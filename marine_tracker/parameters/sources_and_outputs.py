@@ -56,8 +56,8 @@ class NmeaOutputParameters:
 
     sentences: str = parameter(
         'RMC HDT OSD TTM',
-        'Sentences to send, of RMC, HDT, OSD, RSD, TTM, TLL. OpenCPN wants no '
-        'TLL with TTM: it would compute course and speed from TLL again.',
+        'Sentences to send, of RMC, HDT, OSD, RSD, TTM, TLL, VHW. OpenCPN wants '
+        'no TLL with TTM: it would compute course and speed from TLL again.',
     )
     udp: str = parameter(
         '127.0.0.1:10110',
@@ -103,6 +103,21 @@ class NmeaOutputParameters:
         unit='s',
         low=0.5,
         high=600.0,
+    )
+    gps_ahead_m: float = parameter(
+        0.0,
+        "How far ahead of own ship's reference point the place is that `own_ship/odometry` tells; "
+        "as the tracker's.",
+        unit='m',
+        low=-500.0,
+        high=500.0,
+    )
+    gps_starboard_m: float = parameter(
+        0.0,
+        'How far to starboard of the reference point that place is.',
+        unit='m',
+        low=-100.0,
+        high=100.0,
     )
     own_ship_velocity: str = parameter(
         'auto',

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from .description import check, parameter
 
+BEARINGS = ('north', 'bow')
 VESSEL_CLASSES = ('ship', 'small_craft')
 # m: deviation of a target's echoing point from its middle, each axis, by vessel class.
 GLINT_SIGMA = {'ship': 25.0, 'small_craft': 0.0}
@@ -136,6 +137,37 @@ class TrackerParameters:
         low=0.2,
         high=120.0,
     )
+    antenna_ahead_m: float = parameter(
+        0.0,
+        "How far ahead of own ship's reference point the antenna is.",
+        unit='m',
+        low=-500.0,
+        high=500.0,
+        live=True,
+    )
+    antenna_starboard_m: float = parameter(
+        0.0,
+        'How far to starboard of the reference point the antenna is.',
+        unit='m',
+        low=-100.0,
+        high=100.0,
+        live=True,
+    )
+    bearing_offset_deg: float = parameter(
+        0.0,
+        'Added to every bearing: by how much the antenna points to the left of what it tells.',
+        unit='deg',
+        low=-180.0,
+        high=180.0,
+        live=True,
+    )
+    bearings: str = parameter(
+        'north',
+        "What the radar counts bearings from: true north (north), or own ship's bow (bow): her "
+        'heading is then added.',
+        choices=BEARINGS,
+        live=True,
+    )
     gate_probability: float = parameter(
         0.995,
         'Probability that the gate holds the plot of a track.',
@@ -208,6 +240,23 @@ class TrackerParameters:
     )
     own_ship_timeout_s: float = parameter(
         10.0, 'Own-ship data older than this count as missing.', unit='s', low=0.1, high=600.0
+    )
+    gps_ahead_m: float = parameter(
+        0.0,
+        "How far ahead of own ship's reference point the place is that `own_ship/odometry` tells: "
+        "the GPS antenna's.",
+        unit='m',
+        low=-500.0,
+        high=500.0,
+        live=True,
+    )
+    gps_starboard_m: float = parameter(
+        0.0,
+        'How far to starboard of the reference point that place is.',
+        unit='m',
+        low=-100.0,
+        high=100.0,
+        live=True,
     )
     own_ship_velocity: str = parameter(
         'auto',

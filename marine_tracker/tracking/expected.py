@@ -15,7 +15,7 @@ class Expected(NamedTuple):
     position    [N, 2]     m, east and north
     velocity    [N, 2]     m/s, east and north
     covariance  [N, 2, 2]  m^2, of the position
-    origin      [N, 2]     m, own ship at that time
+    origin      [N, 2]     m, the antenna at that time
     """
 
     time: Array
@@ -33,7 +33,7 @@ def expect(ahead: Extrapolation, lone: Plots, scan: Scan, max_speed: float) -> E
     max_speed  m/s, of the targets
     """
     time = np.concatenate([ahead.time, lone.time])
-    origin, _ = own_ship_at(scan.own_ship, time)
+    origin, _ = own_ship_at(scan.measured_from, time)
     return Expected(
         time,
         np.concatenate([ahead.position, lone.position]),

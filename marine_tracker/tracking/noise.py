@@ -28,7 +28,7 @@ class Noise(NamedTuple):
 
     def locate(self, scan: Scan) -> Plots:
         """The scan's plots as measured: where the echoes are."""
-        return locate(scan.plots, scan.own_ship, self.range_sigma, self.bearing_sigma)
+        return locate(scan.plots, scan.measured_from, self.range_sigma, self.bearing_sigma)
 
     def with_glint(self, spread: Spread) -> Spread:
         """The same with the covariance of glint added.

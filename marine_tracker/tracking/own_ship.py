@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry import KNOT, own_ship_at
-from ..types import Array, OwnShip, take
+from ..types import Array, OwnShip, append, take
 from .clocks import Beat, paired
 from .own_velocity import AUTO, Samples, chosen, follow, no_samples
 
@@ -43,6 +43,7 @@ OWN_REASONS = (
 OWN_NEVER_HEARD = 'never heard: taken at rest at the origin'
 OWN_SILENT = 'silent: taken at rest at the last known position'
 OWN_BY_ARRIVAL = 'scans with stamps far from those of own ship: paired as they arrived'
+OWN_RECKONED = 'silent: reckoned from the last known position'
 OWN_NO_VELOCITY = 'velocity not known yet: taken at rest'
 
 
@@ -55,6 +56,7 @@ class OwnShipLog(NamedTuple):
     newest   s, stamp of the last sample, taken or not; nan before it
     off      m/s, how far the velocity that is told is off that of the positions; 0: they agree
     number   of samples taken so far
+    reckoned  whether the last of those taken was not heard, but reckoned
     """
 
     taken: Samples
@@ -63,6 +65,7 @@ class OwnShipLog(NamedTuple):
     newest: float = math.nan
     off: float = 0.0
     number: int = 0
+    reckoned: bool = False
 
 
 def empty_log() -> OwnShipLog:
@@ -71,12 +74,18 @@ def empty_log() -> OwnShipLog:
 
 
 def admit_own_ship(
-    log: OwnShipLog, time: float, position: Array, velocity: Array, arrival: float = math.nan
+    log: OwnShipLog,
+    time: float,
+    position: Array,
+    velocity: Array,
+    arrival: float = math.nan,
+    heading: float = math.nan,
 ) -> tuple[OwnShipLog, str]:
     """The log with the sample (position, velocity [2] m, m/s) taken; the reason to count, or ''.
 
     velocity  nan where it is not told
     arrival   s, when it came, by a clock of ours; nan where there is none
+    heading   rad, true; nan where it is not told
     """
     numbers = (time, *position)
     finite = all(map(math.isfinite, numbers)) and not np.isinf(velocity).any()
@@ -85,7 +94,9 @@ def admit_own_ship(
     told = np.reshape(velocity, (1, 2)).astype(float)
     told[np.isnan(told).any(1)] = np.nan
     at = np.reshape(position, (1, 2)).astype(float)
-    sample = Samples(np.array([float(time)]), at, told, np.full((1, 2), np.nan))
+    sample = Samples(
+        np.array([float(time)]), at, told, np.full((1, 2), np.nan), np.array([heading])
+    )
     log = log._replace(newest=float(time))
     reason = _against(log.taken, sample) or _ahead(log, time, arrival)
     if not reason:
@@ -114,6 +125,33 @@ def confirmed(log: OwnShipLog, end: float) -> OwnShipLog:
     return log
 
 
+def reckoned(
+    log: OwnShipLog, end: float, arrival: float, timeout: float, velocity: Array, heading: float
+) -> OwnShipLog:
+    """The log moved on to `end` s, if own ship was not heard for over `timeout` s of our clock.
+
+    velocity  [2] m/s, her way through the water; nan: not known, she goes on as she did
+    heading   rad, of now
+
+    The first step is by the velocity that she had, so nothing jumps: motion relative to her stays
+    right.
+    """
+    waited, velocity = log.beat.waited(arrival), np.reshape(velocity, (1, 2))
+    late = waited > timeout and len(log.taken.time) and end > log.taken.time[-1]
+    if not late:
+        return log
+    last = take(log.taken, slice(-1, None))
+    before = chosen(last, log.off, AUTO)[0]
+    if np.isnan(velocity).any():
+        velocity = before
+    elif log.reckoned:
+        before = velocity
+    now = last.position + (end - last.time[0]) * before
+    sample = Samples(np.array([end]), now, velocity, velocity, np.array([heading]))
+    taken = take(append(log.taken, sample), slice(-MAX_OWN_SAMPLES, None))
+    return log._replace(taken=taken, reckoned=True)
+
+
 def own_ship_for(
     log: OwnShipLog, start: float, end: float, timeout: float, trust: str = AUTO, lead: float = 0.0
 ) -> tuple[OwnShip, str]:
@@ -136,7 +174,7 @@ def own_ship_for(
     if near.time[0] > end + timeout or near.time[-1] < start - timeout:
         return OwnShip(np.array([start]), near.position[-1:], np.zeros((1, 2))), OWN_SILENT
     velocity, known = chosen(near, log.off, trust)
-    return OwnShip(near.time, near.position, velocity), fallback or (
+    return OwnShip(near.time, near.position, velocity, near.heading), fallback or (
         '' if known else OWN_NO_VELOCITY
     )
 

@@ -27,17 +27,19 @@ class Samples(NamedTuple):
     position  [K, 2]  m, east and north
     told      [K, 2]  m/s over ground, as told; nan where it is not
     fitted    [K, 2]  m/s, from the positions up to each; nan while they are too few
+    heading   [K]     rad, true, as told; nan where it is not
     """
 
     time: Array
     position: Array
     told: Array
     fitted: Array
+    heading: Array
 
 
 def no_samples() -> Samples:
     """K = 0."""
-    return Samples(np.empty(0), *(np.empty((0, 2)),) * 3)
+    return Samples(np.empty(0), *(np.empty((0, 2)),) * 3, np.empty(0))
 
 
 def follow(samples: Samples, sample: Samples, off: float) -> tuple[Samples, float]:

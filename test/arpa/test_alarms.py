@@ -63,10 +63,10 @@ class Bridge:
         )
         return self.told(changed)
 
-    def sensors(self, heading=0.0, position=0.0, plots=0.0):
+    def sensors(self, heading=0.0, position=0.0, plots=0.0, **rest):
         self.now += PERIOD
         self.alerts, changed = alarms.watch(
-            self.alerts, self.settings, Silence(heading, position, (plots,)), self.now
+            self.alerts, self.settings, Silence(heading, position, (plots,), **rest), self.now
         )
         return self.told(changed)
 
@@ -387,7 +387,13 @@ def test_swap_risk_names_both_targets(bridge):
     assert len(sum([one.scan(pair, overlap=[2, 2], other=[1, 0]) for _ in range(7)], [])) == 2
 
 
-@pytest.mark.parametrize('name', ['heading', 'position', 'plots'])
+def test_a_lost_heading_says_that_bearings_are_relative(bridge):
+    one = bridge()
+    assert one.sensors(heading=12.4, bow_only=True)
+    assert one.text == ['no heading for 12 s: relative bearings only']
+
+
+@pytest.mark.parametrize('name', ['heading', 'position', 'plots', 'log'])
 def test_a_sensor_that_falls_silent(bridge, name):
     one = bridge()
     assert one.sensors(**{name: 9.9}) == []

@@ -170,8 +170,8 @@ def test_a_current_changes_courses_and_speeds_but_not_how_near_they_come(sea):
     drift = [4 * KNOT, 0]
     assert ground.motion.velocity - water.motion.velocity == pytest.approx(np.tile(drift, (3, 1)))
     assert ground.own.velocity - water.own.velocity == pytest.approx(drift)
-    assert Arpa(ArpaParameters(current_drift_kn=4.0), sea[2]).stabilised == 'sea'
-    assert Arpa(ArpaParameters(), sea[2]).stabilised == 'ground'
+    assert water.stabilised.reference == 'sea'
+    assert ground.stabilised.reference == 'ground'
 
 
 def test_only_targets_that_have_fallen_back_count(sea):

@@ -6,7 +6,7 @@ import pytest
 from marine_tracker.arpa.own_motion import lately, own_motion
 from marine_tracker.arpa.yaw import HISTORY, mean_velocity
 from marine_tracker.geometry import unit_vector
-from marine_tracker.types import OwnShip, take
+from marine_tracker.types import OwnShip, append, take
 
 SPEED = 7.5
 
@@ -117,12 +117,7 @@ def test_too_few_samples_tell_no_yaw():
 def test_what_was_before_a_gap_does_not_count():
     """Ten seconds after 40 s of silence in which she turned, only the new course is told."""
     before, after = sailing(yaw(5.0, 35.0), 120.0), sailing(yaw(0.0, 35.0, about=100.0), 172.0)
-    samples = OwnShip(
-        *(
-            np.concatenate([old, new[after.time > 160]])
-            for old, new in zip(before, after, strict=True)
-        )
-    )
+    samples = append(before, take(after, after.time > 160))
     assert mean_velocity(samples, 171.0) is None
     assert off_deg(samples, 171.0, 100.0) < 0.1
 

@@ -62,7 +62,7 @@ class Bridge:
         for scan in scans:
             heard = self.tracker.inputs[scan.radar]
             before = heard.taken + sum(heard.bad.counts.values())
-            for time, position, velocity in zip(*scan.own_ship):
+            for time, position, velocity in zip(*scan.own_ship[:3]):
                 if time > self.told:
                     self.own.publish(
                         convert.own_ship_to_odometry(round((1000 + time) * 1e9), position, velocity)

@@ -74,3 +74,49 @@ def test_own_ship_never_heard_is_taken_at_rest_at_the_origin():
     sailed, fallback = own_ship.own_ship_for(own_ship.empty_log(), 5.0, 7.0, 10.0)
     assert fallback == own_ship.OWN_NEVER_HEARD
     assert not sailed.position.any() and not sailed.velocity.any()
+
+
+def heard(seconds):
+    """A log of own ship who goes north-east, heard once a second, in time with our clock."""
+    log = own_ship.empty_log()
+    for t in np.arange(0.0, seconds):
+        log, reason = own_ship.admit_own_ship(
+            log, t, np.array([3.0, 4.0]) * t, np.array([3.0, 4.0]), t + 500, np.radians(40.0)
+        )
+        assert not reason
+    return log
+
+
+def test_lost_positions_go_on_without_a_jump_then_through_the_water():
+    log, water, timeout = heard(30), np.array([2.0, 4.5]), 6.0
+    for end in (31.0, 33.5, 35.0):
+        assert own_ship.reckoned(log, end, end + 500, timeout, water, 0.7) is log  # not late yet
+    log = own_ship.reckoned(log, 36.0, 536.0, timeout, water, 0.7)
+    assert log.reckoned and log.taken.position[-1] == pytest.approx([108.0, 144.0])
+    log = own_ship.reckoned(log, 38.5, 538.5, timeout, water, 0.7)
+    assert log.taken.position[-1] == pytest.approx([113.0, 155.25])
+    sailed, fallback = own_ship.own_ship_for(log, 36.0, 38.5, timeout)
+    assert fallback == '' and sailed.velocity[-1] == pytest.approx(water)
+    assert sailed.heading == pytest.approx([0.7, 0.7])
+
+
+def test_lost_positions_without_any_speed_go_on_as_she_went():
+    unknown = np.full(2, np.nan)
+    log = own_ship.reckoned(heard(20), 29.0, 529.0, 6.0, unknown, np.nan)
+    log = own_ship.reckoned(log, 41.0, 541.0, 6.0, unknown, np.nan)
+    assert log.taken.position[-1] == pytest.approx([123.0, 164.0])
+
+
+def test_positions_that_come_back_are_taken_at_once_where_she_may_have_got():
+    log = own_ship.reckoned(heard(20), 60.0, 560.0, 6.0, np.array([2.4, 4.2]), 0.7)
+    log, reason = own_ship.admit_own_ship(
+        log, 61.0, np.array([183.0, 244.0]), np.array([3.0, 4.0]), 561.0
+    )
+    assert reason == '' and not log.reckoned
+    assert log.taken.position[-1].tolist() == [183.0, 244.0]
+
+
+def test_silence_by_stamps_alone_is_not_reckoned_over():
+    """Own ship on another clock: her stamps are old, and yet she was heard just now."""
+    log = heard(20)
+    assert own_ship.reckoned(log, 400.0, 520.0, 6.0, np.array([2.0, 2.0]), 0.7) is log

@@ -54,7 +54,7 @@ def test_own_ship_gone_silent_stands_where_it_was_and_that_is_said(rig, clean):
     here.send(clean[0][4:10])
     here.wait(
         lambda: any(
-            entry.message == own_ship.OWN_SILENT and entry.level == DiagnosticStatus.WARN
+            entry.message.startswith(own_ship.OWN_SILENT) and entry.level == DiagnosticStatus.WARN
             for message in diagnostics.messages
             for entry in message.status
             if entry.name == 'tracker: own ship'
