@@ -26,7 +26,7 @@ DEMO := .venv/.for-demo$(CHOICE)
 TEST := .venv/.for-test$(CHOICE)
 CHECK := .venv/.for-check$(CHOICE)
 
-.PHONY: demo test check api slow clean
+.PHONY: demo test check api slow fuzz clean
 
 demo: $(DEMO)
 	@exec $(BIN)/python .ci/foreground.py $(BIN)/marine_tracker demo $(ARGS)
@@ -50,7 +50,7 @@ api: $(CHECK)
 slow: $(TEST)
 	$(BIN)/python -m pytest -m slow $(ARGS)
 
-fuzz: $(INSTALLED)
+fuzz: $(TEST)
 	$(BIN)/python -m pytest -m fuzz -s $(ARGS)
 
 $(DEMO): $(DESCRIPTION)

@@ -33,7 +33,7 @@ class SensorsInput:
     count  count(reason, detail) of what is wrong with a message
     """
 
-    def __init__(self, node: RunnableNode, count: Callable[[str, str], None]):
+    def __init__(self, node: RunnableNode, count: Callable[[str, str], None]) -> None:
         self._count = count
         self.heading = math.nan  # rad, the last one told
         self._log = (math.nan, math.nan)  # m/s, ahead and to starboard
