@@ -3,6 +3,7 @@
 import os
 import socket
 import sys
+import time
 
 import pytest
 
@@ -66,8 +67,12 @@ def test_both_workers_take_part_in_one_thread_each(scheduler, options):
     from threadpoolctl import threadpool_info
 
     with worker_options.workers(options('--scheduler', scheduler)) as executor:
-        jobs = [parallel.Job(os.getenv, (THREADS[0],)), parallel.Job(os.getpid, ())]
-        told, *pids = parallel.run(jobs + 30 * jobs[1:], executor, silent)
+        # Whoever sleeps leaves the next job to the other worker.
+        jobs = 20 * [parallel.Job(time.sleep, (0.05,)), parallel.Job(os.getpid, ())]
+        told, *rest = parallel.run(
+            [parallel.Job(os.getenv, (THREADS[0],)), *jobs], executor, silent
+        )
+        pids = [pid for pid in rest if pid]
         infos = parallel.run([parallel.Job(threadpool_info, ())] * 4, executor, silent)
     assert told == '3', 'the workers were not started as this test needs them'
     assert len(set(pids)) == 2 and os.getpid() not in pids
