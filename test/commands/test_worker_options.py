@@ -1,5 +1,6 @@
 """Parts of `imo` and of experiments on the workers of a dask cluster: two real ones, here."""
 
+import contextlib
 import os
 import socket
 import sys
@@ -24,11 +25,17 @@ def scheduler():
     distributed = pytest.importorskip('distributed')
     environment = dict.fromkeys(THREADS, 3)
     with (
+        pytest.MonkeyPatch.context() as patch,
         dask.config.set({'distributed.nanny.pre-spawn-environ': environment}),
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, host='127.0.0.1', dashboard_address=':0'
-        ) as cluster,
+        contextlib.ExitStack() as stack,
     ):
+        for name in THREADS:  # what is set here would hold there too
+            patch.delenv(name, raising=False)
+        cluster = stack.enter_context(
+            distributed.LocalCluster(
+                n_workers=2, threads_per_worker=1, host='127.0.0.1', dashboard_address=':0'
+            )
+        )
         yield cluster.scheduler_address
 
 
