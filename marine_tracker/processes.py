@@ -82,6 +82,12 @@ def one_thread() -> None:
         os.environ.setdefault(name, '1')
 
 
+def return_freed_memory() -> None:
+    """Give memory that is freed but kept back to the kernel, so that what is left is in use."""
+    with contextlib.suppress(AttributeError, OSError):  # not the GNU C library
+        ctypes.CDLL(None).malloc_trim(0)
+
+
 def keep_freed_memory() -> bool:
     """Asks the C library to keep up to 64 MB of freed memory for reuse. False if it cannot.
 

@@ -31,6 +31,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.time import Time
 
 from ..geometry import own_ship_at, unit_vector
+from ..processes import return_freed_memory
 from ..simulation import radar, scenario
 from ..types import Array, PolarPlots, Scan, Truth, append, take
 from . import convert, topics
@@ -166,9 +167,11 @@ def run(hours: float, seed: int, faults: bool, progress: Callable[[int, int], No
                 incidents.append(Incident(fault, time / 3600, before, count - since))
                 fault = ''
             if count % 1000 == 0:
+                gc.collect()
+                return_freed_memory()
                 memory.append((time / 3600, megabytes()))
                 progress(round(time), round(3600 * hours))
-        if fault:
+        if fault and count - since > BETWEEN_SCANS:  # else it had no time
             incidents.append(Incident(fault, time / 3600, before, np.inf))
     finally:
         bridge.close()
