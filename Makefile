@@ -31,12 +31,12 @@ CHECK := .venv/.for-check$(CHOICE)
 demo: $(DEMO)
 	@exec $(BIN)/python .ci/foreground.py $(BIN)/marine_tracker demo $(ARGS)
 
-# Arithmetic on all processors, then the nodes, which run in real time and mostly wait: three tests at
+# Arithmetic on all processors, then the nodes, which run in real time and mostly wait: three files at
 # a time. Code 5: ARGS leaves no test in this half.
 test: $(TEST)
 	$(BIN)/python -m pytest -m 'not slow and not fuzz and not nodes' -n auto --maxprocesses 4 \
 	    --dist loadfile $(ARGS) || [ $$? = 5 ]
-	$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' -n 3 --dist loadgroup $(ARGS) || [ $$? = 5 ]
+	$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' -n 3 --dist loadfile $(ARGS) || [ $$? = 5 ]
 
 check: $(CHECK)
 	$(BIN)/ruff check

@@ -5,8 +5,6 @@ import pytest
 pytest.importorskip('rclpy')
 from marine_tracker.nodes import soak
 
-pytestmark = pytest.mark.xdist_group('soak')  # one run serves all
-
 
 @pytest.fixture(scope='module')
 def found(domain):
