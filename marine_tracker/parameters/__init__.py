@@ -14,6 +14,7 @@ from .sources_and_outputs import (
     RecordingPlayerParameters,
 )
 from .tracker import EXTENTS, GLINT_SIGMA, VESSEL_CLASSES, TrackerParameters
+from .video import VideoParameters
 
 NODES: dict[str, tuple[type, ...]] = {
     'tracker': (TrackerParameters, ArpaParameters),
@@ -34,6 +35,7 @@ __all__ = [
     'RadarSimulatorParameters',
     'RecordingPlayerParameters',
     'TrackerParameters',
+    'VideoParameters',
     'from_mapping',
     'from_mappings',
 ]

@@ -1,0 +1,93 @@
+"""The parameters of the plot extractor."""
+
+import math
+from dataclasses import dataclass
+
+from .description import check, parameter
+
+
+@dataclass(frozen=True)
+class VideoParameters:
+    """The parameters of the extraction of plots from radar video, in process and as a node."""
+
+    false_alarm_rate: float = parameter(
+        1e-5,
+        'Probability that a cell with noise or clutter alone counts as an echo.',
+        low=1e-9,
+        high=0.1,
+        live=True,
+    )
+    beam_width_deg: float = parameter(
+        2.0,
+        'Horizontal beam width of the antenna, one way, at half power.',
+        unit='deg',
+        low=0.1,
+        high=30.0,
+        live=True,
+    )
+    pulse_length_m: float = parameter(
+        0.0,
+        'Depth of the echo of a point, at half power; 0: two samples of the video.',
+        unit='m',
+        low=0.0,
+        high=1000.0,
+        live=True,
+    )
+    blind_range_m: float = parameter(
+        0.0,
+        'Nothing nearer than this is an echo: the transmitted pulse.',
+        unit='m',
+        low=0.0,
+        high=10000.0,
+        live=True,
+    )
+    blank_sectors_deg: str = parameter(
+        '',
+        'Sectors that own ship hides, clockwise from the bow, as "170-190 350-5". They count as '
+        'not swept.',
+        live=True,
+    )
+    max_size_m: float = parameter(
+        450.0,
+        'Longest ship; echoes that hang together over more are land, and give no plot.',
+        unit='m',
+        low=10.0,
+        high=10000.0,
+        live=True,
+    )
+    range_offset_m: float = parameter(
+        0.0,
+        'Added to every range: by how much the radar measures too near.',
+        unit='m',
+        low=-1000.0,
+        high=1000.0,
+        live=True,
+    )
+    doppler_codes: bool = parameter(
+        False,
+        'Whether the two highest strengths tell a Doppler shift, receding and approaching; else '
+        'they are strong echoes.',
+        live=True,
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+        blanks(self.blank_sectors_deg)
+
+
+def blanks(text: str) -> tuple[tuple[float, float], ...]:
+    """Sectors of `blank_sectors_deg`, rad from and to, clockwise; ValueError where it is none."""
+    sectors = []
+    for word in text.split():
+        start, dash, end = word.partition('-')
+        try:
+            first, last = float(start), float(end)
+        except ValueError:
+            first = last = math.nan
+        if not (dash and 0 <= first <= 360 and 0 <= last <= 360):
+            raise ValueError(
+                f'parameter blank_sectors_deg has {word[:40]!r}; it must be two numbers from 0 to '
+                '360, as 170-190'
+            )
+        sectors.append((math.radians(first), math.radians(last)))
+    return tuple(sectors)
