@@ -29,7 +29,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
 
 
-def add_video_arguments(parser: ArgumentParser) -> None:
+def add_video_arguments(parser: ArgumentParser, heading: bool = True) -> None:
     """Adds --video and --heading, for sources of spokes."""
     parser.add_argument(
         '--video',
@@ -38,6 +38,9 @@ def add_video_arguments(parser: ArgumentParser) -> None:
         default=[],
         help='one parameter of the extraction of plots from spokes, as beam_width_deg=1.2',
     )
+    if not heading:
+        parser.set_defaults(heading=None)
+        return
     parser.add_argument(
         '--heading',
         type=float,

@@ -75,6 +75,24 @@ class VideoParameters:
         blanks(self.blank_sectors_deg)
 
 
+@dataclass(frozen=True)
+class PlotExtractorParameters:
+    """The parameters of the plot extractor node, beside those of the extraction."""
+
+    sectors: int = parameter(
+        1,
+        'Messages of plots in a revolution: 1, or more where the tracker takes sectors.',
+        low=1,
+        high=64,
+    )
+    image_size: int = parameter(
+        1024, 'Width and height of `radar/image`.', unit='pixels', low=64, high=4096
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
 def blanks(text: str) -> tuple[tuple[float, float], ...]:
     """Sectors of `blank_sectors_deg`, rad from and to, clockwise; ValueError where it is none."""
     sectors = []

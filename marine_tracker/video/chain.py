@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry import wrap_bearing
 from ..parameters import VideoParameters
-from ..types import OwnShip, Scan, Sweep, take
+from ..types import OwnShip, Scan, Spokes, Sweep, take
 from . import headings, placing, scans
 from .extraction import Extraction, Memory
 from .found import Found
@@ -26,9 +26,10 @@ class ChainMemory(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What a sweep came to: what was found, in order; the scans that became whole; counts of what
-    was wrong or left out, by reason."""
+    """What a sweep came to: its spokes in place; what was found, in order; the scans that became
+    whole; counts of what was wrong or left out, by reason."""
 
+    placed: list[Spokes]
     found: list[Found]
     scans: list[Scan]
     counts: Counter[str]
@@ -51,7 +52,7 @@ class Chain:
         self, memory: ChainMemory, sweep: Sweep, own_ship: OwnShip
     ) -> tuple[ChainMemory, Step]:
         """One sweep of any number of spokes. own_ship covers it, and the scan that it ends."""
-        done = Step([], [], Counter())
+        done = Step([], [], [], Counter())
         own_ship = _with_heading(own_ship, memory.placing.headings)
         for first in range(0, max(len(sweep.time), 1), AT_ONCE):
             part = take(sweep, slice(first, first + AT_ONCE))
@@ -59,6 +60,7 @@ class Chain:
             memory = memory._replace(placing=placed)
             done.counts.update(counts)
             if len(spokes.time):
+                done.placed.append(spokes)
                 extraction, found = self.extraction.step(memory.extraction, spokes)
                 memory = memory._replace(extraction=extraction)
                 memory = self._gather(memory, found, own_ship, done)
@@ -66,7 +68,7 @@ class Chain:
 
     def end(self, memory: ChainMemory, own_ship: OwnShip) -> tuple[ChainMemory, Step]:
         """No sweep follows: what is left comes out."""
-        done = Step([], [], Counter())
+        done = Step([], [], [], Counter())
         extraction, found = self.extraction.end(memory.extraction)
         memory = self._gather(memory._replace(extraction=extraction), found, own_ship, done)
         done.scans.extend(scans.rest(memory.gathering, own_ship))

@@ -52,9 +52,9 @@ def points(
     y = np.arange(rows) - rows // 2
     x = np.arange(columns) - columns // 2
     z = np.exp(np.minimum(power, 40.0))
-    place = np.zeros((len(peak), 2))
+    place: Array = np.zeros((len(peak), 2))
     top = np.where(usable, power, -np.inf).max((1, 2), initial=1.0)
-    height = np.asarray(np.maximum(top, 1.0), np.float64)
+    height = np.maximum(top, 1.0).astype(np.float64)
     beam, pulse = lobe.shape
     blur = (step**2 / 12)[:, None, None]
     covariance = np.tile(np.eye(2), (len(peak), 1, 1))
@@ -79,15 +79,15 @@ def points(
         information[:, [0, 1, 2], [0, 1, 2]] += 1e-6
         inverse = np.linalg.inv(information)
         if iteration == ITERATIONS:
-            covariance = inverse[:, 1:, 1:]
+            covariance = np.asarray(inverse[:, 1:, 1:], np.float64)
             break
         root = 2 * np.sqrt(z * r)
         score = r * (np.sqrt(z / r) * (i1e(root) / i0e(root)) - 1) * weight
         slopes = np.stack([(score * one).sum((1, 2)) for one in gradient], 1)
         change = np.einsum('kij,kj->ki', inverse, slopes)
         change = np.clip(change, -1.0, 1.0) * [1.0, 0.3 * beam, 0.3 * pulse]
-        height = np.clip(height + change[:, 0], 0.0, 38.0).astype(np.float64)
-        place = place + change[:, 1:]
+        height = np.clip(height + change[:, 0], 0.0, 38.0)
+        place += change[:, 1:]
     held = (np.abs(place) < 0.75 * lobe.shape).all(1) & (usable.sum((1, 2)) >= 4)
     return peak + place, covariance, height, held
 
