@@ -50,7 +50,7 @@ class PlotExtractorNode(RunnableNode):
             maxlen=OWN_SAMPLES
         )
         self._polar = picture.start()
-        self._drawn = -math.inf  # s, when the last picture was made
+        self._drawn = math.inf  # s, when the last picture was made
         self._spokes, self._usable, self._plots, self._scans = 0, 0, 0, 0
         self._lately = [0, 0]  # spokes and usable ones since the last second
         self._heard: float | None = None
@@ -174,9 +174,12 @@ class PlotExtractorNode(RunnableNode):
             return
         for spokes in placed:
             self._polar = picture.painted(self._polar, spokes)
-        now = float(self._polar.time.max())
-        first = float(self._polar.time.min())
-        if not math.isfinite(now) or self._drawn >= first and now - self._drawn < picture.OLD_S:
+        now, first = float(self._polar.time.max()), float(self._polar.time.min())
+        if not math.isfinite(now):
+            return
+        if not self._drawn <= now:  # the first spokes, or a clock set back
+            self._drawn = now
+        if first <= self._drawn and now - self._drawn < picture.OLD_S:
             return
         self._drawn = now
         shown = picture.north_up(self._polar, self._size, now)

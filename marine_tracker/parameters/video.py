@@ -10,11 +10,11 @@ from .description import check, parameter
 class VideoParameters:
     """The parameters of the extraction of plots from radar video, in process and as a node."""
 
-    false_alarm_rate: float = parameter(
-        1e-5,
-        'Probability that a cell with noise or clutter alone counts as an echo.',
-        low=1e-9,
-        high=0.1,
+    false_alarms_per_million: float = parameter(
+        10.0,
+        'Of a million cells with noise or clutter alone, how many may count as echoes.',
+        low=0.001,
+        high=100000.0,
         live=True,
     )
     beam_width_deg: float = parameter(
@@ -41,10 +41,10 @@ class VideoParameters:
         high=10000.0,
         live=True,
     )
-    blank_sectors_deg: str = parameter(
+    blank_sectors: str = parameter(
         '',
-        'Sectors that own ship hides, clockwise from the bow, as "170-190 350-5". They count as '
-        'not swept.',
+        'Sectors that own ship hides, in degrees clockwise from the bow, as "170-190 350-5". They '
+        'count as not swept.',
         live=True,
     )
     max_size_m: float = parameter(
@@ -70,9 +70,14 @@ class VideoParameters:
         live=True,
     )
 
+    @property
+    def false_alarm_rate(self) -> float:
+        """Probability that a cell with noise or clutter alone counts as an echo."""
+        return 1e-6 * self.false_alarms_per_million
+
     def __post_init__(self) -> None:
         check(self)
-        blanks(self.blank_sectors_deg)
+        blanks(self.blank_sectors)
 
 
 @dataclass(frozen=True)
@@ -94,7 +99,7 @@ class PlotExtractorParameters:
 
 
 def blanks(text: str) -> tuple[tuple[float, float], ...]:
-    """Sectors of `blank_sectors_deg`, rad from and to, clockwise; ValueError where it is none."""
+    """Sectors of `blank_sectors`, rad from and to, clockwise; ValueError where it is none."""
     sectors = []
     for word in text.split():
         start, dash, end = word.partition('-')
@@ -104,7 +109,7 @@ def blanks(text: str) -> tuple[tuple[float, float], ...]:
             first = last = math.nan
         if not (dash and 0 <= first <= 360 and 0 <= last <= 360):
             raise ValueError(
-                f'parameter blank_sectors_deg has {word[:40]!r}; it must be two numbers from 0 to '
+                f'parameter blank_sectors has {word[:40]!r}; it must be two numbers from 0 to '
                 '360, as 170-190'
             )
         sectors.append((math.radians(first), math.radians(last)))

@@ -100,12 +100,9 @@ def _leave_out_lone(held: Stack, first: int, slope: Array) -> int:
 
 def noise_at(held: Stack, row: IntArray, sample: IntArray) -> Array:
     """[n] location of the noise about cells."""
-    of = held.grid
-    right = np.clip(np.searchsorted(of.centre, sample + 0.5), 1, len(of.centre) - 1)
-    share = (sample + 0.5 - of.centre[right - 1]) / (of.centre[right] - of.centre[right - 1])
-    share = np.clip(share, 0.0, 1.0)
-    block = np.minimum(row // of.rows, len(held.noise) - 1)
-    low, high = held.noise[block, right - 1], held.noise[block, right]
+    left, right, share = level.between(held.grid, sample)
+    block = np.minimum(row // held.grid.rows, len(held.noise) - 1)
+    low, high = held.noise[block, left], held.noise[block, right]
     return low + share * (high - low)
 
 

@@ -40,7 +40,7 @@ class Extraction:
     def __init__(self, parameters: VideoParameters) -> None:
         self.parameters = parameters
         self.beam = math.radians(parameters.beam_width_deg)
-        self.blanks = blanks(parameters.blank_sectors_deg)
+        self.blanks = blanks(parameters.blank_sectors)
 
     def start(self) -> Memory:
         """No spokes yet."""

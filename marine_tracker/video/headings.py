@@ -65,7 +65,8 @@ def _taken(log: Log, time: Array, told: Array) -> tuple[Log, BoolArray]:
             turned = float(wrap_angle(np.float64(value - headings[-1])))
             value = headings[-1] + turned
             quick = abs(turned) > STEP + FASTEST * min(max(now - times[-1], 0.0), TIMEOUT_S)
-            if quick and now - log.told < TIMEOUT_S:
+            before = float(time[begin - 1]) if begin else log.told
+            if quick and now - before < TIMEOUT_S:
                 odd = now if np.isnan(odd) else odd
                 if time[end - 1] - odd < BELIEVED_S:
                     rejected[begin:end] = True

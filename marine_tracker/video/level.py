@@ -161,10 +161,15 @@ def location(mean: FloatArray) -> FloatArray:
 
 def at_samples(of: Grid, values: FloatArray) -> FloatArray:
     """[blocks, samples]: values [blocks, C] of blocks, straight between their middles."""
-    sample = np.arange(of.edge[-1]) + 0.5
-    right = np.clip(np.searchsorted(of.centre, sample), 1, len(of.centre) - 1)
-    left = right - 1
-    share = (sample - of.centre[left]) / (of.centre[right] - of.centre[left])
-    share = np.clip(share, 0.0, 1.0).astype(np.float32)
+    left, right, share = between(of, np.arange(of.edge[-1]))
     low = values[:, left]
-    return low + share * (values[:, right] - low)
+    return low + share.astype(np.float32) * (values[:, right] - low)
+
+
+def between(of: Grid, sample: IntArray) -> tuple[IntArray, IntArray, Array]:
+    """The columns on both sides of the middle of samples, and how far it is on the way."""
+    last = len(of.centre) - 1
+    right = np.clip(np.searchsorted(of.centre, sample + 0.5), min(1, last), last)
+    left = np.maximum(right - 1, 0)
+    apart = np.maximum(of.centre[right] - of.centre[left], 1e-9)
+    return left, right, np.clip((sample + 0.5 - of.centre[left]) / apart, 0.0, 1.0)

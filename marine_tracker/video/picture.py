@@ -1,5 +1,6 @@
 """The radar picture, north up, from the spokes of the last revolution."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -41,8 +42,9 @@ def painted(polar: Polar, spokes: Spokes) -> Polar:
         polar = fresh._replace(strength=fresh.strength.astype(strength.dtype))
     per_row = ROWS / (2 * np.pi)
     row = np.floor(spokes.bearing[known] * per_row).astype(np.int64) % ROWS
-    apart = np.median(np.diff(row) % ROWS) if len(row) > 1 else 1
-    for shift in range(int(min(max(apart, 1), ROWS // 64))):
+    turn = np.mod(np.diff(spokes.bearing[known]), 2 * np.pi)
+    apart = math.ceil(float(np.median(turn)) * per_row) if len(turn) else 1
+    for shift in range(min(max(apart, 1), ROWS // 64)):
         at = (row + shift) % ROWS
         polar.strength[at] = strength[known]
         polar.time[at] = spokes.time[known]

@@ -17,6 +17,7 @@ LONGEST_RANGE = 200_000.0  # m
 MOST_SAMPLES = 16_384
 MOST_SPOKES = 16_384  # at once
 MOST_CHANGES = 4  # changes of the range among 64 spokes; more is a header misread
+TURNED_S = 0.4  # s without a spoke; the beam may be anywhere after it
 BACKWARD = np.radians(20.0)  # a beam that comes back by less has not turned once
 
 NO_SPOKES = 'sweeps without spokes or samples'
@@ -131,7 +132,7 @@ def _in_order(known: Placing, sweep: Sweep, counts: Counter[str]) -> tuple[Placi
     forward = turn[turn > 0]
     if len(forward) >= 8:
         spacing = float(np.median(forward))
-    keep = _forward(sweep.angle, known.angle, spacing, counts)
+    keep = _forward(sweep, known, spacing, counts)
     sweep = take(sweep, keep) if not keep.all() else sweep
     if not len(sweep.time):
         return known, sweep
@@ -143,8 +144,9 @@ def _in_order(known: Placing, sweep: Sweep, counts: Counter[str]) -> tuple[Placi
     return last, sweep
 
 
-def _forward(angle: Array, before: float, spacing: float, counts: Counter[str]) -> BoolArray:
+def _forward(sweep: Sweep, known: Placing, spacing: float, counts: Counter[str]) -> BoolArray:
     """Which spokes lie ahead of all that came before them in the turn."""
+    angle, before = sweep.angle, known.angle
     steps = wrap_angle(np.diff(angle, prepend=before))
     steps[np.isnan(steps)] = spacing if np.isfinite(spacing) else 1e-3
     small = 0.25 * spacing if np.isfinite(spacing) else 1e-9
@@ -152,14 +154,18 @@ def _forward(angle: Array, before: float, spacing: float, counts: Counter[str]) 
     if (steps > small).all():
         return keep
     front = before if np.isfinite(before) else angle[0] - 1e-3
+    since = known.time
     for k in range(len(angle)):
         step = float(wrap_angle(np.float64(angle[k] - front)))
-        if abs(step) <= small:
+        now = float(sweep.time[k])
+        if now - since > TURNED_S:
+            front, since = angle[k], now
+        elif abs(step) <= small:
             counts[DOUBLED] += 1
             keep[k] = False
         elif -BACKWARD < step < 0:
             counts[BACK] += 1
             keep[k] = False
         else:
-            front = angle[k]
+            front, since = angle[k], now
     return keep

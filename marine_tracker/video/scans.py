@@ -53,13 +53,17 @@ def gather(
         turn = 0.0
     if time - known.time > LOST_S:
         turn = width
-    known = Gathering(plots, known.start, time, bearing, known.turned + turn)
-    if known.turned < width - 1e-6:
-        return known, []
-    inside = plots.time <= time
-    scan = Scan(known.start, time, take(plots, inside), own_ship)
-    left = known.turned - width
-    return Gathering(take(plots, ~inside), time, time, bearing, left % width), [scan]
+    scans = []
+    turned, began = known.turned, known.time
+    start_ = known.start
+    while turned + turn >= width - 1e-6:
+        share = min(max((width - turned) / turn, 0.0), 1.0) if turn > 0 else 1.0
+        end = began + share * (time - began)
+        inside = plots.time <= end
+        scans.append(Scan(start_, end, take(plots, inside), own_ship))
+        plots, start_, began = take(plots, ~inside), end, end
+        turn, turned = turn - (width - turned), 0.0
+    return Gathering(plots, start_, time, bearing, turned + max(turn, 0.0)), scans
 
 
 def rest(known: Gathering, own_ship: OwnShip) -> list[Scan]:
