@@ -5,14 +5,11 @@ import { element, say } from './panel.js';
 import { staleness, unacknowledged } from './state.js';
 
 /**
- * @param {object} page
- * @param {import('./state.js').State} page.state
- * @param {import('./settings.js').Settings} page.settings
- * @param {import('./sound.js').Sound} page.sound
- * @param {import('./layers.js').Surface} page.surface
+ * @param {import('./app.js').App} app
+ * @param {import('./layers.js').Surface} surface
  * @param {number} now s
  */
-export function alive({ state, settings, sound, surface }, now) {
+export function alive({ state, settings, sound }, surface, now) {
   if (settings.sound === 'on') sound.update(state.alarms, now);
   element('silence').hidden = settings.sound !== 'on';
   const why = surface.lost ? 'The picture was lost: drawn anew' : staleness(state, now);
