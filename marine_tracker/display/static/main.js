@@ -9,6 +9,7 @@ import * as keys from './keys.js';
 import { Surface } from './layers.js';
 import { Link } from './link.js';
 import * as panel from './panel.js';
+import { Pace } from './pace.js';
 import { draw, scopeOf, targetAt } from './picture.js';
 import * as pointer from './pointer.js';
 import { Sound } from './sound.js';
@@ -16,7 +17,6 @@ import { CHOICES, RANGES, keep, load } from './settings.js';
 import { emptyState, receive, reconnected } from './state.js';
 import { makeHeads, showTargets } from './table.js';
 
-const REDRAW_MS = 250; // at least: echoes fade, dangers flash
 const PANEL_MS = 200;
 const ALIVE_MS = 100;
 const SAID_MS = 6000;
@@ -30,10 +30,9 @@ const surface = new Surface(canvas);
 const marks = { id: null, cursor: null, lines: [], drag: null };
 const sorted = { column: 6, sign: 1, danger: true };
 let courseUp = 0; // rad, when course-up was chosen
-let dirty = true;
+const pace = new Pace();
 let saidUntil = 0;
 let frames = 0; // drawn so far
-let drawn = -Infinity;
 let panelShown = -Infinity;
 
 const link = new Link(
@@ -43,7 +42,7 @@ const link = new Link(
     // In a hidden tab timers hardly run: alarms go on by what comes each second.
     if (message.kind === 'alarms' || message.kind === 'pulse') showAlive();
     if (message.kind === 'limits') forms.fillLimits(message);
-    dirty = true;
+    pace.news();
   },
   () => reconnected(state),
   () => state.late,
@@ -59,9 +58,7 @@ const app = {
   pointer: null,
   colors: {},
   scopeNow: () => scopeOf(state, settings, canvas.clientWidth, canvas.clientHeight, courseUp),
-  redraw() {
-    dirty = true;
-  },
+  redraw: () => pace.ask(),
   change(name, value) {
     settings[name] = value;
     if (name === 'orientation') courseUp = state.own?.heading ?? 0;
@@ -85,7 +82,7 @@ const app = {
   choose(id) {
     marks.id = id;
     panelShown = -Infinity;
-    dirty = true;
+    pace.ask();
   },
   selectAt(x, y) {
     const { view } = app.scopeNow();
@@ -107,16 +104,14 @@ const app = {
     else if (place && state.own) {
       marks.lines.push(rangeBearing(state.own.x, state.own.y, place[0], place[1]));
     }
-    dirty = true;
+    pace.ask();
   },
 };
 
 function frame() {
   requestAnimationFrame(frame);
   const now = performance.now();
-  if (!dirty && now - drawn < REDRAW_MS) return;
-  dirty = false;
-  drawn = now;
+  if (!pace.due(now)) return;
   frames++;
   const pen = surface.ready();
   const scope = app.scopeNow();

@@ -11,7 +11,7 @@ import {
 } from './geometry.js';
 import { echoKey, paintEchoes } from './echoes.js';
 import { placed } from './labels.js';
-import { Layer } from './layers.js';
+import { Layer, Stamps } from './layers.js';
 import { RANGES } from './settings.js';
 import { drawMarks, drawScale, drawTrial } from './surround.js';
 import {
@@ -32,6 +32,8 @@ const FLASH_S = 0.5;
 const around = new Layer(); // sea, rings, bearing scale
 const glow = new Layer(); // echoes
 const past = new Layer(); // trails
+const stamps = new Stamps();
+const LIKELY_STEPS = 20; // of the shade that tells how likely a danger is
 
 /**
  * @typedef {import('./geometry.js').View} View
@@ -143,7 +145,6 @@ function drawTrails(canvas, state, settings, { view }, colors) {
   const relative = settings.trails === 'relative';
   const count = Math.round((60 * settings.trailMinutes) / trails.interval);
   const step = Math.max(1, Math.round(count / 12));
-  canvas.fillStyle = colors.trail;
   const last = trails.own.length - 1;
   for (const target of state.targets) {
     const trail = trails.targets[target.id];
@@ -156,7 +157,10 @@ function drawTrails(canvas, state, settings, { view }, colors) {
         ? [state.own.x - trails.own[moment][0], state.own.y - trails.own[moment][1]]
         : [0, 0];
       const [x, y] = toScreen(view, trail[moment][0] + dx, trail[moment][1] + dy);
-      symbols.pastPosition(canvas, x, y);
+      stamps.put(canvas, `past ${colors.trail}`, x, y, 3, (pen, middleX, middleY) => {
+        pen.fillStyle = colors.trail;
+        symbols.pastPosition(pen, middleX, middleY);
+      });
     }
   }
 }
@@ -205,10 +209,7 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
     }
     if (target.alarm !== UNACKNOWLEDGED || shown) {
       if (target.status !== ACQUIRING) symbols.vector(canvas, x, y, right, down, color, danger);
-      if (danger) symbols.dangerous(canvas, x, y, color);
-      else if (target.status === ACQUIRING) symbols.acquiring(canvas, x, y, color);
-      else if (target.status === COASTING) symbols.coasting(canvas, x, y, color);
-      else symbols.tracked(canvas, x, y, color, target.danger_probability ?? 0, colors.danger);
+      drawSymbol(canvas, target, x, y, color, danger, colors);
     }
     if (target.number && (settings.labels === 'on' || danger || target.id === chosen)) {
       const text = String(target.number).padStart(2, '0');
@@ -228,6 +229,17 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
   for (const { label, left, middle } of placed(labels, (text) => widthOf(canvas, text))) {
     canvas.fillText(label.text, left, middle);
   }
+}
+
+function drawSymbol(canvas, target, x, y, color, danger, colors) {
+  const likely = Math.round((target.danger_probability ?? 0) * LIKELY_STEPS);
+  const key = `${color} ${danger} ${target.status} ${likely}`;
+  stamps.put(canvas, key, x, y, 12, (pen, middleX, middleY) => {
+    if (danger) symbols.dangerous(pen, middleX, middleY, color);
+    else if (target.status === ACQUIRING) symbols.acquiring(pen, middleX, middleY, color);
+    else if (target.status === COASTING) symbols.coasting(pen, middleX, middleY, color);
+    else symbols.tracked(pen, middleX, middleY, color, likely / LIKELY_STEPS, colors.danger);
+  });
 }
 
 /** @type {Map<string, number>} */
