@@ -128,7 +128,9 @@ def _own_ship(rows, time, path) -> OwnShip:
         )
     if not np.isfinite(rows[:, :5]).all() or (np.diff(rows[:, 0]) <= 0).any():
         raise ValueError(f'{shortened(path)}: {OWN_SHIP} must be finite, with times that increase')
-    return OwnShip(rows[:, 0], rows[:, 1:3], rows[:, 3:5], np.radians(rows[:, 5]))
+    told = np.isfinite(rows[:, 5]).any()
+    heading = np.radians(rows[:, 5]) if told else None
+    return OwnShip(rows[:, 0], rows[:, 1:3], rows[:, 3:5], heading)
 
 
 def write(path: Place, sweeps: Iterable[Sweep], own_ship: OwnShip) -> int:

@@ -35,9 +35,9 @@ def test_spokes_are_tracked(command, recorded, tmp_path):
     assert run.returncode == 0, run.stderr
     rows = list(csv.DictReader(out.open()))
     last = [row for row in rows if row['scan'] == rows[-1]['scan']]
-    assert [row['status'] for row in last] == ['CONFIRMED', 'CONFIRMED']
-    bearings = [np.degrees(np.arctan2(float(r['east_m']), float(r['north_m']))) for r in last]
-    assert sorted(np.mod(bearings, 360)) == pytest.approx([95.0, 330.0], abs=1.0)
+    assert [row['status'] for row in last] == ['confirmed', 'confirmed']
+    bearings = sorted(float(row['bearing_deg']) for row in last)
+    assert bearings == pytest.approx([95.0, 330.0], abs=1.0)
 
 
 def test_without_a_heading_there_are_no_bearings(command, recorded):
