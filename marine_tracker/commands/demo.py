@@ -6,7 +6,6 @@ Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
 """
 
 import contextlib
-import dataclasses
 import os
 import signal
 import sys
@@ -17,17 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from ..estimators import ESTIMATORS
-from ..evaluation import video_source
-from ..parameters import (
-    EXTENTS,
-    RadarSimulatorParameters,
-    RecordingPlayerParameters,
-    TrackerParameters,
-    from_mapping,
-)
+from ..parameters import EXTENTS
 from ..processes import closing, end_in_time
-from ..recording import csv_folder, spokes_file
-from . import demo_page, tracker_options
+from . import demo_page, demo_sources, tracker_options
 from .node_processes import Child, children_of
 
 HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
@@ -50,7 +41,7 @@ STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
 DANGEROUS = 'bold red'
 MOST_ALARMS = 8  # listed below the table on a terminal; others are only counted
 PLAIN_EVERY_S = 2.0  # s between two tables if there is no terminal
-PPI, EXTRACTOR = 'ppi_display', 'plot_extractor'
+PPI = 'ppi_display'
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -110,8 +101,7 @@ def run(args: Namespace) -> int:
 
 
 def _demo(args, stop: threading.Event) -> int:
-    source, source_parameters, tracker_parameters = _parameters(args)
-    extraction = _extraction(args)
+    nodes = demo_sources.nodes(args)
     try:
         from ..nodes import domain
         from ..nodes.targets_listener import TargetsListener
@@ -129,9 +119,6 @@ def _demo(args, stop: threading.Event) -> int:
             number = context.enter_context(domain.free_domain())
         domain.set_local(os.environ, number)
         last = context.enter_context(contextlib.ExitStack())
-        nodes = {'tracker': tracker_parameters, source: source_parameters}
-        if extraction is not None:
-            nodes[EXTRACTOR] = extraction
         if demo_page.wanted(args.no_display):
             nodes[PPI] = {
                 'address': f'127.0.0.1:{demo_page.free_port()}',
@@ -142,53 +129,6 @@ def _demo(args, stop: threading.Event) -> int:
         last.callback(listener.close)  # after the children have ended: it may hang
         title = Path(args.recording).name if args.recording else args.scenario
         return _watch(listener, children, stop, title, args.duration, number)
-
-
-def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
-    """The source node's name and parameters, and the tracker's. ValueError if one is wrong."""
-    source: str
-    if args.recording:
-        source = 'recording_player'
-        given = {'folder': os.path.abspath(args.recording), 'rate': args.rate}
-        from_mapping(RecordingPlayerParameters, given)
-        for_tracker = _recorded_parameters(args)
-    else:
-        from ..simulation import scenario
-
-        source = 'radar_simulator'
-        name = args.scenario
-        given = {
-            'scenario': os.path.abspath(name) if os.path.isfile(name) else name,
-            'rate': args.rate,
-            'seed': args.seed,
-        }
-        from_mapping(RadarSimulatorParameters, given)
-        for_tracker = dict(scenario.load(name).tracker_parameters())
-    if args.estimator:
-        for_tracker['estimator'] = args.estimator
-    if args.extent:
-        for_tracker['extent'] = args.extent
-    checked = from_mapping(TrackerParameters, for_tracker)
-    for_tracker = {name: getattr(checked, name) for name in for_tracker}  # ints become floats
-    if args.rate != 1:
-        for_tracker['use_sim_time'] = True
-    return source, given, for_tracker
-
-
-def _recorded_parameters(args) -> dict[str, Any]:
-    """The tracker's parameters for a recording."""
-    if spokes_file.is_spokes_file(args.recording):
-        video = spokes_file.read(args.recording)
-        return video_source.tracker_parameters(tracker_options.video(args).parameters, video.sweep)
-    return dict(csv_folder.read(args.recording).tracker_parameters)
-
-
-def _extraction(args) -> dict[str, Any] | None:
-    """The parameters of the plot extractor; None where plots come without it."""
-    if not (args.recording and spokes_file.is_spokes_file(args.recording)):
-        return None
-    values = dataclasses.asdict(tracker_options.video(args).parameters)
-    return {**values, **({'use_sim_time': True} if args.rate != 1 else {})}
 
 
 def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:
