@@ -89,8 +89,15 @@ def _maxima(row, sample, low, high, strength, lobe: Lobe, slope):
     inside = np.zeros(patch.shape, bool)
     inside[at] = True
     peaked = inside & (smooth >= ndimage.maximum_filter(smooth, lobe.apart) - 1e-4)
+    if not peaked.any():  # its maxima belong to a neighbour that is stronger: it has one piece
+        return np.array([low + np.argwhere(inside)[smooth[inside].argmax()]]), np.zeros(
+            len(row), np.int64
+        )
     plateau, count = ndimage.label(peaked, TOUCH)
     places = np.argwhere(peaked)
+    if count == 1:
+        middle = np.rint(places.mean(0)).astype(np.int64)
+        return (middle + low)[None], np.zeros(len(row), np.int64)
     owner = plateau[peaked] - 1
     sums = np.stack([np.bincount(owner, column, count) for column in places.T], 1)
     centre = sums / np.bincount(owner, minlength=count)[:, None]

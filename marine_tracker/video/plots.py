@@ -6,7 +6,7 @@ import numpy as np
 
 from ..geometry import unit_vector, wrap_bearing
 from ..parameters import VideoParameters
-from ..types import Array, BoolArray, IntArray, PolarPlots, take
+from ..types import Array, BoolArray, IntArray, PolarPlots
 from . import detection, measure, pieces, tail
 from .found import LAND, Details, Found, nothing
 from .stack import Stack
@@ -31,7 +31,7 @@ def measured(
     """The plots of the components [n] of cells at rows and samples [n]."""
     lobe, count = held.lobe, int(component.max()) + 1
     slope = np.ones(count)
-    slope[component] = limits.slope[tail.zone_of(sample)]
+    slope[component] = limits.slope[sample]
     found = pieces.split(row, sample, component, count, held.strength, lobe, slope)
     row, sample, piece, count = found.row, found.sample, found.piece, found.number
     power, value = detection.power_at(held, row, sample, limits)
@@ -73,9 +73,11 @@ def measured(
         doppler = np.bincount(piece, sign, count) / cells
     floor = (measure.FLOOR * lobe.shape) ** 2
     covariance[:, [0, 1], [0, 1]] += floor
+    order = np.flatnonzero(keep)
+    order = order[np.argsort(centre[order, 0], kind='stable')]  # in order of time
     return Found(
-        _polar(held, centre[keep], covariance[keep], snr[keep], parameters.range_offset_m),
-        Details(size[keep], cells[keep], doppler[keep]),
+        _polar(held, centre[order], covariance[order], snr[order], parameters.range_offset_m),
+        Details(size[order], cells[order], doppler[order]),
         {LAND: int(land.sum())} if land.any() else {},
         (np.nan, np.nan),
     )
@@ -101,7 +103,7 @@ def _fitted(
     owner[found.row * width + found.sample] = found.piece
     owners = owner[rows * width + samples]
     usable &= (owners < 0) | (owners == chosen[:, None, None])
-    step = 1.0 / limits.slope[tail.zone_of(peak[:, 1])]
+    step = 1.0 / limits.slope[peak[:, 1]]
     return measure.points(peak, power, usable, held.lobe, step)
 
 
@@ -114,11 +116,10 @@ def _polar(held: Stack, place: Array, covariance: Array, snr: Array, offset: flo
     along = unit_vector(bearing)
     across = np.stack([along[:, 1], -along[:, 0]], -1)
     to_metres = np.stack([across * (held.spacing * range_)[:, None], along * held.range_step], 2)
-    plots = PolarPlots(
+    return PolarPlots(
         time,
         range_,
         wrap_bearing(bearing),
         DECIBEL * snr,
         covariance=to_metres @ covariance @ to_metres.transpose(0, 2, 1),
     )
-    return take(plots, np.argsort(time, kind='stable'))
