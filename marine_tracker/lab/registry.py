@@ -11,6 +11,7 @@ from . import marine_table
 from .alarms import alarms
 from .alpha_beta import alpha_beta
 from .compare import compare
+from .danger_areas import danger_areas
 from .dense import dense
 from .extended import extended
 from .gwnn import gwnn, monte_carlo
@@ -34,4 +35,5 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'compare': compare,
     'dense': dense,
     'alarms': alarms,
+    'danger_areas': danger_areas,
 }
