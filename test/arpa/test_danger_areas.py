@@ -1,4 +1,4 @@
-"""Areas of danger: against trial manoeuvres that turn at once, and against ships that are sailed."""
+"""Areas of danger: against trials that turn at once, and against ships that are sailed."""
 
 import numpy as np
 import pytest
@@ -150,8 +150,8 @@ def test_own_present_course_is_in_an_area_if_the_probability_of_danger_reaches_t
 
 def test_the_less_is_known_the_larger_the_area():
     widths = [
-        np.ptp(dangers(targets((0, 4 * MILE), (3, -4), k * SURE), own_ship(5), *LIMITS).areas.course)
-        for k in (1.0, 3e3, 3e4)
+        np.ptp(dangers(motion, own_ship(5), *LIMITS).areas.course)
+        for motion in (targets((0, 4 * MILE), (3, -4), k * SURE) for k in (1.0, 3e3, 3e4))
     ]
     assert widths[0] < widths[1] < widths[2]
 
@@ -188,8 +188,9 @@ def test_two_targets_with_two_areas_each_are_kept_apart():
     motion = targets([[3 * MILE, 3 * MILE], [-3 * MILE, 3 * MILE]], [[-7, -3.5], [7, -3.5]])
     areas = dangers(motion, own_ship(0, 9 * KNOT), 0.2 * MILE, 5400.0).areas
     assert sorted(areas.row.tolist()) == [0, 0, 1, 1]
-    flipped = np.sort((-areas.course[areas.row == 1][:, ::-1]) % (2 * np.pi), 0)
-    assert np.sort(areas.course[areas.row == 0] % (2 * np.pi), 0) == pytest.approx(flipped, abs=1e-3)
+    right, left = (areas.course[areas.row == row] for row in (0, 1))
+    mirrored = np.sort(-left[:, ::-1] % (2 * np.pi), 0)
+    assert np.sort(right % (2 * np.pi), 0) == pytest.approx(mirrored, abs=1e-3)
 
 
 def test_surrounded_by_danger_the_area_goes_all_around():

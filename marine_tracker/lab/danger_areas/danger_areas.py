@@ -1,7 +1,7 @@
 """Predicted areas of danger against ships that are sailed: is a course dangerous that crosses one?
 
-Five scenes go through the whole service. At one moment of each, own ship tries 200 courses at random,
-at her present speed. For each of them the true state of every target is drawn from its estimate,
+Five scenes go through the whole service. At one moment of each, own ship tries 200 courses at
+random, at her present speed. For each of them the true state of every target is drawn from its estimate,
 with own ship's own error; both sail on, and the nearest distance is measured. A course agrees
 where, for every target, the share of draws that pass within the limit is above the risk if and only
 if the course crosses an area of that target. Passing is coming nearer first: a target that only
@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arpa.danger_areas import RISK, DangerAreas, dangers
 from ...arpa.cpa import OwnMotion
+from ...arpa.danger_areas import RISK, DangerAreas, dangers
 from ...arpa.motion import Motion
 from ...evaluation import parallel, report
 from ...evaluation.report import Figure
@@ -139,7 +139,7 @@ def sail(
     limit: float = LIMIT,
     within: float = WITHIN,
 ) -> Passes:
-    """Draws of both ships' states, sailed on straight on each course [C] rad; near, far [C, N] m."""
+    """Draws of both ships' states, sailed on on each course [C] rad; near, far [C, N] m."""
     speed = float(np.hypot(*own.velocity))
     error = rng.multivariate_normal(np.zeros(4), own.covariance, draws)
     steered = speed * unit_vector(course)
