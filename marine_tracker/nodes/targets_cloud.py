@@ -7,7 +7,7 @@ import numpy as np
 from sensor_msgs.msg import PointCloud2
 
 from ..arpa import alarms
-from ..arpa.alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED, Alerts
+from ..arpa.alerts import ACTIVE_ACKNOWLEDGED, WAITING, Alerts
 from ..arpa.view import View
 from . import convert
 from .convert import BAD_LAYOUT, MISSING_FIELD, MISTYPED_FIELD, TRUNCATED, ConversionError
@@ -73,11 +73,8 @@ def message(seen: View, alerts: Alerts, time_ns: int) -> PointCloud2:
         rows['hull_clearance'] = seen.hulls.clearance
     rows['status'], rows['acquired'] = seen.status, seen.acquired
     rows['motion'] = np.where(motion.stationary, AT_REST, motion.memory)
-    for state, value in (
-        (ACTIVE_ACKNOWLEDGED, ACKNOWLEDGED),
-        (ACTIVE_UNACKNOWLEDGED, UNACKNOWLEDGED),
-    ):
-        of = alerts.id[(alerts.kind == alarms.DANGER) & (alerts.state == state)]
+    for states, value in (((ACTIVE_ACKNOWLEDGED,), ACKNOWLEDGED), (WAITING, UNACKNOWLEDGED)):
+        of = alerts.id[(alerts.kind == alarms.DANGER) & np.isin(alerts.state, states)]
         rows['alarm'][np.isin(seen.id, of)] = value
     return convert.cloud_message(rows, time_ns)
 

@@ -20,15 +20,18 @@ TARGETS_CLOUD = 'targets_cloud'
 MARKERS = 'markers'
 NMEA = 'nmea'
 ALARMS = 'alarms'
+ALARMS_PAST = 'alarms_past'
 TRIAL = 'trial'
 ACQUIRE = 'acquire'
 CLICKED_POINT = 'clicked_point'
 CANCEL = 'cancel'
 ACKNOWLEDGE_TARGET = 'acknowledge_target'
+ACKNOWLEDGE_ALERT = 'acknowledge_alert'
 DIAGNOSTICS = '/diagnostics'
 
 CANCEL_ALL = 'cancel_all'  # services
 ACKNOWLEDGE = 'acknowledge'
+SILENCE = 'silence'
 TRIAL_MANOEUVRE = 'trial_manoeuvre'
 
 BURST = 400  # messages published at once, one for each track or target

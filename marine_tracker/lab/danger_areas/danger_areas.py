@@ -1,11 +1,11 @@
 """Predicted areas of danger against ships that are sailed: is a course dangerous that crosses one?
 
 Five scenes go through the whole service. At one moment of each, own ship tries 200 courses at
-random, at her present speed. For each of them the true state of every target is drawn from its estimate,
-with own ship's own error; both sail on, and the nearest distance is measured. A course agrees
-where, for every target, the share of draws that pass within the limit is above the risk if and only
-if the course crosses an area of that target. Passing is coming nearer first: a target that only
-goes away does not.
+random, at her present speed. For each of them the true state of every target is drawn from its
+estimate, with own ship's own error; both sail on, and the nearest distance is measured. A course
+agrees where, for every target, the share of draws that pass within the limit is above the risk if
+and only if the course crosses an area of that target. Passing is coming nearer first: a target that
+only goes away does not.
 """
 
 from typing import NamedTuple
