@@ -1,4 +1,4 @@
-"""When alerts sound: silenced for half a minute, warnings again after five, whatever else happens."""
+"""When alerts sound: silenced for half a minute, warnings again after five."""
 
 import numpy as np
 import pytest
