@@ -15,9 +15,12 @@ FIELDS: dict[str, dict[str, tuple[float, float]]] = {
     'acknowledge_all': {},
     'trial': {'course_deg': (0.0, 360.0), 'speed_kn': (0.0, 100.0), 'delay_min': (0.0, 60.0)},
     'trial_off': {},
+    'acknowledge_alert': {'instance': (1, 2**32 - 1)},
+    'silence': {},
     'limits': {'cpa_nm': (0.01, 20.0), 'tcpa_min': (0.1, 120.0)},
+    'watch': {'areas': (0, 1)},
 }
-LOGIN = 'login'
+LOGIN, WATCH = 'login', 'watch'
 
 
 class Command(NamedTuple):

@@ -6,7 +6,7 @@
 
 All runs in a thread of its own. Every message to a viewer is a JSON object with `kind` and `now`,
 the server's steady clock in s: a page reckons ages with it, whatever its own clock says. A new
-viewer gets the newest message of each kind at once.
+viewer gets the newest message of each kind at once; those of a kind ON_DEMAND once it asks for it.
 """
 
 import asyncio
@@ -29,6 +29,8 @@ from .viewers import Mailbox
 MOST_VIEWERS = 50
 PULSE_S = 1.0  # between two signs of life: a page that hears none for 3 s shows a red cross
 APART_S = 0.05  # least time between two messages to one viewer
+AREAS = 'areas'
+ON_DEMAND = (AREAS,)
 START_S = 10.0
 ANSWER_S = 5.0
 TYPES = {
@@ -131,6 +133,14 @@ class DisplayServer:
         )
         self._in_loop(self._put, kind, text)
 
+    def wanted(self, kind: str) -> int:
+        """How many viewers have asked for a kind that comes on demand."""
+        return sum(kind in viewer.wants for viewer in tuple(self._viewers))
+
+    def forget(self, kind: str) -> None:
+        """The newest message of this kind is no longer kept for those who come."""
+        self._in_loop(self._latest.pop, kind, None)
+
     def close(self) -> None:
         """All viewers are let go."""
         self._in_loop(self._stop.set)
@@ -147,7 +157,14 @@ class DisplayServer:
     def _put(self, kind: str, text: str) -> None:
         self._latest[kind] = text
         for viewer in self._viewers:
-            viewer.put(kind, text)
+            if kind not in ON_DEMAND or kind in viewer.wants:
+                viewer.put(kind, text)
+
+    def _watch(self, viewer: Mailbox, kinds: Mapping[str, Any]) -> None:
+        """What this viewer wants of the kinds on demand; nobody needs permission to look."""
+        viewer.wants = {kind for kind, on in kinds.items() if on}
+        for kind in viewer.wants & self._latest.keys():
+            viewer.put(kind, self._latest[kind])
 
     def _run(self, started: threading.Event) -> None:
         asyncio.set_event_loop(self.loop)
@@ -212,7 +229,8 @@ class DisplayServer:
         await socket.prepare(request)
         viewer = Mailbox()
         for kind, text in self._latest.items():
-            viewer.put(kind, text)
+            if kind not in ON_DEMAND:
+                viewer.put(kind, text)
         self._viewers.add(viewer)
         self._sockets.add(socket)
         sender = asyncio.ensure_future(_send(socket, viewer))
@@ -240,6 +258,10 @@ class DisplayServer:
                     viewer.answer(
                         _text('role', id=number, commands=may_command, why=_why(near, may_command))
                     )
+                    continue
+                if command.name == commands.WATCH:
+                    self._watch(viewer, command.values)
+                    viewer.answer(_text('answer', id=number, ok=True, text=''))
                     continue
             except ValueError as error:
                 self.counts[BAD] += 1

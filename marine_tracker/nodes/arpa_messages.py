@@ -106,6 +106,16 @@ def _past(row: Row, now: float) -> dict[str, str]:
     }
 
 
+def lacking(picture: Picture) -> str:
+    """What own ship lacks for a trial or for areas of danger; '' where nothing."""
+    own = picture.own
+    if not own.velocity.any() and np.isnan(own.heading):
+        return 'own ship lies still, heading unknown'
+    if not own.north or picture.stabilised.reference == NONE:
+        return "own ship's course and speed are not known"
+    return ''
+
+
 def trial_message(
     arpa: Arpa, picture: Picture, elapsed: float, time_ns: int, hardware_id: str
 ) -> DiagnosticArray:
@@ -115,14 +125,10 @@ def trial_message(
     target follows. If own ship's course at the start of the turn is unknown, T says so.
     """
     p, limits, own = arpa.parameters, arpa.limits, picture.own
-    lacking = ''
-    if not own.velocity.any() and np.isnan(own.heading):
-        lacking = 'own ship lies still, heading unknown'
-    elif not own.north or picture.stabilised.reference == NONE:
-        lacking = "own ship's course and speed are not known"
-    if lacking:
+    why_not = lacking(picture)
+    if why_not:
         return diagnostics.array(
-            time_ns, [diagnostics.status(TRIAL, hardware_id, WARN, f'no TRIAL: {lacking}', {})]
+            time_ns, [diagnostics.status(TRIAL, hardware_id, WARN, f'no TRIAL: {why_not}', {})]
         )
     trial = countdown(
         TrialManoeuvre(

@@ -79,22 +79,22 @@ def message(seen: View, alerts: Alerts, time_ns: int) -> PointCloud2:
     return convert.cloud_message(rows, time_ns)
 
 
-def read(cloud: PointCloud2) -> np.ndarray:
-    """The points as an array [T] of TARGET_TYPE; ConversionError where it is not such a cloud.
+def read(cloud: PointCloud2, kind: np.dtype = TARGET_TYPE) -> np.ndarray:
+    """The points as an array [T] of this kind; ConversionError where it is not such a cloud.
 
     Fields may stand in any order, and others beside them.
     """
     fields = {field.name: field for field in cloud.fields}
     order = '>' if cloud.is_bigendian else '<'
     formats, offsets = [], []
-    for name in TARGET_TYPE.names or ():
-        wanted = TARGET_TYPE[name].str[1:]
+    for name in kind.names or ():
+        wanted = kind[name].str[1:]
         if name not in fields:
             raise ConversionError(MISSING_FIELD, name)
         found = convert.KINDS.get(fields[name].datatype)
         if found != wanted or fields[name].count > 1:
             raise ConversionError(MISTYPED_FIELD, f'{name} is {found}; it must be one {wanted}')
-        if fields[name].offset + TARGET_TYPE[name].itemsize > cloud.point_step:
+        if fields[name].offset + kind[name].itemsize > cloud.point_step:
             raise ConversionError(BAD_LAYOUT, f'{name} ends beyond a point')
         formats.append(order + wanted)
         offsets.append(fields[name].offset)
@@ -105,10 +105,10 @@ def read(cloud: PointCloud2) -> np.ndarray:
         )
     point = np.dtype(
         {
-            'names': list(TARGET_TYPE.names or ()),
+            'names': list(kind.names or ()),
             'formats': formats,
             'offsets': offsets,
             'itemsize': cloud.point_step,
         }
     )
-    return np.frombuffer(cloud.data, point, count).astype(TARGET_TYPE)
+    return np.frombuffer(cloud.data, point, count).astype(kind)

@@ -16,7 +16,7 @@ from ..geometry import wrap_bearing
 from ..service import Output, Service
 from ..tracking.lifecycle import LOST
 from ..types import Extrapolation, take
-from . import convert, targets_cloud, topics
+from . import convert, danger_areas_cloud, targets_cloud, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
 from .markers import MarkersWriter
@@ -34,6 +34,7 @@ class TrackerOutput:
         self._to_numeric = node.publisher(PointCloud2, topics.TARGETS_CLOUD, topics.latched())
         self._to_targets = node.publisher(DiagnosticArray, topics.TARGETS, topics.latched())
         self._to_markers = node.publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
+        self._to_areas = node.publisher(PointCloud2, topics.DANGER_AREAS, topics.latched())
         self._pool = OdometryPool()
         self._targets = TargetsWriter(hardware_id)
         self._markers = MarkersWriter()
@@ -56,6 +57,8 @@ class TrackerOutput:
         self._to_targets.publish(self._targets.message(seen, name, output.scan.end, end_ns))
         if self._to_numeric.get_subscription_count():
             self._to_numeric.publish(targets_cloud.message(seen, output.picture.alerts, end_ns))
+        if self._to_areas.get_subscription_count():
+            self._to_areas.publish(danger_areas_cloud.message(arpa, output.picture, end_ns))
         if self._to_markers.get_subscription_count():
             self._to_markers.publish(
                 self._markers.message(seen, output.picture, arpa.zones, arpa.parameters, end_ns)
