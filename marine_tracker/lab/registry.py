@@ -10,7 +10,9 @@ from types import ModuleType
 from . import marine_table
 from .alarms import alarms
 from .alpha_beta import alpha_beta
+from .clutter import clutter
 from .compare import compare
+from .crossings import crossings
 from .danger_areas import danger_areas
 from .dense import dense
 from .extended import extended
@@ -36,4 +38,6 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'dense': dense,
     'alarms': alarms,
     'danger_areas': danger_areas,
+    'clutter': clutter,
+    'crossings': crossings,
 }

@@ -9,7 +9,7 @@ ANGLES = (5, 10, 15, 30, 45, 60, 90)  # deg, of the shipped ones
 APART = 400.0  # m, between the ships at the start and at the end
 LEAST_S = 150.0  # before and after they meet
 SPEEDS = 11.0, 10.0  # kn
-PLACE = 3000.0  # m north of own ship, where they meet
+PLACE = 2000.0  # m north of own ship, where they meet
 COURSE = 70.0  # deg, of the middle between both courses
 
 
@@ -28,8 +28,10 @@ def crossing(angle_deg: float) -> dict[str, Any]:
         'duration_s': 2 * before,
         'radar': {
             'max_range_nm': 6,
-            'range_sigma_m': 15,
+            'range_sigma_m': 10,
             'bearing_sigma_deg': 0.4,
+            'range_resolution_m': 15,
+            'beam_width_deg': 0.7,
             'pd_near': 0.95,
             'pd_far': 0.9,
         },

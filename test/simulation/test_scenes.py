@@ -30,7 +30,7 @@ def test_ships_of_the_harbour_stop_anchor_and_leave():
 def test_banks_of_the_canal_are_30_to_100_m_apart():
     loaded = scenario.load('canal')
     east = loaded.fixed.place[:, 0]
-    bank = np.hypot(*np.diff(loaded.fixed.place, axis=0).T) < 14  # neighbours on one line
+    bank = np.hypot(*np.diff(loaded.fixed.place, axis=0).T) < 21  # neighbours on one line
     west_end = int(np.flatnonzero(~bank)[0])
     east_end = int(np.flatnonzero(~bank)[1])
     west, other = (
