@@ -21,7 +21,10 @@ export const UNACKNOWLEDGED = 2;
  * @property {Target[]} targets
  * @property {Message|null} scan     the message that the targets came with, without its columns
  * @property {Message[]} plots       of the last scans, newest last
- * @property {Message[]} alarms
+ * @property {Message[]} alarms      in the order in which they are listed
+ * @property {Message[]} settled     alerts that are over, the newest first
+ * @property {Message|null} areas    of danger, while they are asked for
+ * @property {Message|null} ship     own ship's size, and what the picture comes from
  * @property {Message|null} trails
  * @property {Message} trial
  * @property {Record<string, Message>} health
@@ -41,6 +44,9 @@ export function emptyState() {
     scan: null,
     plots: [],
     alarms: [],
+    settled: [],
+    areas: null,
+    ship: null,
     trails: null,
     trial: { on: false },
     health: {},
@@ -84,6 +90,9 @@ export function receive(state, message, local) {
     case 'alarms':
       state.alarms = message.alarms;
       break;
+    case 'alarms_past':
+      state.settled = message.alarms;
+      break;
     case 'health':
       state.health = message.parts;
       break;
@@ -94,9 +103,13 @@ export function receive(state, message, local) {
       state.clockError = Date.now() / 1000 - message.utc || 0;
       break;
     case 'own':
+      state.own = { wx: message.vx, wy: message.vy, stabilised: 'ground', ...message };
+      break;
     case 'trails':
     case 'trial':
     case 'limits':
+    case 'ship':
+    case 'areas':
       state[message.kind] = message;
       break;
   }
@@ -148,9 +161,19 @@ export function nameOf(target) {
   return target.number ? `TT${String(target.number).padStart(2, '0')}` : `Q${target.id}`;
 }
 
+/** Whether somebody has still to acknowledge an alert. @param {Message} alarm */
+export const waits = (alarm) =>
+  alarm.state.endsWith('unacknowledged') || alarm.state === 'active silenced';
+
 /** Alerts that somebody has still to acknowledge. @param {State} state */
 export function unacknowledged(state) {
-  return state.alarms.filter((alarm) => alarm.state.endsWith('unacknowledged'));
+  return state.alarms.filter(waits);
+}
+
+/** Numbers of the targets in guard zones that nobody has acknowledged. @param {State} state */
+export function newTargets(state) {
+  const found = state.alarms.filter((alarm) => alarm.kind === 'new target' && waits(alarm));
+  return new Set(found.map((alarm) => alarm.number));
 }
 
 /** Where targets were lost, until that is acknowledged. @param {State} state */
