@@ -120,7 +120,9 @@ export function drawSafeCourses(canvas, state, settings, scope, colors, local) {
  * @param {number[][]} safe  first and last course of each safe sector, degrees
  */
 export function drawRing(canvas, { view, middleX, middleY, radius }, colors, safe) {
-  const sectors = safe.map(([first, last]) => [first, last < first ? last + 360 : last]);
+  const sectors = safe
+    .map(([first, last]) => [first, last < first ? last + 360 : last])
+    .sort(([a], [b]) => a - b);
   const along = (first, last) => {
     canvas.beginPath();
     const steps = Math.max(Math.ceil(last - first), 1);
