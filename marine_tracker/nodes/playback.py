@@ -42,7 +42,9 @@ OWN_SHIP_PER_S = 25.0  # samples in a second of the wall
 
 
 class Revolution(NamedTuple):
-    """scan and truth, and the own-ship samples that become known up to its end."""
+    """A revolution or a sector of one: scan, truth, and own-ship samples that become known up to
+    its end.
+    """
 
     scan: Scan
     truth: Truth
@@ -252,11 +254,11 @@ def _moved(revolution: Revolution, shift: float) -> Revolution:
     """The same at another time, s later."""
     scan, truth, own_ship = revolution
     return Revolution(
-        Scan(
-            scan.start + shift,
-            scan.end + shift,
-            scan.plots._replace(time=scan.plots.time + shift),
-            scan.own_ship._replace(time=scan.own_ship.time + shift),
+        scan._replace(
+            start=scan.start + shift,
+            end=scan.end + shift,
+            plots=scan.plots._replace(time=scan.plots.time + shift),
+            own_ship=scan.own_ship._replace(time=scan.own_ship.time + shift),
         ),
         truth._replace(time=truth.time + shift),
         own_ship._replace(time=own_ship.time + shift),

@@ -28,6 +28,13 @@ class RadarSimulatorParameters:
         high=1e10,
     )
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
+    sectors: int = parameter(
+        0,
+        'Messages of plots a revolution: the antenna does not wait for its whole turn. 0: as the '
+        'scenario says, 1 if it says nothing.',
+        low=0,
+        high=64,
+    )
 
     def __post_init__(self) -> None:
         check(self)
