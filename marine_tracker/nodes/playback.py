@@ -92,7 +92,7 @@ class Playback:
         self._first = min(float(first.own_ship.time[0]), first.scan.start)
         self._sample = 0  # of the next revolution's own-ship samples
         reliable = topics.reliable
-        self._plots = node.publisher(PointCloud2, topics.PLOTS, reliable())
+        self._plots = node.publisher(PointCloud2, topics.PLOTS, reliable(topics.SECTORS))
         self._readable = node.publisher(PointCloud, topics.PLOTS_READABLE, reliable())
         self._odometry = node.publisher(Odometry, topics.ODOMETRY, reliable())
         self._truth = node.publisher(Odometry, topics.TRUTH, reliable(topics.BURST))

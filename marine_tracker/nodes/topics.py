@@ -31,6 +31,7 @@ CANCEL_ALL = 'cancel_all'  # services
 ACKNOWLEDGE = 'acknowledge'
 TRIAL_MANOEUVRE = 'trial_manoeuvre'
 
+SECTORS = 64  # messages of plots that may wait: the sectors of a revolution
 BURST = 400  # messages published at once, one for each track or target
 
 

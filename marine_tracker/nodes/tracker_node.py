@@ -83,7 +83,7 @@ class TrackerNode(RunnableNode):
                 PointCloud2,
                 heard.radar.topic,
                 partial(self._on_plots, heard),
-                topics.best_available(),
+                topics.best_available(topics.SECTORS),
             )
         # The wall's second, whatever the node's clock does.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))

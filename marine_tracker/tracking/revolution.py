@@ -1,5 +1,6 @@
 """Puts the sectors of a revolution together again, for what is done once a revolution."""
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from ..types import BoolArray, Plots, Scan, Tracks, append, take
 from .lifecycle import LOST
-from .sectors import HAIR, joined, together
+from .sectors import HAIR, joined, rest_of, together, turned_since
 from .sweep import TURN
 from .tracker import Report
 
@@ -18,20 +19,22 @@ class Turn(NamedTuple):
     scans    its sectors
     reports  of the tracker, one a sector
     turned   rad, the beam, since the revolution began
+    end      s, of the last sector; nan: none
     """
 
     scans: tuple[Scan, ...] = ()
     reports: tuple[Report, ...] = ()
     turned: float = 0.0
+    end: float = math.nan
 
     def then(self, scan: Scan, *reports: Report) -> 'Turn':
         """With one more sector."""
-        angle = 0.0 if scan.sector is None else scan.sector.angle
-        return Turn((*self.scans, scan), (*self.reports, *reports), self.turned + angle)
+        turned = self.turned + turned_since(self.end, scan)
+        return Turn((*self.scans, scan), (*self.reports, *reports), turned, scan.end)
 
     def next(self, *reports: Report) -> 'Turn':
         """The next revolution, to which the reports belong."""
-        return Turn((), reports, self.turned - TURN)
+        return Turn((), reports, rest_of(self.turned), self.end)
 
     @property
     def complete(self) -> bool:

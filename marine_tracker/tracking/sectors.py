@@ -7,6 +7,7 @@ whole revolution is judged together here, so the results are the same. Only in c
 form long chains, does a track not wait for the whole chain.
 """
 
+import math
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -198,7 +199,7 @@ def remember(
         pool.antenna,
         tracks.id,
         np.where(row >= 0, np.append(looked, np.nan)[row], tracks.last_time),
-        waiting.swept + (0.0 if pool.sector is None else pool.sector.angle),
+        waiting.swept + turned_since(waiting.end, pool),
         pool.end,
         (*waiting.found, found),
     )
@@ -216,7 +217,20 @@ def found(waiting: Waiting) -> Found:
 
 def next_revolution(waiting: Waiting) -> Waiting:
     """The memory when the next revolution begins."""
-    return waiting._replace(swept=waiting.swept - TURN, found=())
+    return waiting._replace(swept=rest_of(waiting.swept), found=())
+
+
+def turned_since(end: float, scan: Scan) -> float:
+    """How far the beam turned from `end` s, or the sector's start if that is nan, to its end, rad;
+    messages between may be missing."""
+    angle = TURN if scan.sector is None else scan.sector.angle
+    rate = angle / (scan.end - scan.start)
+    return angle if math.isnan(end) else rate * (scan.end - end)
+
+
+def rest_of(turned: float) -> float:
+    """rad, what the beam has turned since the last whole revolution."""
+    return turned - TURN * math.floor((turned + HAIR) / TURN)
 
 
 def together(first: SomePlots, second: SomePlots) -> SomePlots:
