@@ -44,7 +44,10 @@ class RadarSimulatorParameters:
 class RecordingPlayerParameters:
     """The recording player node's parameters."""
 
-    folder: str = parameter('', 'Folder of a recording: plots.csv, own_ship.csv, truth.csv.')
+    folder: str = parameter(
+        '',
+        'Folder of a recording (plots.csv, own_ship.csv, truth.csv), or a file of spokes (.npz).',
+    )
     rate: float = parameter(
         1.0,
         'Recorded seconds in a second; other than 1 needs use_sim_time in the other nodes.',
