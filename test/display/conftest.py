@@ -2,10 +2,16 @@
 
 import asyncio
 import contextlib
+import fcntl
 import math
 import random
+import re
+import shutil
+import subprocess
+import tempfile
 import time
 from concurrent.futures import Future
+from pathlib import Path
 
 import pytest
 
@@ -14,6 +20,8 @@ COLUMNS = (
     'beam heading heading_sd range range_sd bearing bearing_sd course course_sd speed speed_sd cpa '
     'cpa_sd tcpa tcpa_sd bow_range bow_range_sd bow_time bow_time_sd'
 ).split()
+WEB = Path(__file__).resolve().parents[2] / 'web'
+UNREACHABLE = re.compile('ENOTFOUND|EAI_AGAIN|ECONN|ETIMEDOUT|ENETUNREACH|EHOSTUNREACH|ERR_SOCKET')
 TRACKED, DANGER_UNACKNOWLEDGED = 1, 2
 
 
@@ -193,3 +201,26 @@ def visit(chromium, sea_server):
         asyncio.run(asyncio.wait_for(go(), 100))
 
     return run
+
+
+@pytest.fixture(scope='session')
+def web():
+    """The folder web/ with the tools that its lock file names, fetched where they are not there."""
+    if not shutil.which('npm'):
+        pytest.skip('no npm: what is built and checked by Node.js is not')
+    lock, done = WEB / 'package-lock.json', WEB / 'node_modules' / '.package-lock.json'
+    with open(Path(tempfile.gettempdir()) / f'marine_tracker_web_{WEB.stat().st_ino}', 'w') as turn:
+        fcntl.flock(turn, fcntl.LOCK_EX)  # tests run in several processes
+        if not done.exists() or done.stat().st_mtime < lock.stat().st_mtime:
+            fetched = subprocess.run(
+                ['npm', 'ci', '--no-audit', '--no-fund', '--ignore-scripts'],
+                cwd=WEB,
+                capture_output=True,
+                text=True,
+                timeout=110,
+            )
+            if fetched.returncode and UNREACHABLE.search(fetched.stderr):
+                pytest.skip('the npm registry cannot be reached')
+            assert fetched.returncode == 0, fetched.stderr
+            done.touch()
+    return WEB

@@ -43,6 +43,43 @@ export class Layer {
   }
 }
 
+const MOST_STAMPS = 300;
+
+/** Small drawings that are made once and put down many times: a symbol costs a copy of its pixels. */
+export class Stamps {
+  constructor() {
+    /** @type {Map<string, OffscreenCanvas>} */
+    this.made = new Map();
+  }
+
+  /**
+   * Put a drawing down at x, y, to the nearest pixel of the screen.
+   * @param {CanvasRenderingContext2D} target  in CSS pixels
+   * @param {string} key  says all that the drawing depends on
+   * @param {number} x px @param {number} y px
+   * @param {number} half  px, how far the drawing reaches from its middle
+   * @param {(pen: CanvasRenderingContext2D, x: number, y: number) => void} draw
+   */
+  put(target, key, x, y, half, draw) {
+    const { a: ratio } = target.getTransform();
+    const name = `${key} ${ratio}`;
+    const reach = Math.ceil(half * ratio);
+    let stamp = this.made.get(name);
+    if (!stamp) {
+      if (this.made.size >= MOST_STAMPS) this.made.clear();
+      stamp = new OffscreenCanvas(2 * reach, 2 * reach);
+      const pen = /** @type {any} */ (stamp.getContext('2d'));
+      if (!pen) return; // no memory for it just now
+      pen.setTransform(ratio, 0, 0, ratio, reach, reach);
+      draw(pen, 0, 0);
+      this.made.set(name, stamp);
+    }
+    const left = Math.round(x * ratio) - reach;
+    const top = Math.round(y * ratio) - reach;
+    target.drawImage(stamp, left / ratio, top / ratio, (2 * reach) / ratio, (2 * reach) / ratio);
+  }
+}
+
 /**
  * What the picture is drawn on: the canvas of the page, or, where its context was lost and did not
  * come back at once, a fresh one over it. The first one goes on taking what mouse and keys say.

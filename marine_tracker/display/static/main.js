@@ -11,6 +11,7 @@ import * as keys from './keys.js';
 import { Surface } from './layers.js';
 import { Link } from './link.js';
 import * as panel from './panel.js';
+import { Pace } from './pace.js';
 import { draw, scopeOf, targetAt } from './picture.js';
 import * as pointer from './pointer.js';
 import { Sound } from './sound.js';
@@ -19,7 +20,6 @@ import { emptyState, receive, reconnected } from './state.js';
 import { makeHeads, showTargets } from './table.js';
 import { showTrial } from './trial.js';
 
-const REDRAW_MS = 250; // at least: echoes fade, dangers flash
 const PANEL_MS = 200;
 const ALIVE_MS = 100;
 const SAID_MS = 6000;
@@ -33,10 +33,9 @@ const surface = new Surface(canvas);
 const marks = { id: null, cursor: null, lines: [], drag: null };
 const sorted = { column: 6, sign: 1, danger: true };
 let courseUp = 0; // rad, when course-up was chosen
-let dirty = true;
+const pace = new Pace();
 let saidUntil = 0;
 let frames = 0; // drawn so far
-let drawn = -Infinity;
 let panelShown = -Infinity;
 
 const link = new Link(
@@ -46,7 +45,7 @@ const link = new Link(
     // In a hidden tab timers hardly run: alarms go on by what comes each second.
     if (message.kind === 'alarms' || message.kind === 'pulse') showAlive();
     if (message.kind === 'limits') forms.fillLimits(message);
-    dirty = true;
+    pace.news();
   },
   () => reconnected(state),
   () => state.late,
@@ -62,9 +61,7 @@ const app = {
   pointer: null,
   colors: {},
   scopeNow: () => scopeOf(state, settings, canvas.clientWidth, canvas.clientHeight, courseUp),
-  redraw() {
-    dirty = true;
-  },
+  redraw: () => pace.ask(),
   change(name, value) {
     settings[name] = value;
     if (name === 'orientation') courseUp = state.own?.heading ?? 0;
@@ -88,7 +85,7 @@ const app = {
   choose(id) {
     marks.id = id;
     panelShown = -Infinity;
-    dirty = true;
+    pace.ask();
   },
   selectAt(x, y) {
     const { view } = app.scopeNow();
@@ -115,16 +112,14 @@ const app = {
     else if (place && state.own) {
       marks.lines.push(rangeBearing(state.own.x, state.own.y, place[0], place[1]));
     }
-    dirty = true;
+    pace.ask();
   },
 };
 
 function frame() {
   requestAnimationFrame(frame);
   const now = performance.now();
-  if (!dirty && now - drawn < REDRAW_MS) return;
-  dirty = false;
-  drawn = now;
+  if (!pace.due(now)) return;
   frames++;
   const pen = surface.ready();
   const scope = app.scopeNow();

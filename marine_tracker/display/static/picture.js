@@ -3,7 +3,7 @@
 import { NAUTICAL_MILE, direction, toScreen } from './geometry.js';
 import { drawAreas, drawSafeCourses } from './dangers.js';
 import { echoKey, paintEchoes } from './echoes.js';
-import { Layer } from './layers.js';
+import { Layer, Stamps } from './layers.js';
 import { RANGES } from './settings.js';
 import { drawOwnShip } from './own_ship.js';
 import { drawMarks, drawScale, drawSimulation, drawTrial } from './surround.js';
@@ -16,6 +16,7 @@ const OFF = 0.5; // of the radius: how far own ship is moved back when off-centr
 const around = new Layer(); // sea, rings, bearing scale
 const glow = new Layer(); // echoes
 const past = new Layer(); // trails
+const stamps = new Stamps();
 
 /**
  * @typedef {import('./geometry.js').View} View
@@ -123,7 +124,6 @@ function drawTrails(canvas, state, settings, { view }, colors) {
   const relative = settings.trails === 'relative';
   const count = Math.round((60 * settings.trailMinutes) / trails.interval);
   const step = Math.max(1, Math.round(count / 12));
-  canvas.fillStyle = colors.trail;
   const last = trails.own.length - 1;
   for (const target of state.targets) {
     const trail = trails.targets[target.id];
@@ -136,7 +136,10 @@ function drawTrails(canvas, state, settings, { view }, colors) {
         ? [state.own.x - trails.own[moment][0], state.own.y - trails.own[moment][1]]
         : [0, 0];
       const [x, y] = toScreen(view, trail[moment][0] + dx, trail[moment][1] + dy);
-      symbols.pastPosition(canvas, x, y);
+      stamps.put(canvas, `past ${colors.trail}`, x, y, 3, (pen, middleX, middleY) => {
+        pen.fillStyle = colors.trail;
+        symbols.pastPosition(pen, middleX, middleY);
+      });
     }
   }
 }

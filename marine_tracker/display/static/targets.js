@@ -2,6 +2,7 @@
 
 import { canvasAngle, edge, ellipse, toScreen, turned } from './geometry.js';
 import { placed } from './labels.js';
+import { Stamps } from './layers.js';
 import {
   ACKNOWLEDGED,
   ACQUIRING,
@@ -17,7 +18,9 @@ import * as symbols from './symbols.js';
 
 const ELLIPSE_SIGMA = 2;
 const FLASH_S = 0.5;
+const LIKELY_STEPS = 20; // of the shade that tells how likely a danger is
 const HULL_PX = 20; // least length of a hull that is drawn: longer than the symbol
+const stamps = new Stamps();
 
 /**
  * The vector of a target, m; none where its motion, or own ship's, is not told.
@@ -70,11 +73,8 @@ export function drawTargets(canvas, state, settings, scope, colors, chosen, loca
     }
     if (!(target.alarm === UNACKNOWLEDGED || caught) || shown) {
       if (target.status !== ACQUIRING) symbols.vector(canvas, x, y, right, down, color, danger);
-      if (danger) symbols.dangerous(canvas, x, y, color);
-      else if (caught) symbols.caught(canvas, x, y, color);
-      else if (target.status === ACQUIRING) symbols.acquiring(canvas, x, y, color);
-      else if (target.status === COASTING) symbols.coasting(canvas, x, y, color);
-      else symbols.tracked(canvas, x, y, color, target.danger_probability ?? 0, colors.danger);
+      const look = danger ? 'danger' : caught ? 'caught' : target.status;
+      drawSymbol(canvas, look, target.danger_probability ?? 0, x, y, color, colors.danger);
     }
     const reference = target.number !== 0 && target.number === state.own.reference;
     if (reference) labels.push({ x, y, text: 'R', needed: true });
@@ -90,6 +90,18 @@ export function drawTargets(canvas, state, settings, scope, colors, chosen, loca
     if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: false });
   }
   drawLabels(canvas, labels, colors.label);
+}
+
+/** state: 'danger', 'caught' or the target's status; probability: of danger. */
+function drawSymbol(canvas, state, probability, x, y, color, dangerColor) {
+  const likely = Math.round(probability * LIKELY_STEPS);
+  stamps.put(canvas, `${color} ${state} ${likely}`, x, y, 12, (pen, middleX, middleY) => {
+    if (state === 'danger') symbols.dangerous(pen, middleX, middleY, color);
+    else if (state === 'caught') symbols.caught(pen, middleX, middleY, color);
+    else if (state === ACQUIRING) symbols.acquiring(pen, middleX, middleY, color);
+    else if (state === COASTING) symbols.coasting(pen, middleX, middleY, color);
+    else symbols.tracked(pen, middleX, middleY, color, likely / LIKELY_STEPS, dangerColor);
+  });
 }
 
 function drawLabels(canvas, labels, color) {
