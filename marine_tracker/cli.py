@@ -11,6 +11,7 @@ from .processes import one_thread, stop_on_sigterm
 
 COMMANDS = (
     'demo',
+    'top',
     'replay',
     'score',
     'bench',

@@ -29,6 +29,7 @@ from .convert import ConversionError
 from .declare import declare
 from .diagnostics import FAILED, OK, WARN, Tally
 from .display_commands import TrackerCommands
+from .display_demo import SHOW, DemoLink
 
 FIX_S = 10.0  # a position that is older is not shown
 OWN_EVERY_S = 0.1  # between two positions of own ship sent to the page
@@ -44,6 +45,8 @@ class PpiDisplayNode(RunnableNode):
         (p,) = declare(self, PpiDisplayParameters)
         self._bad = Tally((*convert.CLOUD_REASONS, BAD_TARGETS, BAD_OWN, BAD_FIX), self.tell)
         self._commands = TrackerCommands(self, p.tracker)
+        self._demo = DemoLink(self)
+        self._shown: dict[str, Any] = {}  # by the demo, where there is one
         self._waiting: queue.SimpleQueue[tuple[Command, Future[str]]] = queue.SimpleQueue()
         self._wake = self.create_guard_condition(self._guarded(self._run_commands))
         self._own: deque[tuple[int, float, float]] = deque(maxlen=SAMPLES)  # ns, m, m
@@ -198,13 +201,16 @@ class PpiDisplayNode(RunnableNode):
 
     def _run_commands(self) -> None:
         while not self._waiting.empty():
-            self._commands.run(*self._waiting.get())
+            command, answer = self._waiting.get()
+            to = self._demo.choose if command.name == SHOW else self._commands.run
+            to(command, answer)
 
     # -- how it fares ----------------------------------------------------------------------------
 
     def _on_second(self) -> None:
         self._run_commands()
         self._commands.ask_limits(self._hear_limits)
+        self._demo.ask(self._hear_demo)
         self._forget()
         wall = time.monotonic()
         fresh = self._bad.fresh(wall)
@@ -239,3 +245,14 @@ class PpiDisplayNode(RunnableNode):
         if limits != self._limits:
             self._limits = limits
             self.server.publish('limits', limits)
+
+    def _hear_demo(self, shown: dict[str, Any]) -> None:
+        if shown == self._shown:
+            return
+        if shown.get('run') != self._shown.get('run'):  # what was seen so far is of another run
+            self._trails = Trails()
+            self._own.clear()
+            self._scanned.clear()
+            self.server.forget('targets', 'plots', 'trails')
+        self._shown = shown
+        self.server.publish('demo', {'demo': shown})

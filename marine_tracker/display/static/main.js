@@ -3,6 +3,7 @@
 import { alive } from './alive.js';
 import { seconds } from './app.js';
 import * as controls from './controls.js';
+import * as demo from './demo.js';
 import * as forms from './forms.js';
 import { rangeBearing, toMap, toScreen } from './geometry.js';
 import * as keys from './keys.js';
@@ -130,6 +131,7 @@ function showPanel() {
   panel.showSelected(app.chosen());
   showTargets(state.targets, sorted, marks.id, app.choose);
   panel.showState(state);
+  demo.showDemo(state);
   for (const id of ['acknowledge-all', 'acquire', 'cancel', 'trial-off']) {
     /** @type {HTMLButtonElement} */ (panel.element(id)).disabled = !mayCommand;
   }
@@ -142,6 +144,7 @@ controls.listen(app);
 keys.listen(app);
 pointer.listen(app);
 forms.listen(app);
+demo.listen(app);
 makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;
