@@ -15,18 +15,11 @@ import sys
 import threading
 import time
 from argparse import ArgumentParser, Namespace
-from typing import Any, NamedTuple
 
 from ..estimators import ESTIMATORS
-from ..parameters import (
-    EXTENTS,
-    RadarSimulatorParameters,
-    RecordingPlayerParameters,
-    TrackerParameters,
-    from_mapping,
-)
+from ..parameters import EXTENTS
 from ..processes import closing, end_in_time
-from . import demo_page, demo_table
+from . import demo_page, demo_plan, demo_table, tracker_options
 from .node_processes import Child, Children, children_of
 
 HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
@@ -43,7 +36,12 @@ def add_arguments(parser: ArgumentParser) -> None:
         metavar='NAME',
         help='a shipped scenario or a scenario file (default: %(default)s)',
     )
-    source.add_argument('--recording', metavar='FOLDER', help='a recorded folder instead')
+    source.add_argument(
+        '--recording',
+        metavar='FOLDER',
+        help='a recorded folder instead, or a file of spokes (.npz)',
+    )
+    tracker_options.add_video_arguments(parser, heading=False)
     parser.add_argument(
         '--recordings',
         metavar='FOLDER',
@@ -90,19 +88,10 @@ def run(args: Namespace) -> int:
             signal.signal(number, handler)
 
 
-class _Plan(NamedTuple):
-    """What runs: the source's name and parameters, the tracker's parameters, and a title."""
-
-    source: str
-    source_parameters: dict[str, Any]
-    tracker_parameters: dict[str, Any]
-    title: str
-
-
 def _demo(args, stop: threading.Event) -> int:
-    offers = demo_page.offers(args.scenario, args.recording, args.recordings)
+    offers = demo_plan.offers(args.scenario, args.recording, args.recordings)
     shown = offers.shown(args.scenario, args.recording, args.rate)
-    plan = _plan(args, offers, shown)
+    plan = demo_plan.plan(args, offers, shown)
     try:
         from ..nodes import domain
         from ..nodes.demo_choice import DemoChoice
@@ -121,13 +110,15 @@ def _demo(args, stop: threading.Event) -> int:
             number = context.enter_context(domain.free_domain())
         domain.set_local(os.environ, number)
         last = context.enter_context(contextlib.ExitStack())
-        nodes = {'tracker': plan.tracker_parameters, plan.source: plan.source_parameters}
+        nodes = dict(plan.nodes)
         if demo_page.wanted(args.no_display):
             nodes[PPI] = {'address': f'127.0.0.1:{demo_page.free_port()}'}
         children = context.enter_context(children_of(nodes))
         listener = TargetsListener()
         last.callback(listener.close)  # after the children have ended: it may hang
-        choice = DemoChoice(listener, offers, shown, lambda asked: _plan(args, offers, asked))
+        choice = DemoChoice(
+            listener, offers, shown, lambda asked: demo_plan.plan(args, offers, asked)
+        )
         began = time.monotonic()
         with demo_table.display() as show:
             watch = _Watch(listener, children, stop, show, began, args.duration)
@@ -135,42 +126,13 @@ def _demo(args, stop: threading.Event) -> int:
                 code = watch.until_ended(f'{plan.title}, ROS domain {number}', choice)
                 if code is not None:
                     break
-                children.end('tracker', plan.source)
-                plan = _plan(args, offers, choice.take())
+                children.end(*plan.nodes)
+                plan = demo_plan.plan(args, offers, choice.take())
                 listener.forget()
-                children.start(
-                    {'tracker': plan.tracker_parameters, plan.source: plan.source_parameters}
-                )
+                children.start(plan.nodes)
         if watch.failed:
             _tell_why(watch.failed)
         return code
-
-
-def _plan(args, offers: demo_page.Offers, shown: demo_page.Shown) -> _Plan:
-    """ValueError where something is wrong with it."""
-    if shown.recording:
-        from ..recording import csv_folder
-
-        source, folder = 'recording_player', offers.recordings[shown.recording]
-        given = {'folder': folder, 'rate': shown.rate}
-        from_mapping(RecordingPlayerParameters, given)
-        for_tracker = dict(csv_folder.read(folder).tracker_parameters)
-    else:
-        from ..simulation import scenario
-
-        source, name = 'radar_simulator', offers.scenarios[shown.scenario]
-        given = {'scenario': name, 'rate': shown.rate, 'seed': args.seed}
-        from_mapping(RadarSimulatorParameters, given)
-        for_tracker = dict(scenario.load(name).tracker_parameters())
-    if args.estimator:
-        for_tracker['estimator'] = args.estimator
-    if args.extent:
-        for_tracker['extent'] = args.extent
-    checked = from_mapping(TrackerParameters, for_tracker)
-    for_tracker = {name: getattr(checked, name) for name in for_tracker}  # ints become floats
-    if shown.rate != 1:
-        for_tracker['use_sim_time'] = True
-    return _Plan(source, given, for_tracker, shown.recording or shown.scenario)
 
 
 class _Watch:

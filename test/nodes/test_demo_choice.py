@@ -11,7 +11,7 @@ pytest.importorskip('rclpy')
 pytest.importorskip('aiohttp', reason='no aiohttp: the demo has no page')
 import aiohttp
 
-from marine_tracker.commands import demo_page
+from marine_tracker.commands import demo_plan
 from marine_tracker.nodes import domain as domains
 
 ADDRESS = re.compile(r'radar picture: (http://\S+/)#(\S+)')
@@ -90,9 +90,9 @@ def test_recordings_are_offered_by_name_beside_the_one_that_was_given(tmp_path):
         (tmp_path / name).mkdir()
         (tmp_path / name / 'plots.csv').touch()
     (tmp_path / 'notes').mkdir()
-    offers = demo_page.offers('encounters', str(tmp_path / 'second'), None)
+    offers = demo_plan.offers('encounters', str(tmp_path / 'second'), None)
     assert offers.recordings == {name: str(tmp_path / name) for name in ('first', 'second')}
     assert offers.shown('encounters', str(tmp_path / 'second'), 2) == ('encounters', 'second', 2.0)
-    assert demo_page.offers('encounters', None, None).recordings == {}
+    assert demo_plan.offers('encounters', None, None).recordings == {}
     with pytest.raises(ValueError, match='no such folder'):
-        demo_page.offers('encounters', None, str(tmp_path / 'tapes'))
+        demo_plan.offers('encounters', None, str(tmp_path / 'tapes'))
