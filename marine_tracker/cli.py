@@ -12,6 +12,7 @@ from .processes import one_thread, stop_on_sigterm
 COMMANDS = (
     'demo',
     'top',
+    'screenshots',
     'replay',
     'score',
     'bench',
