@@ -12,6 +12,7 @@ if not browser.program():
     pytest.skip('no Chromium: no pictures are taken', allow_module_level=True)
 
 
+@pytest.mark.slow
 def test_a_picture_of_a_scene_is_taken(command, tmp_path):
     done = command('screenshots', tmp_path / 'pictures', '--only', 'hulls', timeout=110)
     assert done.returncode == 0, done.stderr
