@@ -4,6 +4,8 @@ import asyncio
 import json
 import re
 import signal
+import subprocess
+import sys
 
 import pytest
 
@@ -96,3 +98,21 @@ def test_recordings_are_offered_by_name_beside_the_one_that_was_given(tmp_path):
     assert demo_plan.offers('encounters', None, None).recordings == {}
     with pytest.raises(ValueError, match='no such folder'):
         demo_plan.offers('encounters', None, str(tmp_path / 'tapes'))
+
+
+def test_a_port_that_somebody_else_took_meanwhile_does_not_end_the_demo(tmp_path):
+    script = (
+        'import socket, sys\n'
+        'from marine_tracker import cli\n'
+        'from marine_tracker.commands import demo_page\n'
+        'taken = socket.socket()\n'
+        "taken.bind(('127.0.0.1', 0))\n"
+        'taken.listen()\n'
+        'demo_page.free_port = lambda: taken.getsockname()[1]\n'
+        "sys.exit(cli.main(['demo', '--scenario', 'clean', '--duration', '12']))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', script], capture_output=True, text=True, timeout=100
+    )
+    assert done.returncode == 0, done.stderr
+    assert ADDRESS.search(done.stdout)
