@@ -27,6 +27,7 @@ from ..arpa.targets import EVENTS, NO_ROOM, NOTHING_THERE, Events
 from ..service import Output, Service
 from ..types import Array, Scan, append, take
 from . import diagnostics, topics
+from .alarm_log import AlarmLog
 from .arpa_messages import alarms_message, trial_message
 from .base_node import RunnableNode
 from .diagnostics import Tally, answered
@@ -64,17 +65,20 @@ class Operator:
         self._end, self._end_ns = 0.0, 0  # s, and stamp, of the last scan's end
         self.picture: Picture | None = None
 
-        self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched(10))
+        self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched())
+        self._alarm_log = AlarmLog(node.get_logger())
         self._to_trial = node.publisher(DiagnosticArray, topics.TRIAL, topics.latched())
         for kind, topic, callback in (
             (PointStamped, topics.ACQUIRE, self._on_acquire),
             (PointStamped, topics.CLICKED_POINT, self._on_acquire),
             (UInt32, topics.CANCEL, self._on_cancel),
+            (UInt32, f'~/{topics.CANCEL}', self._on_cancel),
             (UInt32, topics.ACKNOWLEDGE_TARGET, self._on_acknowledge_target),
         ):
             node.subscription(kind, topic, callback, topics.reliable())
-        node.create_service(Trigger, topics.CANCEL_ALL, self._on_cancel_all)
-        node.create_service(Trigger, topics.ACKNOWLEDGE, self._on_acknowledge)
+        for own in ('', '~/'):
+            node.create_service(Trigger, own + topics.CANCEL_ALL, self._on_cancel_all)
+            node.create_service(Trigger, own + topics.ACKNOWLEDGE, self._on_acknowledge)
         node.create_service(SetBool, topics.TRIAL_MANOEUVRE, self._on_trial)
 
     # -- in ------------------------------------------------------------------------------------
@@ -247,14 +251,11 @@ class Operator:
             shown = append(
                 take(present, present.state != NORMAL), take(changed, changed.state == NORMAL)
             )
+            radars = [radar.name for radar in self.arpa.radars]
+            self._alarm_log.tell(changed, self.arpa.zones, radars)
             self._to_alarms.publish(
                 alarms_message(
-                    shown,
-                    self.arpa.zones,
-                    [radar.name for radar in self.arpa.radars],
-                    self._now(),
-                    self._stamp(),
-                    self._hardware_id,
+                    shown, self.arpa.zones, radars, self._now(), self._stamp(), self._hardware_id
                 )
             )
 

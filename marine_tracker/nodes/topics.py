@@ -26,6 +26,7 @@ CLICKED_POINT = 'clicked_point'
 CANCEL = 'cancel'
 ACKNOWLEDGE_TARGET = 'acknowledge_target'
 DIAGNOSTICS = '/diagnostics'
+CLOCK = '/clock'
 
 CANCEL_ALL = 'cancel_all'  # services
 ACKNOWLEDGE = 'acknowledge'

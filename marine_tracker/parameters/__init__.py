@@ -12,11 +12,12 @@ from .sources_and_outputs import (
     NmeaOutputParameters,
     RadarSimulatorParameters,
     RecordingPlayerParameters,
+    TrackerOutputParameters,
 )
 from .tracker import EXTENTS, GLINT_SIGMA, VESSEL_CLASSES, TrackerParameters
 
 NODES: dict[str, tuple[type, ...]] = {
-    'tracker': (TrackerParameters, ArpaParameters),
+    'tracker': (TrackerParameters, ArpaParameters, TrackerOutputParameters),
     'radar_simulator': (RadarSimulatorParameters,),
     'recording_player': (RecordingPlayerParameters,),
     'nmea_output': (NmeaOutputParameters,),
@@ -33,6 +34,7 @@ __all__ = [
     'PpiDisplayParameters',
     'RadarSimulatorParameters',
     'RecordingPlayerParameters',
+    'TrackerOutputParameters',
     'TrackerParameters',
     'from_mapping',
     'from_mappings',

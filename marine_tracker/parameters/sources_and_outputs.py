@@ -1,4 +1,4 @@
-"""The parameters of the nodes other than the tracker: simulator, player, NMEA output."""
+"""The parameters of the nodes other than the tracker's own: simulator, player, outputs."""
 
 from dataclasses import dataclass
 
@@ -45,6 +45,20 @@ class RecordingPlayerParameters:
         high=1000.0,
     )
     loop: bool = parameter(False, 'Begin again when the recording has ended.')
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class TrackerOutputParameters:
+    """How the tracker node publishes; nothing of it reaches the tracking."""
+
+    tracks_paced: bool = parameter(
+        False,
+        'Whether the messages of `tracks` are spread over the revolution. Else those of a scan '
+        'come at once, and a listener needs a depth of as many as there are tracks.',
+    )
 
     def __post_init__(self) -> None:
         check(self)
