@@ -63,7 +63,9 @@ class Paced:
 
     def _tick(self) -> None:
         share = (time.monotonic() - self._began) / self._length
-        due = min(math.ceil(share * self._count), self._count)
+        # Twice the pace at most: a tick that comes late makes no burst.
+        most = self._sent + math.ceil(2 * self._count * TICK_S / self._length)
+        due = min(math.ceil(share * self._count), most, self._count)
         if due > self._sent:
             self._waiting(due)
         if self._sent == self._count:

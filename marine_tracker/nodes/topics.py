@@ -2,7 +2,8 @@
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-FRAME = 'map'  # ground-stabilised, east and north
+from ..recording.ros_messages import FRAME  # noqa: F401
+
 OWN_SHIP_FRAME = 'base_link'
 
 PLOTS = 'radar/plots'

@@ -23,17 +23,18 @@ from sensor_msgs.msg import PointCloud2
 from ..arpa.arpa import Picture
 from ..arpa.view import Standing
 from ..parameters import NODES, ArpaParameters, TrackerParameters
+from ..recording.ros_messages import HEADER_REASONS, ConversionError, bare, check_frame
 from ..service import Service
 from ..tracking import clocks, own_ship
 from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
 from ..tracking.mounting import needs_heading
 from ..tracking.own_velocity import AUTO, POSITIONS
 from ..tracking.radars import radars_of
+from ..tracking.scan_input import NO_STAMP
 from . import convert, diagnostics, topics
 from .base_node import RunnableNode
 from .declare import declare, follow
 from .diagnostics import FAILED, OK, WARN, Durations, Tally
-from .faults import HEADER_REASONS, NO_STAMP, ConversionError, bare, check_frame
 from .operator import Operator
 from .own_sensors import LOG_REASONS, SensorsInput
 from .own_ship_state import sources
@@ -62,7 +63,9 @@ class TrackerNode(RunnableNode):
             RadarInput(radar, place, partial(self._tell_of, radar.name))
             for place, radar in enumerate(radars_of(parameters))
         ]
-        self.bad_own_ship = Tally((*own_ship.OWN_REASONS, *HEADER_REASONS, *LOG_REASONS), self.tell)
+        self.bad_own_ship = Tally(
+            (*own_ship.OWN_REASONS, *HEADER_REASONS, NO_STAMP, *LOG_REASONS), self.tell
+        )
         self._sensors = SensorsInput(
             self,
             lambda reason, detail: self.bad_own_ship.add(reason, time.monotonic(), detail=detail),
@@ -143,7 +146,7 @@ class TrackerNode(RunnableNode):
 
     def _on_plots(self, heard: RadarInput, message: PointCloud2) -> None:
         began, p = time.perf_counter(), self._operator.arpa.parameters
-        found = heard.scan_of(
+        found = heard.read(
             message,
             self._arrival(),
             self._own_log,
