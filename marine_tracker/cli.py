@@ -11,7 +11,10 @@ from .processes import one_thread, stop_on_sigterm
 
 COMMANDS = (
     'demo',
+    'record',
+    'recording',
     'replay',
+    'incident',
     'score',
     'bench',
     'experiments',

@@ -6,6 +6,7 @@ Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
 """
 
 import contextlib
+import dataclasses
 import os
 import signal
 import sys
@@ -59,7 +60,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         metavar='NAME',
         help='a shipped scenario or a scenario file (default: %(default)s)',
     )
-    source.add_argument('--recording', metavar='FOLDER', help='a recorded folder instead')
+    source.add_argument('--recording', metavar='FOLDER', help='a recording instead')
     parser.add_argument(
         '--rate',
         type=float,
@@ -137,12 +138,19 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
     """The source node's name and parameters, and the tracker's. ValueError if one is wrong."""
     source: str
     if args.recording:
-        from ..recording import csv_folder
+        from ..recording import csv_folder, mcap_name
 
         source = 'recording_player'
         given = {'folder': os.path.abspath(args.recording), 'rate': args.rate}
         from_mapping(RecordingPlayerParameters, given)
-        for_tracker = dict(csv_folder.read(args.recording).tracker_parameters)
+        if mcap_name.is_mcap(args.recording):
+            from ..recording import mcap_topics
+
+            inside = mcap_topics.contents(args.recording).parameters
+            known = {field.name for field in dataclasses.fields(TrackerParameters)}
+            for_tracker = {name: value for name, value in inside.items() if name in known}
+        else:
+            for_tracker = dict(csv_folder.read(args.recording).tracker_parameters)
     else:
         from ..simulation import scenario
 

@@ -16,6 +16,7 @@ from ..arpa.targets import label
 from ..geometry import NAUTICAL_MILE
 from ..recording import csv_folder, track_file
 from ..recording.csv_folder import Recording
+from ..recording.mcap_name import is_mcap
 from ..recording.track_file import TargetColumns, TrackRows
 from ..service import Output, Service, service_for
 from ..simulation import radar, scenario
@@ -56,11 +57,11 @@ class Summary(NamedTuple):
 
 
 def open_source(name: str, seed: int = 1) -> Source:
-    """A recording if `name` is a folder, else a scenario run with `seed`.
+    """A recording if `name` is a folder or an MCAP file, else a scenario run with `seed`.
 
     ValueError if it is neither, or has an error.
     """
-    if Path(name).is_dir():
+    if Path(name).is_dir() or is_mcap(name):
         recording, remarks = screened.read(name)
         numbers = recording.numbers.tolist()
         return Source(

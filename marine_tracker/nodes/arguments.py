@@ -13,6 +13,7 @@ ABOUT = {
     'radar_simulator': 'Plays a scenario as a radar and own ship would see it.',
     'recording_player': 'Plays a recorded folder.',
     'nmea_output': 'Sends targets and own ship as NMEA 0183 and Signal K.',
+    'recorder': 'Records the topics of the service into MCAP files.',
     'ppi_display': 'Serves the radar picture (PPI) as a page for a browser.',
 }
 

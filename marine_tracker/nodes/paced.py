@@ -15,6 +15,7 @@ from .base_node import RunnableNode
 from .convert import OdometryPool
 
 TICK_S = 0.01
+MOST = 5  # at a tick: half of what the usual depth holds
 SHARE = 0.8  # of the revolution: all are out before the next ones come
 
 
@@ -63,8 +64,8 @@ class Paced:
 
     def _tick(self) -> None:
         share = (time.monotonic() - self._began) / self._length
-        # Twice the pace at most: a tick that comes late makes no burst.
-        most = self._sent + math.ceil(2 * self._count * TICK_S / self._length)
+        # A tick that comes late makes no burst.
+        most = self._sent + max(MOST, math.ceil(2 * self._count * TICK_S / self._length))
         due = min(math.ceil(share * self._count), most, self._count)
         if due > self._sent:
             self._waiting(due)

@@ -11,6 +11,7 @@ from .display import PpiDisplayParameters
 from .sources_and_outputs import (
     NmeaOutputParameters,
     RadarSimulatorParameters,
+    RecorderParameters,
     RecordingPlayerParameters,
     TrackerOutputParameters,
 )
@@ -22,6 +23,7 @@ NODES: dict[str, tuple[type, ...]] = {
     'recording_player': (RecordingPlayerParameters,),
     'nmea_output': (NmeaOutputParameters,),
     'ppi_display': (PpiDisplayParameters,),
+    'recorder': (RecorderParameters,),
 }
 
 __all__ = [
@@ -33,6 +35,7 @@ __all__ = [
     'NmeaOutputParameters',
     'PpiDisplayParameters',
     'RadarSimulatorParameters',
+    'RecorderParameters',
     'RecordingPlayerParameters',
     'TrackerOutputParameters',
     'TrackerParameters',
