@@ -65,7 +65,7 @@ def read(path: Place) -> tuple[Recording, tuple[str, ...]]:
             tuple(heard.scans),
             tuple(_truth(rows) for rows in heard.truths),
             parameters,
-            {},
+            {'begin_s': heard.begin_ns * 1e-9, 'arpa': inside.parameters},
             np.arange(len(heard.scans)),
             OwnShip(np.array([scan.start for scan in heard.scans]), position, velocity),
         ),
@@ -94,6 +94,11 @@ class _Heard:
     def rejected(self) -> str:
         """How many of what; '' for none."""
         return ', '.join(f'{count} {reason}' for reason, count in self._counts.items())
+
+    @property
+    def begin_ns(self) -> int:
+        """The stamp of time 0."""
+        return self._base or 0
 
     def take(self, event: Event) -> None:
         """The next message."""

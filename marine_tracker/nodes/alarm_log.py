@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..arpa import alarm_text, alarms
-from ..arpa.alerts import NORMAL, Alerts
+from ..arpa.alerts import Alerts, Raised
 from ..arpa.zones import Zones
 from .diagnostics import one_line
 
@@ -16,20 +16,14 @@ class AlarmLog:
 
     def __init__(self, logger: Any) -> None:
         self._logger = logger
-        self._raised: set[tuple[int, ...]] = set()  # those that are not normal
+        self._raised = Raised()
 
     def tell(self, changed: Alerts, zones: Zones, radars: Sequence[str]) -> None:
         """Logs those of the changed alerts that were not raised already."""
-        keys = zip(changed.kind.tolist(), changed.zone.tolist(), changed.id.tolist())
         texts = alarm_text.text(changed, zones, radars)
-        for key, state, text in zip(keys, changed.state.tolist(), texts):
-            if state == NORMAL:
-                self._raised.discard(key)
-            elif key not in self._raised:
-                self._raised.add(key)
-                kind = key[0]
-                grave = alarms.PRIORITY[kind] in TOLD_AS_WARNING and kind != alarms.LOST_TARGET
-                if grave:
-                    self._logger.warning(one_line(text))
-                else:
-                    self._logger.info(one_line(text))
+        for row in self._raised.rows(changed):
+            kind = int(changed.kind[row])
+            if alarms.PRIORITY[kind] in TOLD_AS_WARNING and kind != alarms.LOST_TARGET:
+                self._logger.warning(one_line(texts[row]))
+            else:
+                self._logger.info(one_line(texts[row]))
