@@ -67,6 +67,7 @@ setup(
         'console_scripts': [
             'marine_tracker = marine_tracker.cli:main',
             'nmea_output = marine_tracker.nodes.run:nmea_output',
+            'plot_extractor = marine_tracker.nodes.run:plot_extractor',
             'ppi_display = marine_tracker.nodes.run:ppi_display',
             'recorder = marine_tracker.nodes.run:recorder',
             'radar_simulator = marine_tracker.nodes.run:radar_simulator',

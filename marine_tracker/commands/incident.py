@@ -7,7 +7,6 @@ the targets would have come then, as they really moved.
 """
 
 import calendar
-import dataclasses
 import re
 import sys
 import time
@@ -67,11 +66,9 @@ def run(args: Namespace) -> int:
         print(remark, file=sys.stderr)
     begin = float(recording.notes.get('begin_s', 0.0))
     at = moment(args.at, begin, recording)
-    fields = {field.name for field in dataclasses.fields(ArpaParameters)}
-    arpa = {k: v for k, v in recording.notes.get('arpa', {}).items() if k in fields}
     service = Service(
         tracker_options.parameters(args, recording.tracker_parameters),
-        from_mapping(ArpaParameters, arpa),
+        from_mapping(ArpaParameters, recording.notes.get('arpa', {})),
     )
     found = incident.find(service, recording.scans, at, 60 * args.before, 60 * args.after)
     for line in report(found, recording.name, begin):

@@ -5,7 +5,6 @@ run. Where the parameters were changed meanwhile, the tracks are those with the 
 beginning; a remark tells it.
 """
 
-import dataclasses
 from collections import Counter
 from functools import partial
 
@@ -13,15 +12,13 @@ import numpy as np
 
 from ..files import Place
 from ..geometry import own_ship_at
-from ..parameters import TrackerParameters, from_mapping
+from ..parameters import ArpaParameters, TrackerParameters, from_mapping
 from ..recording import mcap_topics
 from ..recording.csv_folder import Recording
 from ..recording.mcap_topics import CHANGES, OWN_SHIP, TRUTH, Contents, Event
+from ..recording.message_faults import ConversionError, bare, check_frame
 from ..recording.ros_messages import (
     FRAME,
-    ConversionError,
-    bare,
-    check_frame,
     cloud_to_plots,
     heading_of_odometry,
     nanoseconds,
@@ -42,8 +39,7 @@ def read(path: Place) -> tuple[Recording, tuple[str, ...]]:
     ValueError if there are no plots in it.
     """
     inside = mcap_topics.contents(path)
-    fields = {field.name for field in dataclasses.fields(TrackerParameters)}
-    parameters = {name: value for name, value in inside.parameters.items() if name in fields}
+    parameters = inside.of(TrackerParameters)
     heard = _Heard(inside, from_mapping(TrackerParameters, parameters))
     for event in inside.events(OWN_SHIP, TRUTH, CHANGES, *heard.inputs):
         heard.take(event)
@@ -65,7 +61,7 @@ def read(path: Place) -> tuple[Recording, tuple[str, ...]]:
             tuple(heard.scans),
             tuple(_truth(rows) for rows in heard.truths),
             parameters,
-            {'begin_s': heard.begin_ns * 1e-9, 'arpa': inside.parameters},
+            {'begin_s': heard.begin_ns * 1e-9, 'arpa': inside.of(ArpaParameters)},
             np.arange(len(heard.scans)),
             OwnShip(np.array([scan.start for scan in heard.scans]), position, velocity),
         ),

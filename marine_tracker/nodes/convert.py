@@ -5,16 +5,14 @@ matrix goes out as garbage. So: plain `float`s, `array.array` for sequences, fla
 Times cross this border as integer nanoseconds, for a float of seconds since 1970 is 0.2 us coarse.
 """
 
-import array
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
 from nav_msgs.msg import Odometry
 from numpy.typing import NDArray
-from sensor_msgs.msg import NavSatFix, NavSatStatus, PointCloud2, PointField
+from sensor_msgs.msg import NavSatFix, NavSatStatus, PointCloud2
 from std_msgs.msg import Header
 
 from ..geometry import heading_from, own_ship_at, unit_vector
@@ -23,6 +21,7 @@ from ..geometry import heading_from, own_ship_at, unit_vector
 from ..recording.ros_messages import (  # noqa: F401
     BAD_LAYOUT,
     CLOUD_REASONS,
+    COVARIANCE,
     FLOATS,
     MISSING_FIELD,
     MISTYPED_FIELD,
@@ -38,10 +37,10 @@ from ..recording.ros_messages import (  # noqa: F401
     yaw_of,
 )
 from ..types import Array, IntArray, Scan
+from . import cloud_layout
 from .topics import FRAME, OWN_SHIP_FRAME
 
 PLOT_FIELDS = ('x', 'y', 'z', 'range', 'bearing', 'amplitude', 'time_offset')
-KINDS = {**FLOATS, PointField.UINT8: 'u1', PointField.UINT32: 'u4'}
 
 TRACK_TYPE = np.dtype(
     [('id', '<u4'), ('number', '<u4'), ('status', '<u4'), ('time_offset', '<f4')]
@@ -83,23 +82,7 @@ def header(time_ns: int, frame: str = FRAME) -> Header:
 
 def cloud_message(rows: NDArray[np.void], time_ns: int) -> PointCloud2:
     """A PointCloud2 of a structured array [M] of little-endian fields."""
-    kinds = {kind: datatype for datatype, kind in KINDS.items()}
-    layout: Any = rows.dtype
-    fields = []
-    for name in layout.names:
-        kind, offset = layout.fields[name]
-        fields.append(PointField(name=name, offset=offset, datatype=kinds[kind.str[1:]], count=1))
-    return PointCloud2(
-        header=header(time_ns),
-        height=1,
-        width=len(rows),
-        fields=fields,
-        is_bigendian=False,
-        point_step=rows.dtype.itemsize,
-        row_step=rows.nbytes,
-        is_dense=True,
-        data=array.array('B', rows.tobytes()),
-    )
+    return cloud_layout.message(rows, header(time_ns))
 
 
 def plots_positions(scan: Scan) -> Array:
@@ -111,16 +94,24 @@ def plots_positions(scan: Scan) -> Array:
 def plots_to_cloud(scan: Scan, start_ns: int) -> PointCloud2:
     """One antenna revolution; the stamp is its start.
 
-    A field radial_speed is there where the radar tells it.
+    A field radial_speed is there where the radar tells it, and xx, xy, yy where plots have a
+    covariance of their own.
     """
     plots, position = scan.plots, plots_positions(scan)
-    names = PLOT_FIELDS if plots.radial_speed is None else (*PLOT_FIELDS, RADIAL_SPEED)
+    names: tuple[str, ...] = PLOT_FIELDS
+    if plots.radial_speed is not None:
+        names += (RADIAL_SPEED,)
+    if plots.covariance is not None:
+        names += COVARIANCE
     rows = np.zeros(len(plots.time), [(name, '<f4') for name in names])
     rows['x'], rows['y'] = position.T
     rows['range'], rows['bearing'], rows['amplitude'] = plots.range, plots.bearing, plots.amplitude
     rows['time_offset'] = plots.time - scan.start
     if plots.radial_speed is not None:
         rows[RADIAL_SPEED] = plots.radial_speed
+    if plots.covariance is not None:
+        for name, (i, j) in zip(COVARIANCE, ((0, 0), (0, 1), (1, 1))):
+            rows[name] = plots.covariance[:, i, j]
     return cloud_message(rows, start_ns)
 
 

@@ -29,12 +29,11 @@ from ..arpa.targets import label
 from ..files import shown
 from ..geodesy import LocalFrame
 from ..geometry import AT_REST, KNOT, on_deck, to_range_bearing
-from ..recording.ros_messages import ConversionError, check_frame
 from ..tracking import lifecycle, own_ship
-from ..tracking.scan_input import NO_STAMP
 from ..types import Array
 from . import targets_cloud
 from .convert import heading_of_odometry, nanoseconds, odometry_to_own_ship
+from .faults import NO_STAMP, ConversionError, check_frame
 from .topics import FRAME
 
 BAD_FIX = 'fixes without a position'

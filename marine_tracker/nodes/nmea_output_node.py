@@ -21,15 +21,14 @@ from ..arpa.nmea_targets import nothing_told, word
 from ..files import shown
 from ..geometry import NAUTICAL_MILE, unit_vector
 from ..parameters import NmeaOutputParameters
-from ..recording.ros_messages import HEADER_REASONS, ConversionError
 from ..tracking import clocks, own_ship
 from ..tracking.own_velocity import POSITIONS, TWIST
-from ..tracking.scan_input import NO_STAMP
 from . import diagnostics, topics
 from .base_node import RunnableNode
 from .convert import CLOUD_REASONS, nanoseconds
 from .declare import declare
 from .diagnostics import ERROR, FAILED, OK, WARN, one_line
+from .faults import HEADER_REASONS, ConversionError
 from .nmea_output_input import (
     BAD_FIX,
     FIX_BY_ARRIVAL,
@@ -83,7 +82,6 @@ class NmeaOutputNode(RunnableNode):
             (
                 *map(named, own_ship.OWN_REASONS),
                 *HEADER_REASONS,
-                NO_STAMP,
                 *CLOUD_REASONS,
                 BAD_FIX,
                 FIX_BY_ARRIVAL,

@@ -12,13 +12,13 @@ from geometry_msgs.msg import TwistStamped
 
 from ..arpa.stabilisation import NONE, POSITIONS, OwnSensors, through_water
 from ..parameters import ArpaParameters
-from ..recording.ros_messages import WRONG_FRAME, bare
 from ..tracking import own_ship
 from ..tracking.own_ship import MAX_OWN_SPEED
 from ..tracking.radars import Radar
 from ..types import Array
 from . import topics
 from .base_node import RunnableNode
+from .faults import WRONG_FRAME, bare
 
 LOG_NOT_FINITE = 'log messages not finite'
 LOG_TOO_FAST = 'log messages with impossible speed'

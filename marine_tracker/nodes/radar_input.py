@@ -7,13 +7,13 @@ from typing import NamedTuple
 from sensor_msgs.msg import PointCloud2
 
 from ..estimators import WANT_DOPPLER
-from ..recording.ros_messages import HEADER_REASONS, ConversionError, check_frame
 from ..tracking import intake, own_ship
 from ..tracking.radars import Radar
-from ..tracking.scan_input import MISSED, NO_STAMP, Came, ScanInput
+from ..tracking.scan_input import MISSED, Came, ScanInput
 from ..types import Array, Scan
 from . import convert
 from .diagnostics import OK, WARN, Tally
+from .faults import HEADER_REASONS, ConversionError, check_frame
 from .topics import FRAME, OWN_SHIP_FRAME
 
 NO_DOPPLER = 'scans without the radial speeds that the estimator wants'
@@ -42,7 +42,6 @@ class RadarInput(ScanInput):
             (
                 *convert.CLOUD_REASONS,
                 *HEADER_REASONS,
-                NO_STAMP,
                 *intake.PLOT_REASONS,
                 *intake.SCAN_REASONS,
                 MISSED,
@@ -100,7 +99,8 @@ class RadarInput(ScanInput):
             {
                 'scans taken': self.taken,
                 'plots in last scan': self.plots_in_scan,
-                'period_s': f'{self.period:.3f}',
+                'period_s': f'{self.revolution:.3f}',
+                **({'sectors': round(self.revolution / self.period)} if self.in_sectors else {}),
                 **self.bad.counts,
             },
         )

@@ -42,6 +42,7 @@ def of_this_package(plots: list[str], without: list[str]) -> list[Wanted]:
     burst = reliable(5 * topics.BURST)
     found = [
         *(Wanted(name, PointCloud2, deep, True) for name in plots),
+        Wanted(topics.SPOKES, PointCloud2, deep),
         Wanted(topics.PLOTS_READABLE, PointCloud, deep),
         Wanted(topics.ODOMETRY, Odometry, deep, True),
         Wanted(topics.FIX, NavSatFix, deep),

@@ -28,6 +28,13 @@ class RadarSimulatorParameters:
         high=1e10,
     )
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
+    sectors: int = parameter(
+        0,
+        'Messages of plots a revolution: the antenna does not wait for its whole turn. 0: as the '
+        'scenario says, 1 if it says nothing.',
+        low=0,
+        high=64,
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -39,8 +46,8 @@ class RecordingPlayerParameters:
 
     folder: str = parameter(
         '',
-        'Folder of a recording: plots.csv, own_ship.csv, truth.csv; or of MCAP files, or one of '
-        'those.',
+        'Folder of a recording (plots.csv, own_ship.csv, truth.csv), a file of spokes (.npz), or '
+        'a recording of topics (.mcap, or a folder of those).',
     )
     rate: float = parameter(
         1.0,

@@ -1,5 +1,6 @@
 """What is in an MCAP file for a tracker: plots, own ship, truth, and the tracker's parameters."""
 
+import dataclasses
 import json
 import re
 from collections.abc import Iterator
@@ -11,13 +12,8 @@ from ..files import Place
 from ..geodesy import LocalFrame
 from ..types import OwnShip, PolarPlots, Scan, Truth
 from .mcap_read import McapFiles
-from .ros_messages import (
-    ConversionError,
-    cloud_to_plots,
-    heading_of_odometry,
-    nanoseconds,
-    odometry_to_own_ship,
-)
+from .message_faults import ConversionError
+from .ros_messages import cloud_to_plots, heading_of_odometry, nanoseconds, odometry_to_own_ship
 
 PLOTS, OWN_SHIP, TRUTH, FIX = 'radar/plots', 'own_ship/odometry', 'truth', 'own_ship/fix'
 CLOUD = 'sensor_msgs/msg/PointCloud2'
@@ -48,6 +44,11 @@ class Contents(NamedTuple):
         """The messages of topics, relative to the namespace, that can be decoded, in order."""
         for message, content in self.files.decoded([self.full(topic) for topic in topics]):
             yield Event(message.topic, message.log_ns, content)
+
+    def of(self, kind: type) -> dict[str, Any]:
+        """The recorded parameters that are fields of this class."""
+        names = {field.name for field in dataclasses.fields(kind)}
+        return {name: value for name, value in self.parameters.items() if name in names}
 
     def full(self, topic: str) -> str:
         """The full name of a topic."""

@@ -5,52 +5,30 @@ nanoseconds, for a float of seconds since 1970 is 0.2 us coarse.
 """
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from ..geometry import AT_REST, bearing_from_yaw
 from ..types import Array, PolarPlots
+from . import cloud_rows
+from .cloud_rows import FLOATS, Wanted
+from .message_faults import (
+    BAD_LAYOUT,
+    BAD_STAMP,
+    MISSING_FIELD,
+    MISTYPED_FIELD,
+    TRUNCATED,
+    ConversionError,
+    bare,
+)
 
 FRAME = 'map'  # ground-stabilised, east and north
 NEEDED = ('range', 'bearing', 'amplitude', 'time_offset')
 RADIAL_SPEED = 'radial_speed'  # of a radar with Doppler
-FLOAT32, FLOAT64 = 7, 8  # PointField.datatype
-FLOATS = {FLOAT32: 'f4', FLOAT64: 'f8'}
-NO_HEADING = math.pi**2 / 3  # rad^2, variance of a yaw of which there is no idea at all
-
-
-class ConversionError(ValueError):
-    """A message that cannot be read; `reason` is the name of its counter."""
-
-    def __init__(self, reason: str, text: str) -> None:
-        super().__init__(f'{reason}: {text}')
-        self.reason = reason
-
-
-MISSING_FIELD = 'clouds with a missing field'
-MISTYPED_FIELD = 'clouds with a mistyped field'
-BAD_LAYOUT = 'clouds with a wrong layout'
-TRUNCATED = 'clouds with a truncated buffer'
-WRONG_FRAME = 'messages in a wrong frame'
-BAD_STAMP = 'messages with a wrong stamp'
+COVARIANCE = ('xx', 'xy', 'yy')  # m^2, where each plot tells its own
 CLOUD_REASONS = (MISSING_FIELD, MISTYPED_FIELD, BAD_LAYOUT, TRUNCATED)
-HEADER_REASONS = (WRONG_FRAME, BAD_STAMP)
-
-
-def check_frame(frame: str, allowed: Sequence[str]) -> None:
-    """ConversionError unless the frame is one of those allowed; an empty one counts as `map`."""
-    if frame and bare(frame) not in allowed:
-        may = ' or '.join(dict.fromkeys(allowed))
-        raise ConversionError(
-            WRONG_FRAME, f'frame_id is {frame[:80]!r}; it must be {may}, or empty'
-        )
-
-
-def bare(frame: str) -> str:
-    """The frame without the slash that ROS 1 put before it."""
-    return frame.removeprefix('/')
+NO_HEADING = math.pi**2 / 3  # rad^2, variance of a yaw of which there is no idea at all
 
 
 def nanoseconds(stamp: Any) -> int:
@@ -65,7 +43,7 @@ def cloud_to_plots(message: Any) -> PolarPlots:
 
     Takes any order of fields, float32 or float64, either byte order, organised clouds, padding
     and fields beyond those needed (range, bearing, amplitude, time_offset); of those, radial_speed
-    is read. ConversionError else.
+    and the covariance xx, xy, yy are read. ConversionError else.
     """
     count = message.width * message.height
     if count == 0:
@@ -73,51 +51,21 @@ def cloud_to_plots(message: Any) -> PolarPlots:
             raise ConversionError(BAD_LAYOUT, f'no points, but {len(message.data)} bytes')
         none = np.empty(0)
         return PolarPlots(none, none, none, none)
-    fields = {field.name: field for field in message.fields}
-    if len(fields) < len(message.fields):
-        raise ConversionError(BAD_LAYOUT, 'a field name stands twice')
-    order = '>' if message.is_bigendian else '<'
-    kinds, offsets = [], []
-    names = (*NEEDED, RADIAL_SPEED) if RADIAL_SPEED in fields else NEEDED
-    for name in names:
-        if name not in fields:
-            raise ConversionError(MISSING_FIELD, name)
-        field = fields[name]
-        if field.datatype not in FLOATS or field.count > 1:
-            raise ConversionError(
-                MISTYPED_FIELD,
-                f'{name} has datatype {field.datatype}, count '
-                f'{field.count}; it must be one FLOAT32 or FLOAT64',
-            )
-        kind = np.dtype(order + FLOATS[field.datatype])
-        if field.offset + kind.itemsize > message.point_step:
-            raise ConversionError(
-                BAD_LAYOUT,
-                f'{name} ends at byte {field.offset + kind.itemsize}'
-                f' of a point of {message.point_step}',
-            )
-        kinds.append(kind)
-        offsets.append(field.offset)
-    used = message.width * message.point_step
-    if message.row_step < used:
-        raise ConversionError(
-            BAD_LAYOUT,
-            f'row_step is {message.row_step}; {message.width} points '
-            f'of {message.point_step} bytes need {used}',
-        )
-    whole = message.row_step * message.height
-    if len(message.data) < whole:
-        raise ConversionError(TRUNCATED, f'{len(message.data)} bytes of {whole}')
-    if len(message.data) > whole:
-        raise ConversionError(BAD_LAYOUT, f'{len(message.data)} bytes; {whole} announced')
-    raw = np.frombuffer(message.data, np.uint8).reshape(message.height, message.row_step)[:, :used]
-    point = np.dtype(
-        {'names': list(names), 'formats': kinds, 'offsets': offsets, 'itemsize': message.point_step}
+    optional = (RADIAL_SPEED, *COVARIANCE)
+    rows = cloud_rows.rows(
+        message,
+        [Wanted(name, FLOATS) for name in NEEDED]
+        + [Wanted(name, FLOATS, needed=False) for name in optional],
     )
-    rows = np.ascontiguousarray(raw).reshape(-1).view(point)
+    there = rows.dtype.names or ()
     with np.errstate(invalid='ignore'):  # signalling NaNs from a torn buffer
-        range_, bearing, amplitude, offset, *speed = (rows[name].astype(float) for name in names)
-    return PolarPlots(offset, range_, bearing, amplitude, *speed)
+        range_, bearing, amplitude, offset = (rows[name].astype(float) for name in NEEDED)
+        speed = rows[RADIAL_SPEED].astype(float) if RADIAL_SPEED in there else None
+        covariance = None
+        if set(COVARIANCE) <= set(there):
+            xx, xy, yy = (rows[name].astype(float) for name in COVARIANCE)
+            covariance = np.stack([xx, xy, xy, yy], -1).reshape(-1, 2, 2)
+    return PolarPlots(offset, range_, bearing, amplitude, speed, covariance)
 
 
 def odometry_to_own_ship(message: Any) -> tuple[Array, Array]:

@@ -19,8 +19,13 @@ const AWAY = 11;
 export function placed(labels, widthOf) {
   /** @type {{label: Label, left: number, middle: number}[]} */
   const found = [];
-  /** @type {number[][]} */
-  const taken = [];
+  /** @type {Map<number, number[][]>} boxes by the row of HEIGHT in which their middle is */
+  const taken = new Map();
+  const rowOf = (/** @type {number} */ middle) => Math.floor(middle / HEIGHT);
+  const free = (/** @type {number} */ left, /** @type {number} */ middle, width) =>
+    [-1, 0, 1].every((near) =>
+      (taken.get(rowOf(middle) + near) ?? []).every((box) => apart(box, left, middle, width)),
+    );
   const inOrder = [...labels].sort((a, b) => Number(b.needed) - Number(a.needed));
   for (const label of inOrder) {
     const width = widthOf(label.text);
@@ -30,12 +35,12 @@ export function placed(labels, widthOf) {
       [label.x - AWAY - width, label.y - AWAY],
       [label.x - AWAY - width, label.y + AWAY],
     ];
-    const free = places.find(([left, middle]) =>
-      taken.every((box) => apart(box, left, middle, width)),
-    );
-    const [left, middle] = free ?? places[0];
-    if (!free && !label.needed) continue;
-    taken.push([left, middle, width]);
+    const place = places.find(([left, middle]) => free(left, middle, width));
+    if (!place && !label.needed) continue;
+    const [left, middle] = place ?? places[0];
+    const row = rowOf(middle);
+    if (!taken.has(row)) taken.set(row, []);
+    taken.get(row)?.push([left, middle, width]);
     found.push({ label, left, middle });
   }
   return found;

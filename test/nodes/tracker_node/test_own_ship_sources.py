@@ -11,7 +11,7 @@ from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.nmea_output_node import NmeaOutputNode
 from marine_tracker.nodes.radar_simulator_node import RadarSimulatorNode
 from marine_tracker.nodes.tracker_node import TrackerNode
-from marine_tracker.recording.ros_messages import BAD_STAMP, WRONG_FRAME
+from marine_tracker.recording.message_faults import BAD_STAMP, WRONG_FRAME
 from marine_tracker.tracking import own_ship
 from marine_tracker.tracking.scan_input import NO_STAMP
 

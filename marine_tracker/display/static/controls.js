@@ -1,0 +1,55 @@
+// The buttons below and beside the picture: what they say, and what they do.
+
+import { seconds } from './app.js';
+import { element, say } from './panel.js';
+import { next } from './settings.js';
+
+/** Names in colours.css that the picture is drawn with. */
+const COLORS =
+  'sea ring scale echo trail target coasting danger lost label own selected cursor marker safe';
+
+/** The palette's colours, and the words on the buttons, as the settings are. */
+export function applySettings(/** @type {import('./app.js').App} */ app) {
+  const { settings } = app;
+  document.documentElement.dataset.obcTheme = settings.palette;
+  const style = getComputedStyle(document.documentElement);
+  app.colors = Object.fromEntries(
+    COLORS.split(' ').map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),
+  );
+  const words = {
+    orientation: settings.orientation,
+    vectors: `Vectors ${settings.vectors}`,
+    vectorMinutes: `${settings.vectorMinutes} min`,
+    trails: `Trails ${settings.trails}`,
+    trailMinutes: `${settings.trailMinutes} min`,
+    offCentre: `Off centre ${settings.offCentre}`,
+    rings: `Rings ${settings.rings}`,
+    labels: `Numbers ${settings.labels}`,
+    palette: settings.palette,
+    sound: `Sound ${settings.sound}`,
+  };
+  for (const button of document.querySelectorAll('[data-next]')) {
+    say(button, words[/** @type {HTMLElement} */ (button).dataset.next]);
+  }
+  app.redraw();
+}
+
+/** Every button gets what it does. */
+export function listen(/** @type {import('./app.js').App} */ app) {
+  for (const button of document.querySelectorAll('[data-next]')) {
+    const name = /** @type {HTMLElement} */ (button).dataset.next;
+    button.addEventListener('click', () => app.change(name, next(app.settings, name)));
+  }
+  for (const [id, act] of Object.entries({
+    nearer: () => app.zoom(-1),
+    farther: () => app.zoom(1),
+    silence: () => app.sound.silence(seconds()),
+    mark: app.mark,
+    acquire: app.acquire,
+    cancel: app.cancel,
+    'acknowledge-all': () => app.command('acknowledge_all'),
+    'trial-off': () => app.command('trial_off'),
+  })) {
+    element(id).addEventListener('click', act);
+  }
+}
