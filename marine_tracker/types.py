@@ -61,14 +61,23 @@ class PolarPlots(NamedTuple):
     covariance: Array | None = None
 
 
+class Sector(NamedTuple):
+    """A part of a revolution: where the beam began, rad, and how far it turned clockwise, rad, more
+    than 0 and at most a whole turn."""
+
+    bearing: float
+    angle: float
+
+
 class Scan(NamedTuple):
-    """The plots of one antenna revolution and own ship's motion during it.
+    """The plots of one antenna revolution, or a part of one, and own ship's motion during it.
 
     start, end  s, the time of the revolution; equal where a recording stamps all plots alike
     plots       M plots, in any order
     own_ship    K samples that cover the revolution as well as is known
     radar       which of the tracker's radars it comes from, counted from 0
     antenna     the same K samples of the antenna; None: it is at own ship's reference point
+    sector      the part of a revolution that was swept; None: a whole one. Parts follow one another
     """
 
     start: float
@@ -77,6 +86,7 @@ class Scan(NamedTuple):
     own_ship: OwnShip
     radar: int = 0
     antenna: OwnShip | None = None
+    sector: Sector | None = None
 
     @property
     def measured_from(self) -> OwnShip:

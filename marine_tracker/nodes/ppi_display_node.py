@@ -29,6 +29,9 @@ from .convert import ConversionError
 from .declare import declare
 from .diagnostics import FAILED, OK, WARN, Tally
 from .display_commands import TrackerCommands
+from .display_danger_areas import DangerAreas
+from .display_demo import SHOW, DemoLink
+from .display_own_ship import OwnWay, ship
 
 FIX_S = 10.0  # a position that is older is not shown
 OWN_EVERY_S = 0.1  # between two positions of own ship sent to the page
@@ -44,6 +47,8 @@ class PpiDisplayNode(RunnableNode):
         (p,) = declare(self, PpiDisplayParameters)
         self._bad = Tally((*convert.CLOUD_REASONS, BAD_TARGETS, BAD_OWN, BAD_FIX), self.tell)
         self._commands = TrackerCommands(self, p.tracker)
+        self._demo = DemoLink(self)
+        self._shown: dict[str, Any] = {}  # by the demo, where there is one
         self._waiting: queue.SimpleQueue[tuple[Command, Future[str]]] = queue.SimpleQueue()
         self._wake = self.create_guard_condition(self._guarded(self._run_commands))
         self._own: deque[tuple[int, float, float]] = deque(maxlen=SAMPLES)  # ns, m, m
@@ -58,12 +63,18 @@ class PpiDisplayNode(RunnableNode):
         self.server = DisplayServer(
             p.address, self._on_command, p.remote_commands, p.token or None, p.names.split()
         )
+        self._given = p
+        self._ship: dict[str, Any] = {}
+        self._way = OwnWay()
+        self._areas = DangerAreas(self, self.server)
         for kind, topic, callback, quality in (
             (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort(1)),
             (PointCloud2, p.plots_topic, self._on_plots, topics.best_effort()),
             (PointCloud2, topics.TARGETS_CLOUD, self._on_targets, topics.latched()),
             (DiagnosticArray, topics.ALARMS, self._on_alarms, topics.latched()),
+            (DiagnosticArray, topics.ALARMS_PAST, self._on_alarms_past, topics.latched()),
+            (DiagnosticArray, topics.OWN_SHIP_STATE, self._way.hear, topics.latched()),
             (DiagnosticArray, topics.TRIAL, self._on_trial, topics.latched()),
             (DiagnosticArray, topics.DIAGNOSTICS, self._on_diagnostics, topics.reliable()),
         ):
@@ -110,6 +121,7 @@ class PpiDisplayNode(RunnableNode):
                 'heading': heading if np.isfinite(heading) else None,
                 'latitude': latitude,
                 'longitude': longitude,
+                **self._way.told(vx, vy),
             },
         )
 
@@ -180,7 +192,11 @@ class PpiDisplayNode(RunnableNode):
 
     def _on_trial(self, message: DiagnosticArray) -> None:
         self._alarmed = True
-        self.server.publish('trial', display_messages.trial(message))
+        trial = display_messages.trial(message)
+        self.server.publish('trial', {'at': time.monotonic(), **trial})
+
+    def _on_alarms_past(self, message: DiagnosticArray) -> None:
+        self.server.publish('alarms_past', {'alarms': display_messages.alarms_past(message)})
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for name, about in display_messages.health(message).items():
@@ -198,14 +214,22 @@ class PpiDisplayNode(RunnableNode):
 
     def _run_commands(self) -> None:
         while not self._waiting.empty():
-            self._commands.run(*self._waiting.get())
+            command, answer = self._waiting.get()
+            to = self._demo.choose if command.name == SHOW else self._commands.run
+            to(command, answer)
 
     # -- how it fares ----------------------------------------------------------------------------
 
     def _on_second(self) -> None:
         self._run_commands()
         self._commands.ask_limits(self._hear_limits)
+        self._demo.ask(self._hear_demo)
         self._forget()
+        self._areas.look()
+        about = ship(self._given, self)
+        if about != self._ship:
+            self._ship = about
+            self.server.publish('ship', about)
         wall = time.monotonic()
         fresh = self._bad.fresh(wall)
         values = {
@@ -239,3 +263,14 @@ class PpiDisplayNode(RunnableNode):
         if limits != self._limits:
             self._limits = limits
             self.server.publish('limits', limits)
+
+    def _hear_demo(self, shown: dict[str, Any]) -> None:
+        if shown == self._shown:
+            return
+        if shown.get('run') != self._shown.get('run'):  # what was seen so far is of another run
+            self._trails = Trails()
+            self._own.clear()
+            self._scanned.clear()
+            self.server.forget('targets', 'plots', 'trails')
+        self._shown = shown
+        self.server.publish('demo', {'demo': shown})

@@ -60,11 +60,11 @@ def read(radar: Section) -> VideoSettings | None:
         return None
     section = Section({} if value is True else value, 'radar.video', KEYS)
     return VideoSettings(
-        _whole(section, 'spokes', 64, MOST_SPOKES, 2048),
-        _whole(section, 'samples', 16, MOST_SAMPLES, 1024),
+        section.whole('spokes', 64, MOST_SPOKES, 2048),
+        section.whole('samples', 16, MOST_SAMPLES, 1024),
         _one_of(section, 'bits', (4, 8, 16), 8),
         section.number('sea_state', 0.0, 8.0, 0.0),
-        _whole(section, 'interference', 0, 20, 0),
+        section.whole('interference', 0, 20, 0),
         1e3 * section.number('power_kw', 0.01, 100.0, 25.0),
         _one_of(section, 'swerling', (1, 3), 1),
         tuple(
@@ -72,13 +72,6 @@ def read(radar: Section) -> VideoSettings | None:
             for k, item in enumerate(section.items('rain'))
         ),
     )
-
-
-def _whole(section: Section, key: str, low: int, high: int, default: int) -> int:
-    value = section.number(key, low, high, default)
-    if value != int(value):
-        raise ValueError(f'{section.place(key)} is {value:g}; it must be a whole number')
-    return int(value)
 
 
 def _one_of(section: Section, key: str, choices: tuple[int, ...], default: int) -> int:

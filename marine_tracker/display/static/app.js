@@ -20,6 +20,7 @@
  * @property {(x: number, y: number) => void} selectAt  what lies at a pixel; the cursor goes there
  * @property {() => void} acquire                      at the cursor
  * @property {() => void} cancel                       the chosen target
+ * @property {() => void} silence                      what sounds, for 30 s
  * @property {() => void} mark                         bearing line and range marker at the cursor
  */
 

@@ -1,6 +1,5 @@
 // The keyboard: all that a mouse does, and the arrows for the cursor.
 
-import { seconds } from './app.js';
 import { toMap, toScreen } from './geometry.js';
 import { next } from './settings.js';
 
@@ -20,6 +19,9 @@ const SETTINGS = {
   c: 'offCentre',
   r: 'rings',
   p: 'palette',
+  d: 'areas',
+  w: 'safeCourses',
+  u: 'ellipses',
 };
 
 /** Whether a key is meant for a field that somebody types in. */
@@ -35,7 +37,7 @@ export function listen(/** @type {import('./app.js').App} */ app) {
     '=': () => app.zoom(-1),
     '-': () => app.zoom(1),
     n: () => chooseNext(app),
-    s: () => app.sound.silence(seconds()),
+    s: app.silence,
     e: app.mark,
     q: app.acquire,
     a: () => {

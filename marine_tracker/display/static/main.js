@@ -1,8 +1,11 @@
 // The page: puts link, state, picture, panel and controls together.
 
+import { showAlerts } from './alerts.js';
 import { alive } from './alive.js';
 import { seconds } from './app.js';
 import * as controls from './controls.js';
+import { dangersSay, keepWatch } from './dangers.js';
+import * as demo from './demo.js';
 import * as forms from './forms.js';
 import { rangeBearing, toMap, toScreen } from './geometry.js';
 import * as keys from './keys.js';
@@ -16,6 +19,7 @@ import { Sound } from './sound.js';
 import { CHOICES, RANGES, keep, load } from './settings.js';
 import { emptyState, receive, reconnected } from './state.js';
 import { makeHeads, showTargets } from './table.js';
+import { showTrial } from './trial.js';
 
 const PANEL_MS = 200;
 const ALIVE_MS = 100;
@@ -97,6 +101,11 @@ const app = {
     const target = app.chosen();
     if (target?.number) app.command('cancel', { number: target.number });
   },
+  /** For all viewers, by whoever may command; else on this device. */
+  silence() {
+    if (state.role.commands) app.command('silence');
+    else app.sound.silence(seconds());
+  },
   /** A bearing line with a range marker at the cursor; after two of them, none. */
   mark() {
     const place = marks.cursor ?? (app.pointer && toMap(app.scopeNow().view, ...app.pointer));
@@ -116,7 +125,8 @@ function frame() {
   const pen = surface.ready();
   const scope = app.scopeNow();
   draw(pen, state, settings, scope, app.colors, marks, seconds());
-  panel.showCorners(state, settings, scope, marks, app.pointer);
+  const more = dangersSay(state, settings, seconds());
+  panel.showCorners(state, settings, scope, marks, app.pointer, more);
   if (now - panelShown > PANEL_MS) {
     panelShown = now;
     showPanel();
@@ -126,22 +136,28 @@ function frame() {
 function showPanel() {
   const mayCommand = state.role.commands;
   panel.showOwnShip(state);
-  panel.showAlarms(state, mayCommand, (number) => app.command('acknowledge', { number }));
+  showAlerts(app);
   panel.showSelected(app.chosen());
   showTargets(state.targets, sorted, marks.id, app.choose);
   panel.showState(state);
+  showTrial(state, seconds());
+  demo.showDemo(state);
   for (const id of ['acknowledge-all', 'acquire', 'cancel', 'trial-off']) {
     /** @type {HTMLButtonElement} */ (panel.element(id)).disabled = !mayCommand;
   }
   for (const button of document.querySelectorAll('form .submit')) button.disabled = !mayCommand;
 }
 
-const showAlive = () => alive(app, surface, seconds());
+const showAlive = () => {
+  alive(app, surface, seconds());
+  keepWatch(settings, link);
+};
 
 controls.listen(app);
 keys.listen(app);
 pointer.listen(app);
 forms.listen(app);
+demo.listen(app);
 makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;

@@ -20,6 +20,9 @@ export const CHOICES = {
   labels: ['on', 'off'],
   rings: ['on', 'off'],
   offCentre: ['off', 'on'],
+  areas: ['off', 'on'],
+  safeCourses: ['off', 'on'],
+  ellipses: ['selected', 'all', 'off'],
   palette: ['day', 'dusk', 'night'],
   sound: ['off', 'on'],
 };
@@ -36,6 +39,9 @@ const KEY = 'marine_tracker ppi';
  * @property {string} labels
  * @property {string} rings
  * @property {string} offCentre
+ * @property {string} areas        predicted areas of danger
+ * @property {string} safeCourses  the ring of safe courses
+ * @property {string} ellipses     of uncertainty
  * @property {string} palette
  * @property {string} sound
  */
@@ -53,6 +59,9 @@ export function load(/** @type {string} */ search) {
     labels: 'on',
     rings: 'on',
     offCentre: 'off',
+    areas: 'off',
+    safeCourses: 'off',
+    ellipses: 'selected',
     palette: 'day',
     sound: 'off',
   };

@@ -1,9 +1,14 @@
 """Pictures of the experiment `video`: what was measured, with the curves of theory."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
+from ...types import Array
 
-def false_alarms(canvas, found) -> None:
+
+def false_alarms(canvas: Any, found: Sequence[Any]) -> None:
     """Measured over asked for, by octave of range, one panel a rate."""
     rates = sorted({one.rate for one in found}, reverse=True)
     axes = canvas.subplots(1, len(rates), sharey=True)
@@ -20,7 +25,14 @@ def false_alarms(canvas, found) -> None:
     np.atleast_1d(axes)[0].legend(fontsize=7)
 
 
-def detection(canvas, rates, snr, curves, fine, theory) -> None:
+def detection(
+    canvas: Any,
+    rates: Sequence[float],
+    snr: Array,
+    curves: Sequence[Array],
+    fine: Array,
+    theory: Sequence[Array],
+) -> None:
     """Share of detected Swerling 1 targets over SNR."""
     axis = canvas.subplots()
     for rate, curve, line, colour in zip(rates, curves, theory, ('C0', 'C1', 'C2')):
@@ -32,13 +44,19 @@ def detection(canvas, rates, snr, curves, fine, theory) -> None:
     axis.legend(fontsize=8)
 
 
-def accuracy(canvas, snr, range_, bearing, bounds) -> None:
+def accuracy(
+    canvas: Any,
+    snr: Sequence[float],
+    range_: Sequence[float],
+    bearing: Sequence[float],
+    bounds: Sequence[tuple[float, float]],
+) -> None:
     """Errors of points over SNR with the bound."""
-    bounds = np.array(bounds)
+    limits = np.array(bounds)
     for axis, error, bound, name in zip(
         canvas.subplots(1, 2),
         (range_, np.degrees(bearing)),
-        (bounds[:, 0], np.degrees(bounds[:, 1])),
+        (limits[:, 0], np.degrees(limits[:, 1])),
         ('range, m', 'bearing, deg'),
     ):
         axis.plot(snr, bound, label='Cramer-Rao bound')
