@@ -10,8 +10,8 @@ from scipy.special import i0e, i1e
 from ...geometry import unit_vector, wrap_angle
 from ...parameters import VideoParameters
 from ...simulation import picture
-from ...types import Array, FloatArray, OwnShip, Spokes, append
-from ...video.extraction import Extraction
+from ...types import Array, FloatArray, OwnShip, PolarPlots, Spokes, append
+from ...video.extraction import Extraction, Memory
 
 SPOKES, SAMPLES, RANGE = 2048, 512, 6_000.0
 BEAM, PULSE = math.radians(1.6), 35.0
@@ -33,7 +33,9 @@ class Errors(NamedTuple):
     targets: int
 
 
-def plots_of(power: FloatArray, time: float, extraction: Extraction, memory, bits: int = 8):
+def plots_of(
+    power: FloatArray, time: float, extraction: Extraction, memory: Memory, bits: int = 8
+) -> tuple[Memory, PolarPlots]:
     """The plots of a revolution; what came before it is known already."""
     number = np.arange(SPOKES, dtype=np.float64)
     spokes = Spokes(
