@@ -21,6 +21,7 @@ COMMANDS = (
     'imo',
     'soak',
     'doctor',
+    'explain',
 )
 
 DESCRIPTION = """\

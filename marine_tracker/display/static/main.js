@@ -1,31 +1,44 @@
 // The page: puts link, state, picture, panel and controls together.
 
+import { actions } from './actions.js';
 import { seconds } from './app.js';
 import * as controls from './controls.js';
+import { showCorners } from './corners.js';
 import * as forms from './forms.js';
 import { rangeBearing, toMap, toScreen } from './geometry.js';
 import * as keys from './keys.js';
 import { Link } from './link.js';
 import * as panel from './panel.js';
-import { draw, scopeOf, targetAt } from './picture.js';
+import { draw, targetAt } from './picture.js';
 import * as pointer from './pointer.js';
+import { keepInSight, newHeld, scopeOf } from './scope.js';
 import { Sound } from './sound.js';
 import { CHOICES, RANGES, keep, load } from './settings.js';
+import { newTools } from './tools.js';
+import * as toolsPanel from './tools_panel.js';
+import * as zonesPanel from './zones_panel.js';
 import { emptyState, receive, reconnected, staleness, unacknowledged } from './state.js';
 
 const REDRAW_MS = 250; // at least: echoes fade, dangers flash
 const PANEL_MS = 200;
 const SAID_MS = 6000;
-const MOST_LINES = 2;
 
 const state = emptyState();
 const settings = load(location.search);
 const canvas = /** @type {HTMLCanvasElement} */ (panel.element('picture'));
 const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
 /** @type {import('./surround.js').Marks} */
-const marks = { id: null, cursor: null, lines: [], drag: null };
+const marks = {
+  id: null,
+  cursor: null,
+  drag: null,
+  tools: newTools(),
+  draft: null,
+  asked: null,
+  hidden: { heading: -Infinity, graphics: -Infinity },
+};
 const sorted = { column: 6, sign: 1, danger: true };
-let courseUp = 0; // rad, when course-up was chosen
+const held = newHeld();
 let dirty = true;
 let saidUntil = 0;
 let drawn = -Infinity;
@@ -42,7 +55,7 @@ const link = new Link(
   () => reconnected(state),
 );
 
-/** @type {import('./app.js').App} */
+/** @type {any} */
 const app = {
   state,
   settings,
@@ -51,13 +64,21 @@ const app = {
   canvas,
   pointer: null,
   colors: {},
-  scopeNow: () => scopeOf(state, settings, canvas.clientWidth, canvas.clientHeight, courseUp),
+  held,
+  asking: null,
+  scopeNow() {
+    keepInSight(held, state, settings);
+    return scopeOf(state, settings, canvas.clientWidth, canvas.clientHeight, held);
+  },
   redraw() {
     dirty = true;
   },
   change(name, value) {
-    settings[name] = value;
-    if (name === 'orientation') courseUp = state.own?.heading ?? 0;
+    app.choices({ [name]: value });
+    if (name === 'orientation') held.courseUp = state.own?.heading ?? 0;
+  },
+  choices(some) {
+    Object.assign(settings, some);
     keep(settings);
     controls.applySettings(app);
   },
@@ -65,14 +86,14 @@ const app = {
     app.change('range', Math.min(Math.max(settings.range + step, 0), RANGES.length - 1));
   },
   async command(name, values = {}) {
-    const { ok, text } = await link.send(name, values);
-    app.tell(`${ok ? '' : 'Not done: '}${text.split(';')[0]}`);
-    return ok;
+    const answer = await link.send(name, values);
+    app.tell(`${answer.ok ? '' : 'Not done: '}${answer.text.split(/[;\n]/)[0]}`);
+    return answer;
   },
-  tell(text) {
+  tell(text, ms = SAID_MS) {
     panel.say(panel.element('said'), text);
     clearTimeout(saidUntil);
-    saidUntil = setTimeout(() => panel.say(panel.element('said'), ''), SAID_MS);
+    if (ms < Infinity) saidUntil = setTimeout(() => app.tell('', Infinity), ms);
   },
   chosen: () => state.targets.find((target) => target.id === marks.id),
   choose(id) {
@@ -83,7 +104,11 @@ const app = {
   selectAt(x, y) {
     const { view } = app.scopeNow();
     marks.cursor = toMap(view, x, y);
-    app.choose(targetAt(state, view, x, y)?.id ?? null);
+    const { asking } = app;
+    if (asking) {
+      app.stopAsking();
+      asking(marks.cursor);
+    } else app.choose(targetAt(state, view, x, y)?.id ?? null);
   },
   acquire() {
     if (marks.cursor) app.command('acquire', { x: marks.cursor[0], y: marks.cursor[1] });
@@ -93,16 +118,8 @@ const app = {
     const target = app.chosen();
     if (target?.number) app.command('cancel', { number: target.number });
   },
-  /** A bearing line with a range marker at the cursor; after two of them, none. */
-  mark() {
-    const place = marks.cursor ?? (app.pointer && toMap(app.scopeNow().view, ...app.pointer));
-    if (marks.lines.length === MOST_LINES) marks.lines = [];
-    else if (place && state.own) {
-      marks.lines.push(rangeBearing(state.own.x, state.own.y, place[0], place[1]));
-    }
-    dirty = true;
-  },
 };
+Object.assign(app, actions(app));
 
 function frame() {
   requestAnimationFrame(frame);
@@ -120,7 +137,7 @@ function frame() {
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   const scope = app.scopeNow();
   draw(pen, state, settings, scope, app.colors, marks, seconds());
-  panel.showCorners(state, settings, scope, marks, app.pointer);
+  showCorners(state, settings, scope, marks, app.pointer);
   if (now - panelShown > PANEL_MS) {
     panelShown = now;
     showPanel();
@@ -134,6 +151,8 @@ function showPanel() {
   panel.showSelected(app.chosen());
   panel.showTargets(state.targets, sorted, marks.id, app.choose);
   panel.showState(state);
+  toolsPanel.show();
+  zonesPanel.show(app);
   for (const id of ['acknowledge-all', 'acquire', 'cancel', 'trial-off']) {
     /** @type {HTMLButtonElement} */ (panel.element(id)).disabled = !mayCommand;
   }
@@ -164,6 +183,8 @@ controls.listen(app);
 keys.listen(app);
 pointer.listen(app);
 forms.listen(app);
+toolsPanel.listen(app);
+zonesPanel.listen(app);
 panel.makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;

@@ -1,9 +1,7 @@
 // What stands beside the picture: own ship, alarms, the selected target, the table, the state.
 
-import { rangeBearing, toMap } from './geometry.js';
 import * as format from './format.js';
 import { COASTING, LOST, ACQUIRING, nameOf } from './state.js';
-import { RANGES } from './settings.js';
 
 const STATUS = {
   [ACQUIRING]: 'acquiring',
@@ -190,34 +188,6 @@ function newRow() {
     row.append(cell);
   });
   return row;
-}
-
-/** The words in the corners of the picture. */
-export function showCorners(state, settings, scope, marks, pointer) {
-  const [range, rings] = RANGES[settings.range];
-  const heading = state.own?.heading ?? null;
-  const missing = heading === null ? '\nHEADING MISSING' : '';
-  say(
-    element('scale'),
-    `${range} NM\n${settings.rings === 'on' ? `rings ${rings} NM` : 'no rings'}\n` +
-      `${scope.orientation}\nrelative motion${missing}`,
-  );
-  say(
-    element('modes'),
-    `vectors ${settings.vectors}, ${settings.vectorMinutes} min\n` +
-      `trails ${settings.trails}${settings.trails === 'off' ? '' : `, ${settings.trailMinutes} min`}`,
-  );
-  const lines = [];
-  const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
-  if (place && state.own) {
-    lines.push(['cursor', rangeBearing(state.own.x, state.own.y, place[0], place[1])]);
-  }
-  marks.lines.forEach((line, k) => lines.push([`EBL${k + 1}/VRM${k + 1}`, line]));
-  const told = lines.map(
-    ([name, [away, angle]]) => `${name} ${format.bearing(angle)}° ${format.miles(away)} NM`,
-  );
-  say(element('cursor'), told.join('\n'));
-  say(element('time'), state.scan ? `${format.clock(state.scan.time)} UTC` : '');
 }
 
 /** Health, limits, trial, and what this viewer may do. */

@@ -1,15 +1,8 @@
 // The radar picture on its canvas: scale, rings, echoes, targets, own ship.
 
-import {
-  NAUTICAL_MILE,
-  canvasAngle,
-  direction,
-  edge,
-  ellipse,
-  toScreen,
-  turned,
-} from './geometry.js';
+import { NAUTICAL_MILE, canvasAngle, edge, ellipse, toScreen, turned } from './geometry.js';
 import { placed } from './labels.js';
+import { bowOf, farthestSeen } from './scope.js';
 import { RANGES } from './settings.js';
 import { drawMarks, drawScale, drawTrial } from './surround.js';
 import {
@@ -23,10 +16,10 @@ import {
   serverNow,
 } from './state.js';
 import * as symbols from './symbols.js';
+import { drawTools } from './tools_draw.js';
+import { drawZones } from './zones_draw.js';
 
-const MARGIN = 40; // px, for the bearing scale
 const GLOW_S = 30; // an echo has faded after so long
-const OFF = 0.5; // of the radius: how far own ship is moved back when off-centre
 const ELLIPSE_SIGMA = 2;
 const FLASH_S = 0.5;
 
@@ -34,41 +27,8 @@ const FLASH_S = 0.5;
  * @typedef {import('./geometry.js').View} View
  * @typedef {import('./state.js').State} State
  * @typedef {import('./settings.js').Settings} Settings
- * @typedef {object} Scope
- * @property {View} view
- * @property {number} middleX  px, of the picture's circle
- * @property {number} middleY
- * @property {number} radius
- * @property {string} orientation  as it is: north-up where no heading is known
+ * @typedef {import('./scope.js').Scope} Scope
  */
-
-/**
- * How the map lies on the screen at this moment; drawing and clicking ask this.
- * @param {State} state @param {Settings} settings
- * @param {number} width px @param {number} height px @param {number} courseUp rad
- * @returns {Scope}
- */
-export function scopeOf(state, settings, width, height, courseUp) {
-  const radius = Math.max(Math.min(width, height) / 2 - MARGIN, 40);
-  const own = state.own;
-  const heading = own?.heading ?? null;
-  const orientation = heading === null ? 'north-up' : settings.orientation;
-  const up = { 'north-up': 0, 'head-up': heading ?? 0, 'course-up': courseUp }[orientation] ?? 0;
-  const view = {
-    originX: own?.x ?? 0,
-    originY: own?.y ?? 0,
-    centreX: width / 2,
-    centreY: height / 2,
-    scale: radius / (RANGES[settings.range][0] * NAUTICAL_MILE),
-    up,
-  };
-  if (settings.offCentre === 'on' && heading !== null) {
-    const [right, down] = direction(view, heading);
-    view.centreX -= OFF * radius * right;
-    view.centreY -= OFF * radius * down;
-  }
-  return { view, middleX: width / 2, middleY: height / 2, radius, orientation };
-}
 
 /** The vector of a target or own ship, m. */
 export function vectorOf(/** @type {Settings} */ settings, own, vx, vy) {
@@ -94,27 +54,33 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
   canvas.fill();
   canvas.save();
   canvas.clip();
-  if (settings.rings === 'on') drawRings(canvas, settings, scope, colors);
-  if (state.own) {
-    drawPlots(canvas, state, scope, colors, local);
-    if (settings.trails !== 'off') drawTrails(canvas, state, settings, scope, colors);
-    drawOwnShip(canvas, state, settings, scope, colors);
-    drawTargets(canvas, state, settings, scope, colors, marks.id, local);
+  const graphics = local >= marks.hidden.graphics;
+  if (graphics && settings.rings === 'on') drawRings(canvas, settings, scope, colors);
+  if (state.own) drawPlots(canvas, state, scope, colors, local);
+  if (graphics) {
+    drawZones(canvas, state, scope, colors, marks);
+    if (state.own) {
+      if (settings.trails !== 'off') drawTrails(canvas, state, settings, scope, colors);
+      drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
+      drawTargets(canvas, state, settings, scope, colors, marks.id, local);
+    }
+    drawTools(canvas, state, scope, colors, marks);
+    drawMarks(canvas, scope, colors, marks);
   }
-  drawMarks(canvas, scope, colors, marks);
   canvas.restore();
   drawScale(canvas, scope, colors);
-  if (state.trial.on) drawTrial(canvas, state, scope, colors);
+  if (graphics && state.trial.on) drawTrial(canvas, state, scope, colors);
 }
 
-function drawRings(canvas, settings, { view, radius }, colors) {
-  const [range, spacing] = RANGES[settings.range];
-  const far = settings.offCentre === 'on' ? (1 + OFF) * range : range;
+function drawRings(canvas, settings, scope, colors) {
+  const { view } = scope;
+  const spacing = RANGES[settings.range][1] * NAUTICAL_MILE;
+  const far = farthestSeen(scope);
   canvas.strokeStyle = colors.ring;
   canvas.lineWidth = 1;
-  for (let ring = 1; ring * spacing <= far + 1e-9; ring++) {
+  for (let ring = 1; ring * spacing <= far * (1 + 1e-9); ring++) {
     canvas.beginPath();
-    canvas.arc(view.centreX, view.centreY, (ring * spacing * radius) / range, 0, 2 * Math.PI);
+    canvas.arc(view.centreX, view.centreY, ring * spacing * view.scale, 0, 2 * Math.PI);
     canvas.stroke();
   }
 }
@@ -123,10 +89,11 @@ function drawRings(canvas, settings, { view, radius }, colors) {
 function drawPlots(canvas, state, { view, radius, middleX, middleY }, colors, local) {
   const now = serverNow(state, local);
   canvas.fillStyle = colors.echo;
-  state.plots.forEach((scan, place) => {
-    const newest = place === state.plots.length - 1;
+  const last = new Map(state.plots.map((scan) => [scan.radar ?? 0, scan])); // of each radar
+  for (const scan of state.plots) {
+    const newest = last.get(scan.radar ?? 0) === scan;
     const fade = 1 - Math.max(now - scan.at, 0) / GLOW_S;
-    if (fade <= 0 && !newest) return;
+    if (fade <= 0 && !newest) continue;
     canvas.globalAlpha = newest ? 0.9 : 0.4 * fade ** 2;
     const size = newest ? 3.5 : 3;
     for (let k = 0; k < scan.x.length; k++) {
@@ -135,7 +102,7 @@ function drawPlots(canvas, state, { view, radius, middleX, middleY }, colors, lo
         canvas.fillRect(x - size / 2, y - size / 2, size, size);
       }
     }
-  });
+  }
   canvas.globalAlpha = 1;
 }
 
@@ -163,11 +130,11 @@ function drawTrails(canvas, state, settings, { view }, colors) {
   }
 }
 
-function drawOwnShip(canvas, state, settings, scope, colors) {
+function drawOwnShip(canvas, state, settings, scope, colors, headingLine) {
   const { view, middleX, middleY, radius } = scope;
   const own = state.own;
-  if (own.heading !== null) {
-    const [x, y] = edge(view, own.heading, middleX, middleY, radius);
+  if (headingLine && (scope.north || own.bow != null)) {
+    const [x, y] = edge(view, bowOf(own), middleX, middleY, radius);
     canvas.strokeStyle = colors.own;
     canvas.lineWidth = 1.4;
     canvas.beginPath();

@@ -2,6 +2,7 @@
 
 /** Range in NM, and the distance between its rings. */
 export const RANGES = [
+  [0.125, 0.025],
   [0.25, 0.05],
   [0.5, 0.1],
   [0.75, 0.25],
@@ -10,16 +11,19 @@ export const RANGES = [
   [6, 1],
   [12, 2],
   [24, 4],
+  [48, 8],
+  [96, 16],
 ];
 export const CHOICES = {
   orientation: ['north-up', 'head-up', 'course-up'],
+  motion: ['relative', 'true'],
   vectors: ['true', 'relative'],
   vectorMinutes: [1, 3, 6, 12, 30],
   trails: ['true', 'relative', 'off'],
-  trailMinutes: [1, 3, 6, 15, 30],
+  trailMinutes: [0.25, 0.5, 1, 3, 6, 15, 30],
   labels: ['on', 'off'],
   rings: ['on', 'off'],
-  offCentre: ['off', 'on'],
+  offCentre: ['off', 'ahead', 'place'],
   palette: ['day', 'dusk', 'night'],
   sound: ['off', 'on'],
 };
@@ -29,6 +33,7 @@ const KEY = 'marine_tracker ppi';
  * @typedef {object} Settings
  * @property {number} range  index of RANGES
  * @property {string} orientation
+ * @property {string} motion
  * @property {string} vectors
  * @property {number} vectorMinutes
  * @property {string} trails
@@ -36,6 +41,8 @@ const KEY = 'marine_tracker ppi';
  * @property {string} labels
  * @property {string} rings
  * @property {string} offCentre
+ * @property {number} offRight  radii from the middle to own ship, where offCentre is `place`
+ * @property {number} offDown
  * @property {string} palette
  * @property {string} sound
  */
@@ -44,8 +51,9 @@ const KEY = 'marine_tracker ppi';
 export function load(/** @type {string} */ search) {
   /** @type {Record<string, any>} */
   const settings = {
-    range: 5,
+    range: 6,
     orientation: 'north-up',
+    motion: 'relative',
     vectors: 'true',
     vectorMinutes: 6,
     trails: 'true',
@@ -53,6 +61,8 @@ export function load(/** @type {string} */ search) {
     labels: 'on',
     rings: 'on',
     offCentre: 'off',
+    offRight: 0,
+    offDown: 0,
     palette: 'day',
     sound: 'off',
   };
@@ -72,6 +82,9 @@ export function load(/** @type {string} */ search) {
   const index = RANGES.findIndex(([range]) => String(range) === asked.range);
   if (Number.isInteger(kept.range) && RANGES[kept.range]) settings.range = kept.range;
   if (index >= 0) settings.range = index;
+  for (const name of ['offRight', 'offDown']) {
+    if (Math.abs(kept[name]) <= 0.75) settings[name] = kept[name];
+  }
   return /** @type {Settings} */ (settings);
 }
 
