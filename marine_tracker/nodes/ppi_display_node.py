@@ -108,7 +108,7 @@ class PpiDisplayNode(RunnableNode):
             return
         good = np.isfinite(position).all(1)
         self.server.publish(
-            f'plots{radar}',
+            f'plots{radar or ""}',  # a kind for each radar: a newer one of another replaces none
             {
                 'at': time.monotonic(),
                 'stamp': stamp_ns * 1e-9,

@@ -1,7 +1,6 @@
 """Why there is no target at a place: the true reason comes first, in scenes made to have one."""
 
 import numpy as np
-import pytest
 
 from marine_tracker.arpa import acquisition
 from marine_tracker.arpa.explain import explain
