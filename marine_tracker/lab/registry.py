@@ -10,7 +10,9 @@ from types import ModuleType
 from . import marine_table
 from .alarms import alarms
 from .alpha_beta import alpha_beta
+from .clutter import clutter
 from .compare import compare
+from .crossings import crossings
 from .dense import dense
 from .extended import extended
 from .gwnn import gwnn, monte_carlo
@@ -34,4 +36,6 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'compare': compare,
     'dense': dense,
     'alarms': alarms,
+    'clutter': clutter,
+    'crossings': crossings,
 }

@@ -15,9 +15,8 @@ const CLOSE = 1e-13; // rad
  * @returns {[number, number]|null} deg, longitude in [-180, 180); null where there is no such place
  */
 export function placeAt(latitude, longitude, range, bearing) {
-  if (!(Math.abs(latitude) <= 90) || !Number.isFinite(longitude) || !(range <= FARTHEST)) {
-    return null;
-  }
+  const known = Number.isFinite(latitude) && Number.isFinite(longitude);
+  if (!known || Math.abs(latitude) > 90 || !(range <= FARTHEST)) return null;
   const reduced = Math.atan((1 - FLAT) * Math.tan(radians(latitude)));
   const [sinU, cosU] = [Math.sin(reduced), Math.cos(reduced)];
   const [sinA, cosA] = [Math.sin(bearing), Math.cos(bearing)];

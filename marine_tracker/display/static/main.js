@@ -1,32 +1,36 @@
 // The page: puts link, state, picture, panel and controls together.
 
 import { actions } from './actions.js';
+import { alive } from './alive.js';
 import { seconds } from './app.js';
 import * as controls from './controls.js';
 import { showCorners } from './corners.js';
 import * as forms from './forms.js';
 import { rangeBearing, toMap, toScreen } from './geometry.js';
 import * as keys from './keys.js';
+import { Surface } from './layers.js';
 import { Link } from './link.js';
 import * as panel from './panel.js';
+import { Pace } from './pace.js';
 import { draw, targetAt } from './picture.js';
 import * as pointer from './pointer.js';
 import { keepInSight, newHeld, scopeOf } from './scope.js';
 import { Sound } from './sound.js';
 import { CHOICES, RANGES, keep, load } from './settings.js';
+import { emptyState, receive, reconnected } from './state.js';
+import { makeHeads, showTargets } from './table.js';
 import { newTools } from './tools.js';
 import * as toolsPanel from './tools_panel.js';
 import * as zonesPanel from './zones_panel.js';
-import { emptyState, receive, reconnected, staleness, unacknowledged } from './state.js';
 
-const REDRAW_MS = 250; // at least: echoes fade, dangers flash
 const PANEL_MS = 200;
+const ALIVE_MS = 100;
 const SAID_MS = 6000;
 
 const state = emptyState();
 const settings = load(location.search);
 const canvas = /** @type {HTMLCanvasElement} */ (panel.element('picture'));
-const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+const surface = new Surface(canvas);
 /** @type {import('./surround.js').Marks} */
 const marks = {
   id: null,
@@ -39,20 +43,22 @@ const marks = {
 };
 const sorted = { column: 6, sign: 1, danger: true };
 const held = newHeld();
-let dirty = true;
+const pace = new Pace();
 let saidUntil = 0;
-let drawn = -Infinity;
+let frames = 0; // drawn so far
 let panelShown = -Infinity;
 
 const link = new Link(
   location.hash.slice(1),
   (message) => {
     receive(state, message, seconds());
-    if (message.kind === 'alarms') showTitle();
+    // In a hidden tab timers hardly run: alarms go on by what comes each second.
+    if (message.kind === 'alarms' || message.kind === 'pulse') showAlive();
     if (message.kind === 'limits') forms.fillLimits(message);
-    dirty = true;
+    pace.news();
   },
   () => reconnected(state),
+  () => state.late,
 );
 
 /** @type {any} */
@@ -70,9 +76,7 @@ const app = {
     keepInSight(held, state, settings);
     return scopeOf(state, settings, canvas.clientWidth, canvas.clientHeight, held);
   },
-  redraw() {
-    dirty = true;
-  },
+  redraw: () => pace.ask(),
   change(name, value) {
     app.choices({ [name]: value });
     if (name === 'orientation') held.courseUp = state.own?.heading ?? 0;
@@ -99,7 +103,7 @@ const app = {
   choose(id) {
     marks.id = id;
     panelShown = -Infinity;
-    dirty = true;
+    pace.ask();
   },
   selectAt(x, y) {
     const { view } = app.scopeNow();
@@ -124,17 +128,9 @@ Object.assign(app, actions(app));
 function frame() {
   requestAnimationFrame(frame);
   const now = performance.now();
-  if (!dirty && now - drawn < REDRAW_MS) return;
-  dirty = false;
-  drawn = now;
-  const ratio = window.devicePixelRatio || 1;
-  const width = Math.round(canvas.clientWidth * ratio);
-  const height = Math.round(canvas.clientHeight * ratio);
-  if (canvas.width !== width || canvas.height !== height) {
-    canvas.width = width;
-    canvas.height = height;
-  }
-  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  if (!pace.due(now)) return;
+  frames++;
+  const pen = surface.ready();
   const scope = app.scopeNow();
   draw(pen, state, settings, scope, app.colors, marks, seconds());
   showCorners(state, settings, scope, marks, app.pointer);
@@ -149,7 +145,7 @@ function showPanel() {
   panel.showOwnShip(state);
   panel.showAlarms(state, mayCommand, (number) => app.command('acknowledge', { number }));
   panel.showSelected(app.chosen());
-  panel.showTargets(state.targets, sorted, marks.id, app.choose);
+  showTargets(state.targets, sorted, marks.id, app.choose);
   panel.showState(state);
   toolsPanel.show();
   zonesPanel.show(app);
@@ -159,25 +155,7 @@ function showPanel() {
   for (const button of document.querySelectorAll('form .submit')) button.disabled = !mayCommand;
 }
 
-/** Goes on in a hidden tab: what waits for an answer stands in its title. */
-function showTitle() {
-  const count = unacknowledged(state).length;
-  document.title = count ? `(${count}) alarm${count > 1 ? 's' : ''} - PPI` : 'PPI';
-}
-
-/** By a timer, not by messages: silence shows itself. The alarms' sound goes by it, too. */
-function showStale() {
-  if (settings.sound === 'on') app.sound.update(state.alarms, seconds());
-  panel.element('silence').hidden = settings.sound !== 'on';
-  const why = staleness(state, seconds());
-  const stale = panel.element('stale');
-  stale.hidden = !why;
-  if (why) {
-    const text = stale.firstElementChild ?? stale.appendChild(document.createElement('span'));
-    panel.say(text, why);
-    document.title = 'NO LIVE DATA - PPI';
-  } else if (document.title.startsWith('NO')) showTitle();
-}
+const showAlive = () => alive(app, surface, seconds());
 
 controls.listen(app);
 keys.listen(app);
@@ -185,7 +163,7 @@ pointer.listen(app);
 forms.listen(app);
 toolsPanel.listen(app);
 zonesPanel.listen(app);
-panel.makeHeads((column) => {
+makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;
   sorted.danger = column === 6;
@@ -194,9 +172,13 @@ panel.makeHeads((column) => {
 
 new ResizeObserver(app.redraw).observe(canvas);
 controls.applySettings(app);
-showStale();
-setInterval(showStale, 500);
+showAlive();
+setInterval(showAlive, ALIVE_MS);
+canvas.addEventListener('contextlost', () => {
+  showAlive();
+  app.redraw();
+});
 requestAnimationFrame(frame);
 
 // For tests, and for whoever looks from the console.
-window.ppi = { ...app, app, toScreen, toMap, rangeBearing, CHOICES };
+window.ppi = { ...app, app, surface, frames: () => frames, toScreen, toMap, rangeBearing, CHOICES };

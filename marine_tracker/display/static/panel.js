@@ -13,18 +13,6 @@ const MOTION = ['steady', 'manoeuvring', 'at rest'];
 /** Of alerts, as they are listed. */
 const STATES = ['active unacknowledged', 'rectified unacknowledged', 'active acknowledged'];
 const CLOCK_S = 30; // a larger difference of the time of day is told
-const NEVER = 1e12; // sorts behind all numbers
-/** Columns of the table: head, what a cell shows, what it is sorted by. */
-export const COLUMNS = [
-  ['No', nameOf, (t) => t.number || NEVER + t.id],
-  ['NM', (t) => format.miles(t.range), (t) => t.range],
-  ['Brg°', (t) => format.bearing(t.bearing), (t) => t.bearing],
-  ['Crs°', (t) => format.bearing(t.course), (t) => t.course],
-  ['kn', (t) => format.knots(t.speed), (t) => t.speed],
-  ['CPA', (t) => format.miles(t.cpa), (t) => t.cpa],
-  ['TCPA', (t) => format.minutes(t.tcpa), (t) => (t.tcpa !== null && t.tcpa < 0 ? NEVER : t.tcpa)],
-];
-
 /** @param {string} id @returns {HTMLElement} */
 export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
@@ -134,60 +122,6 @@ function newAlarm(/** @type {string} */ name) {
   button.title = `Acknowledge ${name}`;
   item.append(document.createElement('obc-alert-icon'), document.createElement('span'), button);
   return item;
-}
-
-/** The heads of the table; sort(column) is called by a click. */
-export function makeHeads(sort) {
-  const row = element('targets').querySelector('thead tr');
-  COLUMNS.forEach(([head], column) => {
-    const cell = document.createElement('th');
-    const button = document.createElement('button');
-    button.textContent = head;
-    button.title = `Sort by ${head}`;
-    button.onclick = () => sort(column);
-    cell.append(button);
-    row.append(cell);
-  });
-}
-
-/** @type {Map<number, HTMLTableRowElement>} */
-const rows = new Map();
-
-/** The table, sorted; dangerous ones first where it is sorted by TCPA. */
-export function showTargets(targets, sorted, chosen, choose) {
-  const body = element('targets').querySelector('tbody');
-  const [, , key] = COLUMNS[sorted.column];
-  const order = (t) => key(t) ?? NEVER;
-  const inOrder = targets
-    .filter((t) => t.status !== LOST)
-    .sort((a, b) => (sorted.danger ? b.alarm - a.alarm : 0) || sorted.sign * (order(a) - order(b)));
-  say(element('count'), String(inOrder.length));
-  for (const [id, row] of rows)
-    if (!inOrder.some((t) => t.id === id)) rows.delete(id) && row.remove();
-  inOrder.forEach((target, place) => {
-    let row = rows.get(target.id);
-    if (!row) {
-      row = newRow();
-      rows.set(target.id, row);
-    }
-    row.className = `${target.alarm ? 'danger' : ''} ${target.id === chosen ? 'chosen' : ''}`;
-    row.onclick = () => choose(target.id);
-    COLUMNS.forEach(([, show], column) => {
-      const cell = row.children[column];
-      say(column ? cell : cell.firstChild, show(target));
-    });
-    if (body.children[place] !== row) body.insertBefore(row, body.children[place] ?? null);
-  });
-}
-
-function newRow() {
-  const row = document.createElement('tr');
-  COLUMNS.forEach((_, column) => {
-    const cell = document.createElement('td');
-    if (!column) cell.append(document.createElement('button'));
-    row.append(cell);
-  });
-  return row;
 }
 
 /** Health, limits, trial, and what this viewer may do. */

@@ -1,7 +1,9 @@
 // The radar picture on its canvas: scale, rings, echoes, targets, own ship.
 
 import { NAUTICAL_MILE, canvasAngle, edge, ellipse, toScreen, turned } from './geometry.js';
+import { echoKey, paintEchoes } from './echoes.js';
 import { placed } from './labels.js';
+import { Layer, Stamps } from './layers.js';
 import { bowOf, farthestSeen } from './scope.js';
 import { RANGES } from './settings.js';
 import { drawMarks, drawScale, drawTrial } from './surround.js';
@@ -13,15 +15,18 @@ import {
   UNACKNOWLEDGED,
   lostTargets,
   nameOf,
-  serverNow,
 } from './state.js';
 import * as symbols from './symbols.js';
 import { drawTools } from './tools_draw.js';
 import { drawZones } from './zones_draw.js';
 
-const GLOW_S = 30; // an echo has faded after so long
 const ELLIPSE_SIGMA = 2;
 const FLASH_S = 0.5;
+const around = new Layer(); // sea, rings, bearing scale
+const glow = new Layer(); // echoes
+const past = new Layer(); // trails
+const stamps = new Stamps();
+const LIKELY_STEPS = 20; // of the shade that tells how likely a danger is
 
 /**
  * @typedef {import('./geometry.js').View} View
@@ -48,19 +53,37 @@ export function vectorOf(/** @type {Settings} */ settings, own, vx, vy) {
 export function draw(canvas, state, settings, scope, colors, marks, local) {
   const { middleX, middleY, radius } = scope;
   canvas.clearRect(0, 0, canvas.canvas.width, canvas.canvas.height);
-  canvas.fillStyle = colors.sea;
+  const lies = [...Object.values(scope.view), scope.north, settings.palette];
+  const graphics = local >= marks.hidden.graphics;
+  around.onto(canvas, [...lies, settings.range, settings.rings, graphics], (pen) => {
+    pen.fillStyle = colors.sea;
+    pen.beginPath();
+    pen.arc(middleX, middleY, radius, 0, 2 * Math.PI);
+    pen.fill();
+    pen.save();
+    pen.clip();
+    if (graphics && settings.rings === 'on') drawRings(pen, settings, scope, colors);
+    pen.restore();
+    drawScale(pen, scope, colors);
+  });
+  canvas.save();
   canvas.beginPath();
   canvas.arc(middleX, middleY, radius, 0, 2 * Math.PI);
-  canvas.fill();
-  canvas.save();
   canvas.clip();
-  const graphics = local >= marks.hidden.graphics;
-  if (graphics && settings.rings === 'on') drawRings(canvas, settings, scope, colors);
-  if (state.own) drawPlots(canvas, state, scope, colors, local);
+  if (state.own) {
+    glow.onto(canvas, [...lies, ...echoKey(state, local)], (pen) =>
+      paintEchoes(pen, state, scope.view, colors.echo, local),
+    );
+  }
   if (graphics) {
     drawZones(canvas, state, scope, colors, marks);
     if (state.own) {
-      if (settings.trails !== 'off') drawTrails(canvas, state, settings, scope, colors);
+      if (settings.trails !== 'off') {
+        const shown = [settings.trails, settings.trailMinutes, state.trails?.count];
+        past.onto(canvas, [...lies, ...shown, state.scan?.at], (pen) =>
+          drawTrails(pen, state, settings, scope, colors),
+        );
+      }
       drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
       drawTargets(canvas, state, settings, scope, colors, marks.id, local);
     }
@@ -68,7 +91,6 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
     drawMarks(canvas, scope, colors, marks);
   }
   canvas.restore();
-  drawScale(canvas, scope, colors);
   if (graphics && state.trial.on) drawTrial(canvas, state, scope, colors);
 }
 
@@ -85,34 +107,12 @@ function drawRings(canvas, settings, scope, colors) {
   }
 }
 
-/** Echoes, each as large as its age leaves it bright. */
-function drawPlots(canvas, state, { view, radius, middleX, middleY }, colors, local) {
-  const now = serverNow(state, local);
-  canvas.fillStyle = colors.echo;
-  const last = new Map(state.plots.map((scan) => [scan.radar ?? 0, scan])); // of each radar
-  for (const scan of state.plots) {
-    const newest = last.get(scan.radar ?? 0) === scan;
-    const fade = 1 - Math.max(now - scan.at, 0) / GLOW_S;
-    if (fade <= 0 && !newest) continue;
-    canvas.globalAlpha = newest ? 0.9 : 0.4 * fade ** 2;
-    const size = newest ? 3.5 : 3;
-    for (let k = 0; k < scan.x.length; k++) {
-      const [x, y] = toScreen(view, scan.x[k], scan.y[k]);
-      if (Math.abs(x - middleX) < radius && Math.abs(y - middleY) < radius) {
-        canvas.fillRect(x - size / 2, y - size / 2, size, size);
-      }
-    }
-  }
-  canvas.globalAlpha = 1;
-}
-
 function drawTrails(canvas, state, settings, { view }, colors) {
   const trails = state.trails;
   if (!trails) return;
   const relative = settings.trails === 'relative';
   const count = Math.round((60 * settings.trailMinutes) / trails.interval);
   const step = Math.max(1, Math.round(count / 12));
-  canvas.fillStyle = colors.trail;
   const last = trails.own.length - 1;
   for (const target of state.targets) {
     const trail = trails.targets[target.id];
@@ -125,7 +125,10 @@ function drawTrails(canvas, state, settings, { view }, colors) {
         ? [state.own.x - trails.own[moment][0], state.own.y - trails.own[moment][1]]
         : [0, 0];
       const [x, y] = toScreen(view, trail[moment][0] + dx, trail[moment][1] + dy);
-      symbols.pastPosition(canvas, x, y);
+      stamps.put(canvas, `past ${colors.trail}`, x, y, 3, (pen, middleX, middleY) => {
+        pen.fillStyle = colors.trail;
+        symbols.pastPosition(pen, middleX, middleY);
+      });
     }
   }
 }
@@ -174,10 +177,7 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
     }
     if (target.alarm !== UNACKNOWLEDGED || shown) {
       if (target.status !== ACQUIRING) symbols.vector(canvas, x, y, right, down, color, danger);
-      if (danger) symbols.dangerous(canvas, x, y, color);
-      else if (target.status === ACQUIRING) symbols.acquiring(canvas, x, y, color);
-      else if (target.status === COASTING) symbols.coasting(canvas, x, y, color);
-      else symbols.tracked(canvas, x, y, color, target.danger_probability ?? 0, colors.danger);
+      drawSymbol(canvas, target, x, y, color, danger, colors);
     }
     if (target.number && (settings.labels === 'on' || danger || target.id === chosen)) {
       const text = String(target.number).padStart(2, '0');
@@ -194,9 +194,37 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
   canvas.textBaseline = 'middle';
   canvas.textAlign = 'left';
   canvas.fillStyle = colors.label;
-  for (const { label, left, middle } of placed(labels, (text) => canvas.measureText(text).width)) {
+  canvas.strokeStyle = colors.label;
+  canvas.lineWidth = 1;
+  for (const { label, left, middle, far } of placed(labels, (text) => widthOf(canvas, text))) {
     canvas.fillText(label.text, left, middle);
+    if (!far) continue;
+    canvas.beginPath();
+    canvas.moveTo(left > label.x ? left - 2 : left + widthOf(canvas, label.text) + 2, middle);
+    canvas.lineTo(label.x, label.y);
+    canvas.stroke();
   }
+}
+
+function drawSymbol(canvas, target, x, y, color, danger, colors) {
+  const likely = Math.round((target.danger_probability ?? 0) * LIKELY_STEPS);
+  const key = `${color} ${danger} ${target.status} ${likely}`;
+  stamps.put(canvas, key, x, y, 12, (pen, middleX, middleY) => {
+    if (danger) symbols.dangerous(pen, middleX, middleY, color);
+    else if (target.status === ACQUIRING) symbols.acquiring(pen, middleX, middleY, color);
+    else if (target.status === COASTING) symbols.coasting(pen, middleX, middleY, color);
+    else symbols.tracked(pen, middleX, middleY, color, likely / LIKELY_STEPS, colors.danger);
+  });
+}
+
+/** @type {Map<string, number>} */
+const widths = new Map();
+
+/** The width of a label, px: measured once, there are few different ones. */
+function widthOf(canvas, /** @type {string} */ text) {
+  const known = widths.get(text) ?? canvas.measureText(text).width;
+  if (widths.size < 5000) widths.set(text, known);
+  return known;
 }
 
 /** A dangerous target beyond the edge: a triangle on its bearing. */

@@ -5,7 +5,7 @@
 
 export const SILENT_S = 3; // without fresh data for so long: the red cross
 const GLOW_SCANS = 12; // of plots that are kept for the afterglow
-const WINDOW = 60; // messages by which the clocks are compared
+const DRIFT = 1e-4; // of two steady clocks against each other, at most
 
 export const ACQUIRING = 0;
 export const COASTING = 2;
@@ -30,7 +30,8 @@ export const UNACKNOWLEDGED = 2;
  * @property {{commands: boolean, why: string}} role
  * @property {number} heard          s of this browser's clock; -Infinity before the first message
  * @property {number} clockError     s, how far this browser's time of day is ahead of the server's
- * @property {number[]} differences  s, of the server's clock to this browser's, of late
+ * @property {number} offset         s, the server's steady clock less this browser's
+ * @property {number} late           s that the last message was longer on its way than the quickest
  */
 
 /** @returns {State} */
@@ -48,7 +49,8 @@ export function emptyState() {
     zones: { zones: [], error: '' },
     role: { commands: false, why: '' },
     heard: -Infinity,
-    differences: [],
+    offset: -Infinity,
+    late: 0,
     clockError: 0,
   };
 }
@@ -58,9 +60,13 @@ export function emptyState() {
  * @param {State} state @param {Message} message @param {number} local s of this browser's clock
  */
 export function receive(state, message, local) {
+  // The message that was least on its way tells the server's time best. However long others wait
+  // in a slow network after it: their age is not forgotten.
+  const difference = message.now - local;
+  const held = state.offset - DRIFT * Math.max(local - state.heard, 0);
+  state.offset = Math.max(Number.isFinite(held) ? held : difference, difference);
+  state.late = state.offset - difference;
   state.heard = local;
-  state.differences.push(message.now - local);
-  if (state.differences.length > WINDOW) state.differences.shift();
   switch (message.kind.replace(/\d+$/, '')) {
     case 'targets':
       state.targets = rows(message.columns);
@@ -106,15 +112,16 @@ function takePlots(/** @type {State} */ state, /** @type {Message} */ message) {
 
 /** After a new connection the clocks are compared anew: it may be another server. */
 export function reconnected(/** @type {State} */ state) {
-  state.differences = [];
+  state.offset = -Infinity;
+  state.late = 0;
 }
 
 /**
- * The server's time now, s. The message that was least on its way tells it best.
+ * The server's time now, s.
  * @param {State} state @param {number} local s
  */
 export function serverNow(state, local) {
-  return local + Math.max(...state.differences);
+  return local + state.offset;
 }
 
 /**
@@ -125,6 +132,7 @@ export function staleness(state, local) {
   if (!Number.isFinite(state.heard)) return 'No connection yet';
   const silent = local - state.heard;
   if (silent >= SILENT_S) return `No connection for ${Math.floor(silent)} s`;
+  if (state.late >= SILENT_S) return `The network is ${Math.floor(state.late)} s late`;
   const now = serverNow(state, local);
   if (!state.own) return 'No own ship yet';
   const ownAge = now - state.own.at;
