@@ -64,6 +64,7 @@ setup(
         'console_scripts': [
             'marine_tracker = marine_tracker.cli:main',
             'nmea_output = marine_tracker.nodes.run:nmea_output',
+            'plot_extractor = marine_tracker.nodes.run:plot_extractor',
             'ppi_display = marine_tracker.nodes.run:ppi_display',
             'radar_simulator = marine_tracker.nodes.run:radar_simulator',
             'recording_player = marine_tracker.nodes.run:recording_player',

@@ -188,6 +188,7 @@ def test_executables_stand_where_ros2_run_looks(installed, distribution):
     names = {
         'marine_tracker',
         'nmea_output',
+        'plot_extractor',
         'ppi_display',
         'radar_simulator',
         'recording_player',

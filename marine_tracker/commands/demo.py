@@ -6,6 +6,7 @@ Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
 """
 
 import contextlib
+import dataclasses
 import os
 import signal
 import sys
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from ..estimators import ESTIMATORS
+from ..evaluation import video_source
 from ..parameters import (
     EXTENTS,
     RadarSimulatorParameters,
@@ -24,7 +26,8 @@ from ..parameters import (
     from_mapping,
 )
 from ..processes import closing, end_in_time
-from . import demo_page
+from ..recording import csv_folder, spokes_file
+from . import demo_page, tracker_options
 from .node_processes import Child, children_of
 
 HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
@@ -47,7 +50,7 @@ STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
 DANGEROUS = 'bold red'
 MOST_ALARMS = 8  # listed below the table on a terminal; others are only counted
 PLAIN_EVERY_S = 2.0  # s between two tables if there is no terminal
-PPI = 'ppi_display'
+PPI, EXTRACTOR = 'ppi_display', 'plot_extractor'
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -59,7 +62,12 @@ def add_arguments(parser: ArgumentParser) -> None:
         metavar='NAME',
         help='a shipped scenario or a scenario file (default: %(default)s)',
     )
-    source.add_argument('--recording', metavar='FOLDER', help='a recorded folder instead')
+    source.add_argument(
+        '--recording',
+        metavar='FOLDER',
+        help='a recorded folder instead, or a file of spokes (.npz)',
+    )
+    tracker_options.add_video_arguments(parser, heading=False)
     parser.add_argument(
         '--rate',
         type=float,
@@ -103,6 +111,7 @@ def run(args: Namespace) -> int:
 
 def _demo(args, stop: threading.Event) -> int:
     source, source_parameters, tracker_parameters = _parameters(args)
+    extraction = _extraction(args)
     try:
         from ..nodes import domain
         from ..nodes.targets_listener import TargetsListener
@@ -121,6 +130,8 @@ def _demo(args, stop: threading.Event) -> int:
         domain.set_local(os.environ, number)
         last = context.enter_context(contextlib.ExitStack())
         nodes = {'tracker': tracker_parameters, source: source_parameters}
+        if extraction is not None:
+            nodes[EXTRACTOR] = extraction
         if demo_page.wanted(args.no_display):
             nodes[PPI] = {
                 'address': f'127.0.0.1:{demo_page.free_port()}',
@@ -137,12 +148,10 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
     """The source node's name and parameters, and the tracker's. ValueError if one is wrong."""
     source: str
     if args.recording:
-        from ..recording import csv_folder
-
         source = 'recording_player'
         given = {'folder': os.path.abspath(args.recording), 'rate': args.rate}
         from_mapping(RecordingPlayerParameters, given)
-        for_tracker = dict(csv_folder.read(args.recording).tracker_parameters)
+        for_tracker = _recorded_parameters(args)
     else:
         from ..simulation import scenario
 
@@ -164,6 +173,22 @@ def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
     if args.rate != 1:
         for_tracker['use_sim_time'] = True
     return source, given, for_tracker
+
+
+def _recorded_parameters(args) -> dict[str, Any]:
+    """The tracker's parameters for a recording."""
+    if spokes_file.is_spokes_file(args.recording):
+        video = spokes_file.read(args.recording)
+        return video_source.tracker_parameters(tracker_options.video(args).parameters, video.sweep)
+    return dict(csv_folder.read(args.recording).tracker_parameters)
+
+
+def _extraction(args) -> dict[str, Any] | None:
+    """The parameters of the plot extractor; None where plots come without it."""
+    if not (args.recording and spokes_file.is_spokes_file(args.recording)):
+        return None
+    values = dataclasses.asdict(tracker_options.video(args).parameters)
+    return {**values, **({'use_sim_time': True} if args.rate != 1 else {})}
 
 
 def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:

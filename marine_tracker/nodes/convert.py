@@ -5,21 +5,21 @@ matrix goes out as garbage. So: plain `float`s, `array.array` for sequences, fla
 Times cross this border as integer nanoseconds, for a float of seconds since 1970 is 0.2 us coarse.
 """
 
-import array
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import Odometry
 from numpy.typing import NDArray
-from sensor_msgs.msg import NavSatFix, NavSatStatus, PointCloud2, PointField
+from sensor_msgs.msg import NavSatFix, NavSatStatus, PointCloud2
 from std_msgs.msg import Header
 
 from ..geometry import AT_REST, bearing_from_yaw, heading_from, own_ship_at, unit_vector
 from ..types import Array, IntArray, PolarPlots, Scan
+from . import cloud_layout
+from .cloud_layout import FLOATS, Wanted
 from .faults import (
     BAD_LAYOUT,
     BAD_STAMP,
@@ -34,8 +34,7 @@ from .topics import FRAME, OWN_SHIP_FRAME
 PLOT_FIELDS = ('x', 'y', 'z', 'range', 'bearing', 'amplitude', 'time_offset')
 NEEDED = ('range', 'bearing', 'amplitude', 'time_offset')
 RADIAL_SPEED = 'radial_speed'  # of a radar with Doppler
-FLOATS = {PointField.FLOAT32: 'f4', PointField.FLOAT64: 'f8'}
-KINDS = {**FLOATS, PointField.UINT8: 'u1', PointField.UINT32: 'u4'}
+COVARIANCE = ('xx', 'xy', 'yy')  # m^2, where each plot tells its own
 
 TRACK_TYPE = np.dtype(
     [('id', '<u4'), ('number', '<u4'), ('status', '<u4'), ('time_offset', '<f4')]
@@ -88,23 +87,7 @@ def header(time_ns: int, frame: str = FRAME) -> Header:
 
 def cloud_message(rows: NDArray[np.void], time_ns: int) -> PointCloud2:
     """A PointCloud2 of a structured array [M] of little-endian fields."""
-    kinds = {kind: datatype for datatype, kind in KINDS.items()}
-    layout: Any = rows.dtype
-    fields = []
-    for name in layout.names:
-        kind, offset = layout.fields[name]
-        fields.append(PointField(name=name, offset=offset, datatype=kinds[kind.str[1:]], count=1))
-    return PointCloud2(
-        header=header(time_ns),
-        height=1,
-        width=len(rows),
-        fields=fields,
-        is_bigendian=False,
-        point_step=rows.dtype.itemsize,
-        row_step=rows.nbytes,
-        is_dense=True,
-        data=array.array('B', rows.tobytes()),
-    )
+    return cloud_layout.message(rows, header(time_ns))
 
 
 def plots_positions(scan: Scan) -> Array:
@@ -116,16 +99,24 @@ def plots_positions(scan: Scan) -> Array:
 def plots_to_cloud(scan: Scan, start_ns: int) -> PointCloud2:
     """One antenna revolution; the stamp is its start.
 
-    A field radial_speed is there where the radar tells it.
+    A field radial_speed is there where the radar tells it, and xx, xy, yy where plots have a
+    covariance of their own.
     """
     plots, position = scan.plots, plots_positions(scan)
-    names = PLOT_FIELDS if plots.radial_speed is None else (*PLOT_FIELDS, RADIAL_SPEED)
+    names: tuple[str, ...] = PLOT_FIELDS
+    if plots.radial_speed is not None:
+        names += (RADIAL_SPEED,)
+    if plots.covariance is not None:
+        names += COVARIANCE
     rows = np.zeros(len(plots.time), [(name, '<f4') for name in names])
     rows['x'], rows['y'] = position.T
     rows['range'], rows['bearing'], rows['amplitude'] = plots.range, plots.bearing, plots.amplitude
     rows['time_offset'] = plots.time - scan.start
     if plots.radial_speed is not None:
         rows[RADIAL_SPEED] = plots.radial_speed
+    if plots.covariance is not None:
+        for name, (i, j) in zip(COVARIANCE, ((0, 0), (0, 1), (1, 1))):
+            rows[name] = plots.covariance[:, i, j]
     return cloud_message(rows, start_ns)
 
 
@@ -134,7 +125,7 @@ def cloud_to_plots(message: PointCloud2) -> PolarPlots:
 
     Takes any order of fields, float32 or float64, either byte order, organised clouds, padding
     and fields beyond those needed (range, bearing, amplitude, time_offset); of those, radial_speed
-    is read. ConversionError else.
+    and the covariance xx, xy, yy are read. ConversionError else.
     """
     count = message.width * message.height
     if count == 0:
@@ -142,51 +133,21 @@ def cloud_to_plots(message: PointCloud2) -> PolarPlots:
             raise ConversionError(BAD_LAYOUT, f'no points, but {len(message.data)} bytes')
         none = np.empty(0)
         return PolarPlots(none, none, none, none)
-    fields = {field.name: field for field in message.fields}
-    if len(fields) < len(message.fields):
-        raise ConversionError(BAD_LAYOUT, 'a field name stands twice')
-    order = '>' if message.is_bigendian else '<'
-    kinds, offsets = [], []
-    names = (*NEEDED, RADIAL_SPEED) if RADIAL_SPEED in fields else NEEDED
-    for name in names:
-        if name not in fields:
-            raise ConversionError(MISSING_FIELD, name)
-        field = fields[name]
-        if field.datatype not in FLOATS or field.count > 1:
-            raise ConversionError(
-                MISTYPED_FIELD,
-                f'{name} has datatype {field.datatype}, count '
-                f'{field.count}; it must be one FLOAT32 or FLOAT64',
-            )
-        kind = np.dtype(order + FLOATS[field.datatype])
-        if field.offset + kind.itemsize > message.point_step:
-            raise ConversionError(
-                BAD_LAYOUT,
-                f'{name} ends at byte {field.offset + kind.itemsize}'
-                f' of a point of {message.point_step}',
-            )
-        kinds.append(kind)
-        offsets.append(field.offset)
-    used = message.width * message.point_step
-    if message.row_step < used:
-        raise ConversionError(
-            BAD_LAYOUT,
-            f'row_step is {message.row_step}; {message.width} points '
-            f'of {message.point_step} bytes need {used}',
-        )
-    whole = message.row_step * message.height
-    if len(message.data) < whole:
-        raise ConversionError(TRUNCATED, f'{len(message.data)} bytes of {whole}')
-    if len(message.data) > whole:
-        raise ConversionError(BAD_LAYOUT, f'{len(message.data)} bytes; {whole} announced')
-    raw = np.frombuffer(message.data, np.uint8).reshape(message.height, message.row_step)[:, :used]
-    point = np.dtype(
-        {'names': list(names), 'formats': kinds, 'offsets': offsets, 'itemsize': message.point_step}
+    optional = (RADIAL_SPEED, *COVARIANCE)
+    rows = cloud_layout.rows(
+        message,
+        [Wanted(name, FLOATS) for name in NEEDED]
+        + [Wanted(name, FLOATS, needed=False) for name in optional],
     )
-    rows = np.ascontiguousarray(raw).reshape(-1).view(point)
+    there = rows.dtype.names or ()
     with np.errstate(invalid='ignore'):  # signalling NaNs from a torn buffer
-        range_, bearing, amplitude, offset, *speed = (rows[name].astype(float) for name in names)
-    return PolarPlots(offset, range_, bearing, amplitude, *speed)
+        range_, bearing, amplitude, offset = (rows[name].astype(float) for name in NEEDED)
+        speed = rows[RADIAL_SPEED].astype(float) if RADIAL_SPEED in there else None
+        covariance = None
+        if set(COVARIANCE) <= set(there):
+            xx, xy, yy = (rows[name].astype(float) for name in COVARIANCE)
+            covariance = np.stack([xx, xy, xy, yy], -1).reshape(-1, 2, 2)
+    return PolarPlots(offset, range_, bearing, amplitude, speed, covariance)
 
 
 def own_ship_to_odometry(

@@ -24,7 +24,7 @@ from ..arpa.acquisition import Acquisition
 from ..arpa.alerts import NORMAL, Alerts
 from ..arpa.arpa import Arpa, Picture
 from ..arpa.targets import EVENTS, NO_ROOM, NOTHING_THERE, Events
-from ..service import Output, Service
+from ..service import Output, Service, Tracking
 from ..types import Array, Scan, append, take
 from . import diagnostics, topics
 from .arpa_messages import alarms_message, trial_message
@@ -58,6 +58,7 @@ class Operator:
         self.refused = Tally((REFUSED,), node.tell)
         # Of the wall, s: when each was last heard, and between the last plots of each radar.
         self._heard_plots = [time.monotonic()] * len(self.arpa.radars)
+        self._revolved = list(self._heard_plots)
         self._spacing = [
             deque([radar.parameters.scan_period_s], maxlen=9) for radar in self.arpa.radars
         ]
@@ -93,17 +94,22 @@ class Operator:
         self.memory = service.adopt(self.memory, self.service)
         self.service = service
 
-    def step(self, scan: Scan, end_ns: int, fallback: str) -> Output:
-        """One scan, which ends at the stamp end_ns; fallback: of own ship's place in it.
+    def step(self, scan: Scan, end_ns: int, fallback: str) -> tuple[Tracking | None, Output | None]:
+        """One scan or sector, which ends at the stamp end_ns, as Service.take; fallback: of own
+        ship's place in it.
 
-        The alarms that changed are published, and the trial manoeuvre while it is on.
+        Once a revolution the alarms that changed are published, and the trial manoeuvre while it is
+        on.
         """
         wall = time.monotonic()
-        if self._scanned[scan.radar]:
-            self._spacing[scan.radar].append(wall - self._heard_plots[scan.radar])
-        self._heard_plots[scan.radar], self._scanned[scan.radar] = wall, True
         heading, sensors = self.sensors.told(self.arpa.parameters, self.arpa.radars, fallback)
-        self.memory, output = self.service.step(self.memory, scan, heading, sensors)
+        self.memory, done, output = self.service.take(self.memory, scan, heading, sensors)
+        self._heard_plots[scan.radar] = wall
+        if output is None:
+            return done, None
+        if self._scanned[scan.radar]:
+            self._spacing[scan.radar].append(wall - self._revolved[scan.radar])
+        self._revolved[scan.radar], self._scanned[scan.radar] = wall, True
         if scan.end >= self._end or self.picture is None:  # of a slow radar they come later
             self._end, self._end_ns = scan.end, end_ns
         self.picture = output.picture
@@ -116,7 +122,7 @@ class Operator:
                     self.arpa, self.picture, scan.end - self._trial_since, end_ns, self._hardware_id
                 )
             )
-        return output
+        return done, output
 
     def watch(self, speed_off: float) -> None:
         """To be called every second: are heading, position and plots still heard?

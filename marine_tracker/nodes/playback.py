@@ -25,11 +25,12 @@ from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
 
 from ..geodesy import LocalFrame
 from ..service import heading_of
-from ..types import OwnShip, Scan, Truth, take
+from ..types import OwnShip, Scan, Sweep, Truth, take
 from . import convert, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
 from .readable_plots import plots_to_readable
+from .spokes import sweep_to_cloud
 
 FIRST_S = 1.0  # s, where simulated time begins
 TICK_S = 0.05  # longest wait between two looks at the time
@@ -42,11 +43,16 @@ OWN_SHIP_PER_S = 25.0  # samples in a second of the wall
 
 
 class Revolution(NamedTuple):
-    """scan and truth, and the own-ship samples that become known up to its end."""
+    """A revolution or a sector of one: scan, truth, and own-ship samples that become known up to
+    its end.
+
+    sweep  of a radar that gives video: spokes instead of the scan's plots, any number of them
+    """
 
     scan: Scan
     truth: Truth
     own_ship: OwnShip
+    sweep: Sweep | None = None
 
 
 def own_ship_period(rate: float) -> float:
@@ -87,10 +93,15 @@ class Playback:
         if self._next is None:
             raise ValueError('there is no revolution to play')
         first = self._next
-        self._first = min(float(first.own_ship.time[0]), first.scan.start)
+        self._first = min([*first.own_ship.time[:1].tolist(), first.scan.start])
         self._sample = 0  # of the next revolution's own-ship samples
         reliable = topics.reliable
-        self._plots = node.publisher(PointCloud2, topics.PLOTS, reliable())
+        video = first.sweep is not None
+        self._plots = node.publisher(
+            PointCloud2,
+            topics.SPOKES if video else topics.PLOTS,
+            topics.best_effort(topics.SPOKES_DEPTH) if video else reliable(topics.SECTORS),
+        )
         self._readable = node.publisher(PointCloud, topics.PLOTS_READABLE, reliable())
         self._odometry = node.publisher(Odometry, topics.ODOMETRY, reliable())
         self._truth = node.publisher(Odometry, topics.TRUTH, reliable(topics.BURST))
@@ -208,8 +219,11 @@ class Playback:
             return
         scan, truth = revolution.scan, revolution.truth
         start_ns = self._stamp(scan.start)
-        self._plots.publish(convert.plots_to_cloud(scan, start_ns))
-        if self._readable.get_subscription_count():
+        if revolution.sweep is not None:
+            self._plots.publish(sweep_to_cloud(revolution.sweep, scan.start, start_ns))
+        else:
+            self._plots.publish(convert.plots_to_cloud(scan, start_ns))
+        if revolution.sweep is None and self._readable.get_subscription_count():
             self._readable.publish(plots_to_readable(scan, start_ns))
         if self._truth.get_subscription_count():
             exact = np.zeros((len(truth.time), 4, 4))
@@ -250,14 +264,15 @@ def _repeat(make: Callable[[], Iterator[Revolution]]) -> Iterator[Revolution]:
 
 def _moved(revolution: Revolution, shift: float) -> Revolution:
     """The same at another time, s later."""
-    scan, truth, own_ship = revolution
+    scan, truth, own_ship, sweep = revolution
     return Revolution(
-        Scan(
-            scan.start + shift,
-            scan.end + shift,
-            scan.plots._replace(time=scan.plots.time + shift),
-            scan.own_ship._replace(time=scan.own_ship.time + shift),
+        scan._replace(
+            start=scan.start + shift,
+            end=scan.end + shift,
+            plots=scan.plots._replace(time=scan.plots.time + shift),
+            own_ship=scan.own_ship._replace(time=scan.own_ship.time + shift),
         ),
         truth._replace(time=truth.time + shift),
         own_ship._replace(time=own_ship.time + shift),
+        None if sweep is None else sweep._replace(time=sweep.time + shift),
     )

@@ -9,9 +9,9 @@ from typing import NamedTuple
 from sensor_msgs.msg import PointCloud2
 
 from ..estimators import WANT_DOPPLER
-from ..tracking import intake, own_ship
+from ..tracking import intake, own_ship, rotation
 from ..tracking.radars import Radar
-from ..types import Array, Scan
+from ..types import Array, PolarPlots, Scan
 from . import convert
 from .diagnostics import OK, WARN, Tally
 from .faults import HEADER_REASONS, NO_STAMP, ConversionError, check_frame
@@ -20,6 +20,7 @@ from .topics import FRAME, OWN_SHIP_FRAME
 MISSED = 'revolutions missed'
 NO_DOPPLER = 'scans without the radial speeds that the estimator wants'
 LEADS = 15  # scans; more than ever wait in a queue
+UNKNOWN = 4.0  # revolutions; so long messages wait for the antenna's rotation to be known
 SILENT_S = 5.0  # s of the wall, and three scans, without plots: the radar is silent
 
 
@@ -62,6 +63,7 @@ class RadarInput:
         self.taken = 0
         self._plots_in_scan = 0
         self._starts: deque[float] = deque(maxlen=10)
+        self._rotation = rotation.begin()
         self._stamped_alike = False
         self._samples = 0  # of own ship, taken before the last scan
         self._leads: deque[float] = deque(maxlen=LEADS)
@@ -69,8 +71,19 @@ class RadarInput:
         self._heard: float | None = None  # wall time of the last plots
 
     @property
+    def revolution(self) -> float:
+        """s of one revolution, also where each message is a sector of it."""
+        return self._rotation.period if self._in_sectors else self.period
+
+    @property
+    def _in_sectors(self) -> bool:
+        """Whether a message is a sector."""
+        return self._rotation.known and self._rotation.sector(0.0, self.period) is not None
+
+    @property
     def period(self) -> float:
-        """s of one revolution: as measured, or by parameter until there is enough to measure."""
+        """s between messages: as measured, or by parameter until there is enough to measure. It is
+        a revolution, or a sector of it."""
         if len(self._starts) < 4:
             return self.radar.parameters.scan_period_s
         starts = list(self._starts)
@@ -119,14 +132,18 @@ class RadarInput:
             return None
         if reason == intake.REBASED:
             self._starts.clear()
+            self._rotation = rotation.begin()
         elif start - before > 1.5 * period:
             self.bad.add(MISSED, wall, round((start - before) / period) - 1)
         self._starts.append(start)
+        if not self._turns(start, plots):
+            return None
 
         # Recordings may stamp all plots of a scan alike; an antenna never does.
         if len(plots.time):
             self._stamped_alike = not plots.time.any()
-        length = 0.0 if self._stamped_alike else max(period, plots.time.max(initial=0.0))
+        alike = self._stamped_alike and not self._in_sectors
+        length = 0.0 if alike else max(period, plots.time.max(initial=0.0))
         end, shift = start + length, self.order.shift
         own_log, timeout = own_ship.confirmed(own_log, end), parameters.own_ship_timeout_s
         own_log = own_ship.reckoned(own_log, end, came.arrival, timeout, way, heading)
@@ -145,8 +162,22 @@ class RadarInput:
             plots._replace(time=plots.time + start + shift),
             own._replace(time=own.time + shift),
             self._place,
+            sector=self._rotation.sector(start, end) if self._in_sectors else None,
         )
         return scan, fallback, own_log
+
+    def _turns(self, start: float, plots: PolarPlots) -> bool:
+        """Whether it is known what part of a revolution a message is, which begins at `start` s."""
+        stated, starts = self.radar.parameters.scan_period_s, list(self._starts)
+        spacing = statistics.median([b - a for a, b in zip(starts, starts[1:])] or [stated])
+        if spacing > rotation.PART * stated:
+            self._rotation = rotation.begin()
+            return True
+        self._rotation = rotation.hear(
+            self._rotation, start, start + plots.time, plots.bearing, stated, spacing
+        )
+        waited = start - self._rotation.begun
+        return self._rotation.known or waited > UNKNOWN * stated
 
     def _lead(self, own_log: own_ship.OwnShipLog, end: float) -> float:
         """s that own ship's stamps lie ahead of the plots': behind, where she was heard since the
@@ -177,7 +208,8 @@ class RadarInput:
             {
                 'scans taken': self.taken,
                 'plots in last scan': self._plots_in_scan,
-                'period_s': f'{self.period:.3f}',
+                'period_s': f'{self.revolution:.3f}',
+                **({'sectors': round(self.revolution / self.period)} if self._in_sectors else {}),
                 **self.bad.counts,
             },
         )

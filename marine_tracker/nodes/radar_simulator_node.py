@@ -1,6 +1,7 @@
 """The radar simulator as a node: a scenario's plots, own ship and truth, in their own time.
 
-Publishes `radar/plots` and `radar/plots_readable` at the end of each antenna revolution,
+Publishes `radar/plots` and `radar/plots_readable` at the end of each antenna revolution, or of each
+sector where the scenario or the parameter `sectors` asks for several messages a revolution,
 `own_ship/odometry` (and `own_ship/fix` where the scenario has a place on earth) at 10 Hz, `truth`
 once a revolution. Rate and `/clock`: see playback.py. The node ends when the scenario has ended,
 unless it loops.
@@ -13,7 +14,7 @@ import numpy as np
 
 from ..geometry import heading_at, own_ship_at
 from ..parameters import RadarSimulatorParameters
-from ..simulation import radar, scenario
+from ..simulation import radar, scenario, sectors
 from ..types import OwnShip
 from .base_node import RunnableNode
 from .declare import declare
@@ -30,13 +31,14 @@ class RadarSimulatorNode(RunnableNode):
         chosen = scenario.load(parameters.scenario)
         for remark in chosen.fleet.remarks:
             self.get_logger().warning(remark)
-        step = own_ship_period(parameters.rate)
+        step, count = own_ship_period(parameters.rate), parameters.sectors or chosen.radar.sectors
 
         def revolutions() -> Iterator[Revolution]:
-            for scan, truth in radar.simulate(chosen, parameters.seed):
+            scans = radar.simulate(chosen, parameters.seed)
+            for scan, truth in sectors.parts(scans, count):
                 # Evenly up to the end, which is always one of them.
-                count = max(round((scan.end - scan.start) / step), 1)
-                time = np.linspace(scan.start, scan.end, count + 1)[1:]
+                samples = max(round((scan.end - scan.start) / step), 1)
+                time = np.linspace(scan.start, scan.end, samples + 1)[1:]
                 own = OwnShip(time, *own_ship_at(scan.own_ship, time))
                 own = own._replace(heading=heading_at(scan.own_ship, time))
                 yield Revolution(scan, truth, own)

@@ -1,20 +1,48 @@
-"""Plays a recorded folder as a node: its plots, own ship and truth, at their own times.
+"""Plays a recording as a node: its plots, own ship and truth, at their own times.
 
-Publishes the same as radar_simulator, from plots.csv, own_ship.csv and truth.csv. Own ship comes as
-often as it was recorded. Rate and `/clock`: see playback.py. The node ends when the recording has
-ended, unless it loops. The values of radar.yaml are for the tracker; give them as its parameters.
+A file of spokes (recording/spokes_file.py) is played as `radar/spokes`, with own ship.
+
+Of a folder it publishes the same as radar_simulator, from plots.csv, own_ship.csv and truth.csv.
+Own ship comes as often as it was recorded. Rate and `/clock`: see playback.py. The node ends when
+the recording has ended, unless it loops. The values of radar.yaml are for the tracker; give them as
+its parameters.
 """
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from ..parameters import RecordingPlayerParameters
-from ..recording import csv_folder
-from ..types import take
+from ..recording import csv_folder, spokes_file
+from ..types import OwnShip, PolarPlots, Scan, Truth, take
 from .base_node import RunnableNode
 from .declare import declare
 from .diagnostics import one_line
 from .playback import Playback, Revolution
+
+NO_PLOTS = PolarPlots(*(np.empty(0) for _ in range(4)))
+NO_TRUTH = Truth(np.empty(0), np.empty(0, np.int64), np.empty((0, 2)), np.empty((0, 2)))
+
+
+def _parts(video: spokes_file.Video) -> Iterator[Revolution]:
+    """The spokes of a recording, some at a time, with own ship's samples of that time."""
+    own_ship, before = video.own_ship, -math.inf
+    for sweep in spokes_file.sweeps(video):
+        time = sweep.time[np.isfinite(sweep.time)]
+        if not len(time):
+            continue
+        start, end = float(time[0]), float(time.max())
+        if video.own_ship.heading is None:  # at rest, with the heading that the spokes tell
+            samples = OwnShip(
+                time[-1:], np.zeros((1, 2)), np.zeros((1, 2)), sweep.heading[-1:].copy()
+            )
+        else:
+            samples = take(own_ship, (own_ship.time > before) & (own_ship.time <= end))
+        before = end
+        scan = Scan(start, end, NO_PLOTS, spokes_file.own_ship_between(own_ship, start, end))
+        yield Revolution(scan, NO_TRUTH, samples, sweep)
 
 
 class RecordingPlayerNode(RunnableNode):
@@ -25,6 +53,9 @@ class RecordingPlayerNode(RunnableNode):
         (parameters,) = declare(self, RecordingPlayerParameters)
         if not parameters.folder:
             raise ValueError('parameter folder is empty; it must name the folder of a recording')
+        if spokes_file.is_spokes_file(parameters.folder):
+            self._playback = self._of_video(parameters)
+            return
         recording = csv_folder.read(parameters.folder)
 
         def revolutions() -> Iterator[Revolution]:
@@ -41,6 +72,18 @@ class RecordingPlayerNode(RunnableNode):
                 f'{name}: {value}' for name, value in recording.tracker_parameters.items()
             )
             self.get_logger().info(f'its radar.yaml has for the tracker {one_line(named, 2_000)}')
+
+    def _of_video(self, parameters: RecordingPlayerParameters) -> Playback:
+        """Plays a file of spokes."""
+        video = spokes_file.read(parameters.folder)
+        for remark in video.remarks:
+            self.get_logger().warning(one_line(remark))
+        made = Playback(self, lambda: _parts(video), parameters.rate, parameters.loop)
+        self.get_logger().info(
+            f'recording {one_line(video.name)}, {len(video.sweep.time)} spokes, '
+            f'rate {parameters.rate:g}'
+        )
+        return made
 
     @property
     def done(self) -> bool:

@@ -29,6 +29,7 @@ from . import arguments, log_folder
 NODES = {
     'tracker': 'TrackerNode',
     'radar_simulator': 'RadarSimulatorNode',
+    'plot_extractor': 'PlotExtractorNode',
     'recording_player': 'RecordingPlayerNode',
     'nmea_output': 'NmeaOutputNode',
     'ppi_display': 'PpiDisplayNode',
@@ -116,6 +117,11 @@ def tracker() -> int:
 def radar_simulator() -> int:
     """The exit code of the radar simulator."""
     return run('radar_simulator')
+
+
+def plot_extractor() -> int:
+    """The exit code of the plot extractor."""
+    return run('plot_extractor')
 
 
 def recording_player() -> int:

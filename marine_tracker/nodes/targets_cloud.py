@@ -9,8 +9,8 @@ from sensor_msgs.msg import PointCloud2
 from ..arpa import alarms
 from ..arpa.alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED, Alerts
 from ..arpa.view import View
-from . import convert
-from .convert import BAD_LAYOUT, MISSING_FIELD, MISTYPED_FIELD, TRUNCATED, ConversionError
+from . import cloud_layout, convert
+from .faults import BAD_LAYOUT, MISSING_FIELD, MISTYPED_FIELD, TRUNCATED, ConversionError
 
 COVARIANCE = {  # of [x, y, vx, vy]: row and column of each field
     'xx': (0, 0),
@@ -94,7 +94,7 @@ def read(cloud: PointCloud2) -> np.ndarray:
         wanted = TARGET_TYPE[name].str[1:]
         if name not in fields:
             raise ConversionError(MISSING_FIELD, name)
-        found = convert.KINDS.get(fields[name].datatype)
+        found = cloud_layout.KINDS.get(fields[name].datatype)
         if found != wanted or fields[name].count > 1:
             raise ConversionError(MISTYPED_FIELD, f'{name} is {found}; it must be one {wanted}')
         if fields[name].offset + TARGET_TYPE[name].itemsize > cloud.point_step:

@@ -6,6 +6,9 @@ FRAME = 'map'  # ground-stabilised, east and north
 OWN_SHIP_FRAME = 'base_link'
 
 PLOTS = 'radar/plots'
+SPOKES = 'radar/spokes'
+SECTOR = 'radar/sector'  # marine_sensor_msgs/RadarSector
+IMAGE = 'radar/image'
 PLOTS_READABLE = 'radar/plots_readable'
 ODOMETRY = 'own_ship/odometry'
 FIX = 'own_ship/fix'
@@ -33,6 +36,8 @@ CANCEL_ALL = 'cancel_all'  # services
 ACKNOWLEDGE = 'acknowledge'
 TRIAL_MANOEUVRE = 'trial_manoeuvre'
 
+SECTORS = 64  # messages of plots that may wait: the sectors of a revolution
+SPOKES_DEPTH = 16  # messages of spokes that may wait
 BURST = 400  # messages published at once, one for each track or target
 
 

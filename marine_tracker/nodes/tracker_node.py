@@ -83,7 +83,7 @@ class TrackerNode(RunnableNode):
                 PointCloud2,
                 heard.radar.topic,
                 partial(self._on_plots, heard),
-                topics.best_available(),
+                topics.best_available(topics.SECTORS),
             )
         # The wall's second, whatever the node's clock does.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -153,15 +153,18 @@ class TrackerNode(RunnableNode):
             return
         scan, self._fallback, self._own_log = found
         end_ns = int(self._stamps(heard, scan.end))
-        output = self._operator.step(scan, end_ns, self._fallback)
-        self._to_state.publish(diagnostics.array(end_ns, [self._own_ship_status(time.monotonic())]))
-        self._output.publish(
-            self._operator.service, output, heard.period, partial(self._stamps, heard)
-        )
-        self._status_count = np.bincount(output.report.tracks.status, minlength=4)
-        self._standing = output.standing
-        self._left_out_lately = output.report.left_out
-        self._left_out += output.report.left_out
+        done, output = self._operator.step(scan, end_ns, self._fallback)
+        service, stamps = self._operator.service, partial(self._stamps, heard)
+        if done is not None:
+            self._output.publish_tracks(service, done, heard.revolution, stamps)
+        if output is not None:
+            status = self._own_ship_status(time.monotonic())
+            self._to_state.publish(diagnostics.array(end_ns, [status]))
+            self._output.publish_targets(service, output, stamps)
+            self._status_count = np.bincount(output.report.tracks.status, minlength=4)
+            self._standing = output.standing
+            self._left_out_lately = output.report.left_out
+            self._left_out += output.report.left_out
         now = self.get_clock().now().nanoseconds
         if now:  # 0: no /clock yet
             self._lateness.add((now - end_ns) * 1e-9)
@@ -183,7 +186,7 @@ class TrackerNode(RunnableNode):
     @property
     def period(self) -> float:
         """s of one revolution, of the fastest radar."""
-        return min(heard.period for heard in self.inputs)
+        return min(heard.revolution for heard in self.inputs)
 
     def _seconds(self, time_ns: int) -> float:
         """s of a stamp after the first stamp that came in."""

@@ -1,5 +1,7 @@
 """Publishes the results of each scan: tracks, extrapolations, targets, markers.
 
+Of a radar that sends sectors the tracks come as the beam sweeps them, targets once a revolution.
+
 Tracks that have no number yet are in `tracks_cloud` only. A message without listeners is not made.
 """
 
@@ -13,7 +15,7 @@ from visualization_msgs.msg import MarkerArray
 
 from ..arpa.view import view
 from ..geometry import wrap_bearing
-from ..service import Output, Service
+from ..service import Output, Service, Tracking
 from ..tracking.lifecycle import LOST
 from ..types import Extrapolation, take
 from . import convert, targets_cloud, topics
@@ -38,17 +40,22 @@ class TrackerOutput:
         self._targets = TargetsWriter(hardware_id)
         self._markers = MarkersWriter()
 
-    def publish(
-        self, service: Service, output: Output, period: float, stamps: Callable[..., np.ndarray]
+    def publish_tracks(
+        self, service: Service, done: Tracking, period: float, stamps: Callable[..., np.ndarray]
     ) -> None:
-        """Publishes the results of one scan.
+        """Publishes the tracks that a scan or sector has swept.
 
         period  s, of the radar's revolution
         stamps  ns, on the radar's clock, of the tracker's times [N] s
         """
         if self._to_cloud.get_subscription_count():  # one message, so first
-            self._to_cloud.publish(_cloud(output, int(stamps(output.scan.start))))
-        self._publish_tracks(service, output, period, stamps)
+            self._to_cloud.publish(_cloud(done, int(stamps(done.scan.start))))
+        self._publish_tracks(service, done, period, stamps)
+
+    def publish_targets(
+        self, service: Service, output: Output, stamps: Callable[..., np.ndarray]
+    ) -> None:
+        """Publishes the targets after a revolution."""
         end_ns = int(stamps(output.scan.end))
         name = service.tracker.parameters.estimator
         arpa = service.arpa
@@ -61,16 +68,16 @@ class TrackerOutput:
                 self._markers.message(seen, output.picture, arpa.zones, arpa.parameters, end_ns)
             )
 
-    def _publish_tracks(self, service, output, period, stamps) -> None:
-        tracks = output.report.tracks
+    def _publish_tracks(self, service, done, period, stamps) -> None:
+        tracks = done.report.tracks
         alive = np.flatnonzero((tracks.number > 0) & (tracks.status != LOST))
         alive = alive[np.argsort(tracks.number[alive])]
         frames = [f'track_{n:02d}' for n in tracks.number[alive].tolist()]
         if self._to_tracks.get_subscription_count():
-            self._publish_each(self._to_tracks, stamps, frames, take(output.estimate, alive))
+            self._publish_each(self._to_tracks, stamps, frames, take(done.estimate, alive))
         if self._to_extrapolations.get_subscription_count():
             ahead = service.tracker.extrapolate(
-                take(tracks, alive), output.report.time[alive] + period
+                take(tracks, alive), done.report.time[alive] + period
             )
             self._publish_each(self._to_extrapolations, stamps, frames, ahead)
 
@@ -81,14 +88,14 @@ class TrackerOutput:
             publisher.publish(message)
 
 
-def _cloud(output: Output, start_ns: int) -> PointCloud2:
-    tracks, estimate = output.report.tracks, output.estimate
+def _cloud(done: Tracking, start_ns: int) -> PointCloud2:
+    tracks, estimate = done.report.tracks, done.estimate
     velocity = estimate.velocity
     rows = np.zeros(len(tracks.id), convert.TRACK_TYPE)
     rows['id'] = tracks.id
     rows['number'] = tracks.number
     rows['status'] = tracks.status
-    rows['time_offset'] = estimate.time - output.scan.start
+    rows['time_offset'] = estimate.time - done.scan.start
     rows['x'], rows['y'] = estimate.position.T
     rows['vx'], rows['vy'] = velocity.T
     for name, (row, column) in targets_cloud.COVARIANCE.items():

@@ -14,10 +14,12 @@ from .sources_and_outputs import (
     RecordingPlayerParameters,
 )
 from .tracker import EXTENTS, GLINT_SIGMA, VESSEL_CLASSES, TrackerParameters
+from .video import PlotExtractorParameters, VideoParameters
 
 NODES: dict[str, tuple[type, ...]] = {
     'tracker': (TrackerParameters, ArpaParameters),
     'radar_simulator': (RadarSimulatorParameters,),
+    'plot_extractor': (VideoParameters, PlotExtractorParameters),
     'recording_player': (RecordingPlayerParameters,),
     'nmea_output': (NmeaOutputParameters,),
     'ppi_display': (PpiDisplayParameters,),
@@ -30,10 +32,12 @@ __all__ = [
     'VESSEL_CLASSES',
     'ArpaParameters',
     'NmeaOutputParameters',
+    'PlotExtractorParameters',
     'PpiDisplayParameters',
     'RadarSimulatorParameters',
     'RecordingPlayerParameters',
     'TrackerParameters',
+    'VideoParameters',
     'from_mapping',
     'from_mappings',
 ]

@@ -28,6 +28,13 @@ class RadarSimulatorParameters:
         high=1e10,
     )
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
+    sectors: int = parameter(
+        0,
+        'Messages of plots a revolution: the antenna does not wait for its whole turn. 0: as the '
+        'scenario says, 1 if it says nothing.',
+        low=0,
+        high=64,
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -37,7 +44,10 @@ class RadarSimulatorParameters:
 class RecordingPlayerParameters:
     """The recording player node's parameters."""
 
-    folder: str = parameter('', 'Folder of a recording: plots.csv, own_ship.csv, truth.csv.')
+    folder: str = parameter(
+        '',
+        'Folder of a recording (plots.csv, own_ship.csv, truth.csv), or a file of spokes (.npz).',
+    )
     rate: float = parameter(
         1.0,
         'Recorded seconds in a second; other than 1 needs use_sim_time in the other nodes.',

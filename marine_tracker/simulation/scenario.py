@@ -6,7 +6,8 @@ A scenario is a YAML file. Keys end in their unit: a length is `_m` or `_nm`, a 
     description: A ferry crosses our bow
     duration_s: 900
     radar: {max_range_nm: 6, range_sigma_m: 15, bearing_sigma_deg: 0.4, pd_near: 0.98, pd_far: 0.8,
-            radial_speed_sigma_kn: 0.5}       # only of a radar with Doppler
+            radial_speed_sigma_kn: 0.5,       # only of a radar with Doppler
+            sectors: 16}                      # messages a revolution; without it one
     clutter: {uniform: 20, sea: 40, sea_scale_nm: 1}      # mean numbers a scan
     tracker: {max_target_speed_kn: 45}                    # tracker parameters
     own_ship: {course_deg: 0, speed_kn: 12}

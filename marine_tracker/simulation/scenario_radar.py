@@ -7,13 +7,14 @@ from ..geometry import NAUTICAL_MILE
 from .fields import Section
 
 MAX_RANGE = 200_000.0  # m
+MAX_SECTORS = 64  # messages a revolution
 
 RADAR_KEYS = (
     'rotation_rpm max_range_m|max_range_nm blind_range_m|blind_range_nm '
     'range_sigma_m|range_sigma_nm bearing_sigma_deg range_bias_m|range_bias_nm '
     'bearing_bias_deg range_resolution_m|range_resolution_nm beam_width_deg '
     'pd_near pd_far sensor_errors radial_speed_sigma_mps|radial_speed_sigma_kn '
-    'max_radial_speed_mps|max_radial_speed_kn'
+    'max_radial_speed_mps|max_radial_speed_kn sectors'
 )
 CLUTTER_KEYS = 'uniform sea sea_scale_m|sea_scale_nm'
 
@@ -32,6 +33,7 @@ class ScenarioRadar(NamedTuple):
     sensor_errors       'none' or 'imo'
     radial_speed_sigma  m/s, Gaussian noise of a plot's radial speed over ground; None: no Doppler
     max_radial_speed    m/s; noise plots have radial speeds evenly between it and its negative
+    sectors             number of messages in which the plots of a revolution are sent
     """
 
     rotation: float
@@ -48,6 +50,7 @@ class ScenarioRadar(NamedTuple):
     sensor_errors: str
     radial_speed_sigma: float | None = None
     max_radial_speed: float = 25.0
+    sectors: int = 1
 
     @property
     def scan_period(self) -> float:
@@ -99,6 +102,7 @@ def read_radar(section: Section) -> ScenarioRadar:
             else None
         ),
         section.speed('max_radial_speed', 1.0, 100.0, 25.0),
+        section.whole('sectors', 1, MAX_SECTORS, 1),
     )
     if radar.blind_range >= radar.max_range:
         raise ValueError(

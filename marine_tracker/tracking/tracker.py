@@ -1,18 +1,29 @@
 """One scan in, tracks out: all steps of the tracker on one page."""
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..estimators import ESTIMATORS, Estimator, Velocity
 from ..geometry import to_range_bearing
 from ..parameters import TrackerParameters
-from ..types import Array, CodeArray, Extrapolation, IntArray, Plots, Scan, Tracks, append, take
-from . import clutter_map, doppler, late_plots, lifecycle, score
+from ..types import (
+    Array,
+    BoolArray,
+    CodeArray,
+    Extrapolation,
+    IntArray,
+    Plots,
+    Scan,
+    Tracks,
+    append,
+    take,
+)
+from . import clutter_map, doppler, late_plots, lifecycle, score, sectors
 from .associate import associate, gain
 from .expected import expect
-from .gate import gate, gate_size, split
+from .gate import gate, gate_size, split, windows
 from .initiate import pair_up, unexplained
 from .lifecycle import LOST, TENTATIVE
 from .look import look
@@ -20,7 +31,7 @@ from .merge import duplicates
 from .noise import noise_of
 from .radars import HELD_REVOLUTIONS, held_updates, radars_of
 from .silence import unmistakable
-from .sweep import sweep_of
+from .sweep import Sweep, sweep_of
 
 
 class OfRadar(NamedTuple):
@@ -28,10 +39,12 @@ class OfRadar(NamedTuple):
 
     leftover  plots of its last scan that belong to no track: one may be a new target's first plot
     clutter   the density of its false plots
+    waiting   what its sectors left undecided; None: whole revolutions
     """
 
     leftover: Plots
     clutter: clutter_map.ClutterMap
+    waiting: sectors.Waiting | None = None
 
 
 class TrackerMemory(NamedTuple):
@@ -52,7 +65,7 @@ class TrackerMemory(NamedTuple):
 
 
 class Report(NamedTuple):
-    """The results of one scan; one row a track, including lost ones and new ones.
+    """The results of one scan; one row a track that was swept, including lost ones and new ones.
 
     time       [N]     s, when the beam passed the track (the time of its plot if it had one); or
     the
@@ -62,6 +75,7 @@ class Report(NamedTuple):
     plot       [N]     row of the scan's plots that the track took, -1 for none
     reason     [N]     why a LOST track was lost: index into lifecycle.REASONS, 0 = not lost
     begun      [B]     the first plots, of the last scan, of the new tracks: the last B
+    scan       whose plots `plot` refers to: of a sector those that were decided in it
     """
 
     time: Array
@@ -71,6 +85,14 @@ class Report(NamedTuple):
     reason: CodeArray
     begun: Plots
     left_out: int
+    scan: Scan
+
+
+class Left(NamedTuple):
+    """What a scan left: mask [M] of the plots that are lone; and what the map of clutter learns."""
+
+    free: BoolArray
+    found: sectors.Found
 
 
 class Tracker:
@@ -118,7 +140,69 @@ class Tracker:
         )
 
     def step(self, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemory, Report]:
-        """One antenna revolution."""
+        """One antenna revolution, or a part of one (see sectors.py)."""
+        if scan.sector is not None:
+            return self._part(memory, scan)
+        memory, report, left = self._judge(memory, scan)
+        clutter = clutter_map.learn(memory.radars[scan.radar].clutter, *left.found)
+        return _with(memory, scan.radar, clutter=clutter), report
+
+    def _part(self, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemory, Report]:
+        """A sector: judges the tracks whose windows are swept, with plots that may be theirs."""
+        of_radar, tracks, sweep = memory.radars[scan.radar], memory.tracks, sweep_of(scan)
+        waiting, lone = of_radar.waiting or sectors.begin(scan), of_radar.leftover
+        pool = sectors.pooled(waiting, scan, sweep.period)
+        looked = sectors.last_looks(waiting, tracks.id, tracks.last_time)
+        seen = self._windows(memory, pool, sweep, looked)
+        decided = sectors.decide(waiting, seen, scan, pool.plots, sweep, len(lone.time))
+        now = pool._replace(plots=take(pool.plots, decided.plots))
+        part = memory._replace(tracks=take(tracks, decided.tracks))
+        part = _with(part, scan.radar, leftover=take(lone, decided.lone))
+        after, report, left = self._judge(part, now, int((~decided.tracks).sum()))
+
+        # what is not decided waits: tracks, lone plots, plots that may be another track's
+        again = decided.contested[decided.plots]
+        again[report.plot[report.plot >= 0]] = False
+        plots = sectors.together(take(pool.plots, ~decided.plots), take(now.plots, again))
+        every = append(take(tracks, ~decided.tracks), after.tracks)
+        every = take(every, every.id.argsort())
+        gone = sectors.unseen(waiting, seen, scan)[: len(looked)]
+        looked = np.where(decided.tracks | gone, seen.middle[: len(looked)], looked)
+        waiting = sectors.remember(waiting, pool, plots, tracks.id, looked, every, left.found)
+        free = take(after.radars[scan.radar].leftover, ~again[left.free])
+        memory = _with(
+            after._replace(tracks=every),
+            scan.radar,
+            leftover=sectors.together(take(lone, ~decided.lone), free),
+            waiting=waiting,
+        )
+        if not sectors.complete(waiting):
+            return memory, report
+        clutter = clutter_map.learn(of_radar.clutter, *sectors.found(waiting))
+        waiting = sectors.next_revolution(waiting)
+        return _with(memory, scan.radar, clutter=clutter, waiting=waiting), report
+
+    def _windows(
+        self, memory: TrackerMemory, pool: Scan, sweep: Sweep, looked: Array
+    ) -> sectors.Windows:
+        """Where and when the beam passes the tracks, judged at `looked` [N] s, and lone plots."""
+        p, tracks, count = self.radars[pool.radar], memory.tracks, len(memory.tracks.id)
+        noise = noise_of(p, pool)
+        measured = noise.locate(pool)
+        lone = noise.with_glint(memory.radars[pool.radar].leftover)
+        before = np.append(tracks.bearing, lone.bearing)
+        passed = sectors.passage(sweep, before, np.append(looked, lone.time))
+        beam = passed[:count]
+        ahead = self.estimator.extrapolate(late_plots.as_of(tracks, beam), beam)
+        expected = noise.with_glint(expect(ahead, lone, pool, p.max_target_speed_mps))
+        pairs, _ = gate(expected, measured, sweep, noise, self.gate_size)
+        _, _, _, bearing, half = windows(expected, measured, sweep, noise, self.gate_size**0.5)
+        return sectors.windows(pairs, measured.time, sweep, passed, before, bearing, half)
+
+    def _judge(
+        self, memory: TrackerMemory, scan: Scan, others: int = 0
+    ) -> tuple[TrackerMemory, Report, Left]:
+        """The tracks of the memory with the plots of the scan; `others` tracks are not judged."""
         p, of_radar = self.radars[scan.radar], memory.radars[scan.radar]
         tracks, count = memory.tracks, len(memory.tracks.id)
         noise = noise_of(p, scan)
@@ -144,7 +228,7 @@ class Tracker:
 
         # initiate: from plots of this scan and the last one that belong to no track
         free = unexplained(plots, pairs, plot_of, tracks)
-        room = max(0, p.max_tracks - count)
+        room = max(0, p.max_tracks - count - others)
         first, second = pair_up(lone, plots, starts.track, starts.plot, free, speed, room)
         free[second] = False
         if len(first):
@@ -167,16 +251,18 @@ class Tracker:
         # remember
         begun = take(of_radar.leftover, first)
         nowhere = np.delete(np.arange(len(lone.time)), first)
-        clutter = clutter_map.learn(of_radar.clutter, lone.range[nowhere], lone.bearing[nowhere])
-        of_radar = OfRadar(take(measured, free), clutter)
+        found = lone.range[nowhere], lone.bearing[nowhere]
         alive = tracks.status != LOST
-        return TrackerMemory(
+        memory = TrackerMemory(
             tracks if alive.all() else take(tracks, alive),
-            memory.radars[: scan.radar] + (of_radar,) + memory.radars[scan.radar + 1 :],
+            memory.radars,
             scan.own_ship.position[-1],
             memory.next_id + len(first),
             next_number,
-        ), Report(seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out)
+        )
+        report = Report(seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan)
+        memory = _with(memory, scan.radar, leftover=take(measured, free))
+        return memory, report, Left(free, found)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """Takes over the memory of another tracker for this one's estimator. No track is lost.
@@ -225,3 +311,10 @@ class Tracker:
             radar=(np.full(count, radar, np.int8) if len(self.radars) > 1 else None),
             past=late_plots.nothing_yet(state, plots, self.updates),
         )
+
+
+def _with(memory: TrackerMemory, radar: int, **changes: Any) -> TrackerMemory:
+    """The memory with changes in that of one radar."""
+    radars = list(memory.radars)
+    radars[radar] = radars[radar]._replace(**changes)
+    return memory._replace(radars=tuple(radars))
