@@ -35,7 +35,9 @@ def run(args: Namespace) -> int:
     if None in wanted or other != (None, None) or (args.bow and wanted is flat):
         raise ValueError('name the place by --range and --bearing, or by --east and --north')
     if not all(map(math.isfinite, wanted)) or (wanted is polar and wanted[0] < 0):
-        raise ValueError(f'the place is {wanted[0]:g}, {wanted[1]:g}; it must be finite, in range')
+        raise ValueError(
+            f'the place is {wanted[0]:g}, {wanted[1]:g}; both must be finite, a range at least 0'
+        )
     from ..nodes.ask import Question, ask  # needs ROS
 
     question = Question(*wanted, polar=wanted is polar, bow=args.bow)

@@ -144,7 +144,7 @@ function showPanel() {
   const mayCommand = state.role.commands;
   panel.showOwnShip(state);
   panel.showAlarms(state, mayCommand, (number) => app.command('acknowledge', { number }));
-  panel.showSelected(app.chosen());
+  panel.showSelected(app.chosen(), state.own);
   showTargets(state.targets, sorted, marks.id, app.choose);
   panel.showState(state);
   toolsPanel.show();

@@ -1,6 +1,8 @@
 // What stands beside the picture: own ship, alarms, the selected target, the table, the state.
 
 import * as format from './format.js';
+import { rangeBearing } from './geometry.js';
+import { bowOf } from './scope.js';
 import { COASTING, LOST, ACQUIRING, nameOf } from './state.js';
 
 const STATUS = {
@@ -51,7 +53,7 @@ export function showOwnShip(/** @type {import('./state.js').State} */ state) {
 }
 
 /** The data of the selected target, each with its standard deviation. */
-export function showSelected(/** @type {import('./state.js').Target|undefined} */ target) {
+export function showSelected(/** @type {import('./state.js').Target|undefined} */ target, own) {
   say(
     element('selected-name'),
     target
@@ -62,6 +64,7 @@ export function showSelected(/** @type {import('./state.js').Target|undefined} *
   const figures = [
     ['Range', `${format.miles(target.range)} NM`, format.miles(target.range_sd, 3)],
     ['Bearing', `${format.bearing(target.bearing)}°`, angleSd(target.bearing_sd)],
+    ['Rel. brg', `${format.bearing(relativeBearing(target, own))}°`],
     ['Course', `${format.bearing(target.course)}°`, angleSd(target.course_sd)],
     ['Speed', `${format.knots(target.speed)} kn`, format.knots(target.speed_sd)],
     ['CPA', `${format.miles(target.cpa)} NM`, format.miles(target.cpa_sd)],
@@ -78,6 +81,12 @@ export function showSelected(/** @type {import('./state.js').Target|undefined} *
     );
   }
   fill(element('selected'), figures);
+}
+
+/** From the bow, or from where it was when the heading was lost; null where nobody knows. */
+function relativeBearing(target, own) {
+  if (!own || target.x === null || (own.heading === null && own.bow == null)) return null;
+  return rangeBearing(own.x, own.y, target.x, target.y)[1] - bowOf(own);
 }
 
 function angleSd(/** @type {number|null} */ sd) {

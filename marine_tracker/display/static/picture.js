@@ -76,7 +76,7 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
     );
   }
   if (graphics) {
-    drawZones(canvas, state, scope, colors, marks);
+    const names = drawZones(canvas, state, scope, colors, marks);
     if (state.own) {
       if (settings.trails !== 'off') {
         const shown = [settings.trails, settings.trailMinutes, state.trails?.count];
@@ -85,7 +85,7 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
         );
       }
       drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
-      drawTargets(canvas, state, settings, scope, colors, marks.id, local);
+      drawTargets(canvas, state, settings, scope, colors, marks.id, local, names);
     }
     drawTools(canvas, state, scope, colors, marks);
     drawMarks(canvas, scope, colors, marks);
@@ -152,7 +152,7 @@ function drawOwnShip(canvas, state, settings, scope, colors, headingLine) {
   symbols.ownShip(canvas, view.centreX, view.centreY, colors.own);
 }
 
-function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
+function drawTargets(canvas, state, settings, scope, colors, chosen, local, otherLabels) {
   const { view, middleX, middleY, radius } = scope;
   const shown = Math.floor(local / FLASH_S) % 2 === 0;
   /** @type {import('./labels.js').Label[]} */
@@ -190,6 +190,7 @@ function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
     symbols.lost(canvas, x, y, colors.lost);
     if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: false });
   }
+  labels.push(...otherLabels); // they take the room that is left
   canvas.font = '600 13px system-ui, sans-serif';
   canvas.textBaseline = 'middle';
   canvas.textAlign = 'left';

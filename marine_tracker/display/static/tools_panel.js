@@ -41,8 +41,8 @@ export function listen(/** @type {App} */ app) {
       bearing(app, name, line),
       reference(app, name, line),
       miles(app, `${name} distance, NM to starboard, - to port`, line, 'distance', -96),
-      miles(app, `${name} from, NM ahead; empty: whole`, line, 'from', -200, true),
-      miles(app, `${name} to, NM ahead; empty: whole`, line, 'to', -200, true),
+      miles(app, `${name} from, NM ahead; empty: whole`, line, 'from', -200, 'from'),
+      miles(app, `${name} to, NM ahead; empty: whole`, line, 'to', -200, 'to'),
       button('At cursor', `${name} through the cursor`, () => {
         const place = app.here();
         if (place && app.state.own) lineThrough(line, place, app.state.own);
@@ -59,6 +59,7 @@ export function listen(/** @type {App} */ app) {
 
 /** Values that were changed on the picture into their fields, unless somebody types there. */
 export function show() {
+  if (!(/** @type {HTMLDetailsElement} */ (element('tools-box')).open)) return;
   for (const update of shown) update();
 }
 
@@ -79,9 +80,10 @@ function row(box, app, name, tool, parts) {
 }
 
 /** A field for a number that is kept in another unit. */
-function field(app, title, read, write, { step, low, high, empty = false }) {
+function field(app, title, read, write, { step, low, high, empty = false, hint = '' }) {
   const input = document.createElement('input');
   Object.assign(input, { type: 'number', title, ariaLabel: title, step, min: low, max: high });
+  input.placeholder = hint;
   input.addEventListener('change', () => {
     if (input.value === '' && empty) write(null);
     else if (input.value !== '' && input.checkValidity()) write(Number(input.value));
@@ -108,13 +110,14 @@ function bearing(app, name, tool) {
   );
 }
 
-function miles(app, title, tool, key, low, empty = false) {
+/** hint: what an empty field means; without it none may be empty */
+function miles(app, title, tool, key, low, hint = '') {
   return field(
     app,
     title,
     () => (tool[key] === null ? '' : Math.round((1000 * tool[key]) / NAUTICAL_MILE) / 1000),
     (value) => (tool[key] = value === null ? null : value * NAUTICAL_MILE),
-    { step: 'any', low, high: 200, empty },
+    { step: 'any', low, high: 200, empty: hint !== '', hint },
   );
 }
 

@@ -1,5 +1,5 @@
-// Zones on the picture: guard zones with a solid line, exclusion zones with a line and dots, each
-// with its name; handles on the one that is being changed.
+// Zones on the picture: guard zones with a solid line, exclusion zones with a line and dots; handles
+// on the one that is being changed. Their names find room among the labels of targets.
 
 import { toScreen } from './geometry.js';
 import { handles, outline } from './zones.js';
@@ -7,29 +7,31 @@ import { handles, outline } from './zones.js';
 const HALF_PX = 5; // of a handle
 
 /**
+ * The names of the zones are returned as labels, to be placed with the others.
+ * @returns {import('./labels.js').Label[]}
  * @param {import('./state.js').State} state @param {import('./scope.js').Scope} scope
  * @param {import('./surround.js').Marks} marks
  */
 export function drawZones(canvas, state, { view }, colors, { draft }) {
-  canvas.font = '600 12px system-ui, sans-serif';
-  canvas.textBaseline = 'middle';
-  canvas.textAlign = 'center';
+  const names = [];
   for (const zone of state.zones.zones) {
-    if (draft?.was !== zone.name) drawZone(canvas, zone, state.own, view, colors.marker, 1.2);
+    if (draft?.was === zone.name) continue;
+    names.push(...drawZone(canvas, zone, state.own, view, colors.marker, 1.2));
   }
-  if (!draft) return;
-  drawZone(canvas, draft.zone, state.own, view, colors.selected, 2);
+  if (!draft) return names;
+  names.push(...drawZone(canvas, draft.zone, state.own, view, colors.selected, 2));
   handles(draft.zone, state.own).forEach((handle, k) => {
     const [x, y] = toScreen(view, handle.x, handle.y);
     const box = [x - HALF_PX, y - HALF_PX, 2 * HALF_PX, 2 * HALF_PX];
     if (k === draft.handle) canvas.fillRect(...box);
     else canvas.strokeRect(...box);
   });
+  return names;
 }
 
 function drawZone(canvas, zone, own, view, color, width) {
   const lines = outline(zone, own).map((line) => line.map(([x, y]) => toScreen(view, x, y)));
-  if (!lines.length) return;
+  if (!lines.length) return [];
   canvas.strokeStyle = canvas.fillStyle = color;
   canvas.lineWidth = width;
   canvas.setLineDash(zone.kind === 'exclusion' ? [10, 3, 2, 3] : []);
@@ -42,5 +44,5 @@ function drawZone(canvas, zone, own, view, color, width) {
   canvas.setLineDash([]);
   // Its name at its highest point.
   const [x, y] = lines.flat().reduce((best, place) => (place[1] < best[1] ? place : best));
-  canvas.fillText(zone.name, x, y - 9);
+  return [{ x, y, text: zone.name, needed: false }];
 }

@@ -217,3 +217,26 @@ def test_a_lost_heading_goes_to_the_page_as_the_last_bow(bridge, sea, display, l
         assert viewer.newest['own']['bow'] == pytest.approx(np.radians(123))
 
     look(node, act)
+
+
+def test_the_command_asks_a_tracker_that_runs(bridge, sea, launch):
+    here = bridge(sea, acquisition='nowhere', min_range_m=200.0)
+    here.sail(8)
+    east, north = here.place(2)
+    asked = launch('__main__', 'explain', '--east', f'{east:.0f}', '--north', f'{north:.0f}')
+    assert asked.ends() == 0, asked.said
+    assert '* acquisition is by hand only' in asked.said and 'TT' in asked.said
+    # By range and bearing of own ship, who must be heard for it.
+    polar = launch('__main__', 'explain', '--range', '0.04', '--bearing', '77')
+    while polar.process.poll() is None:
+        here.send_own_ship_of([here.last])
+    assert polar.ends() == 0, polar.said
+    assert polar.said.startswith('* 74 m from the antenna'), polar.said
+    bow = launch('__main__', 'explain', '--range', '0.05', '--bearing', '300', '--bow')
+    assert bow.ends() == 0 and bow.said.startswith('* 93 m from the antenna'), bow.said
+
+
+def test_without_a_tracker_the_command_says_so_in_one_line(graph, launch):
+    asked = launch('__main__', 'explain', '--east', '1', '--north', '2', '--wait', '1.5')
+    assert asked.ends() == 2
+    assert 'no tracker listens' in asked.said and 'Traceback' not in asked.said
