@@ -16,10 +16,10 @@ import { draw, targetAt } from './picture.js';
 import * as pointer from './pointer.js';
 import { keepInSight, newHeld, scopeOf } from './scope.js';
 import { Sound } from './sound.js';
-import { CHOICES, RANGES, keep, load } from './settings.js';
+import { CHOICES, RANGES, keep, kept, load } from './settings.js';
 import { emptyState, receive, reconnected } from './state.js';
 import { makeHeads, showTargets } from './table.js';
-import { newTools } from './tools.js';
+import { newTools, restoreLines } from './tools.js';
 import * as toolsPanel from './tools_panel.js';
 import * as zonesPanel from './zones_panel.js';
 
@@ -42,6 +42,7 @@ const marks = {
   hidden: { heading: -Infinity, graphics: -Infinity },
 };
 const sorted = { column: 6, sign: 1, danger: true };
+restoreLines(marks.tools, kept('lines'));
 const held = newHeld();
 const pace = new Pace();
 let saidUntil = 0;

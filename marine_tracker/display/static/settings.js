@@ -66,38 +66,43 @@ export function load(/** @type {string} */ search) {
     palette: 'day',
     sound: 'off',
   };
-  let kept = {};
-  try {
-    kept = JSON.parse(localStorage.getItem(KEY) ?? '{}');
-  } catch {
-    // Kept by somebody else, or not to be read: the defaults will do.
-  }
+  const before = kept('') ?? {};
   const asked = Object.fromEntries(new URLSearchParams(search));
-  for (const given of [kept, asked]) {
+  for (const given of [before, asked]) {
     for (const [name, choices] of Object.entries(CHOICES)) {
       const found = choices.find((choice) => String(choice) === String(given[name]));
       if (found !== undefined) settings[name] = found;
     }
   }
   const index = RANGES.findIndex(([range]) => String(range) === asked.range);
-  if (Number.isInteger(kept.range) && RANGES[kept.range]) settings.range = kept.range;
+  if (Number.isInteger(before.range) && RANGES[before.range]) settings.range = before.range;
   if (index >= 0) settings.range = index;
-  for (const name of ['offRight', 'offDown']) {
-    if (Math.abs(kept[name]) <= 0.75) settings[name] = kept[name];
+  if (Math.hypot(before.offRight, before.offDown) <= 0.75) {
+    Object.assign(settings, { offRight: before.offRight, offDown: before.offDown });
   }
   return /** @type {Settings} */ (settings);
 }
 
-export function keep(/** @type {Settings} */ settings) {
+/** What was kept under a name, '' for the settings; null where there is nothing to be read. */
+export function kept(/** @type {string} */ name) {
   try {
-    localStorage.setItem(KEY, JSON.stringify(settings));
+    return JSON.parse(localStorage.getItem(`${KEY} ${name}`.trim()) ?? 'null');
+  } catch {
+    return null; // kept by somebody else, or not to be read: the defaults will do
+  }
+}
+
+export function keep(/** @type {unknown} */ value, name = '') {
+  try {
+    localStorage.setItem(`${KEY} ${name}`.trim(), JSON.stringify(value));
   } catch {
     // Not allowed here: they hold until the page is closed.
   }
 }
 
-/** The choice after the present one. */
+/** The choice after the present one; own ship's own place only where she was put somewhere. */
 export function next(/** @type {Settings} */ settings, /** @type {string} */ name) {
-  const choices = CHOICES[name];
+  const put = name !== 'offCentre' || settings.offRight || settings.offDown;
+  const choices = put ? CHOICES[name] : CHOICES[name].filter((choice) => choice !== 'place');
   return choices[(choices.indexOf(settings[name]) + 1) % choices.length];
 }

@@ -53,6 +53,20 @@ export function newTools() {
   };
 }
 
+/** Index lines as they were kept; what is not like a line is left as it is. */
+export function restoreLines(/** @type {Tools} */ tools, /** @type {any} */ kept) {
+  if (!Array.isArray(kept)) return;
+  tools.lines.forEach((line, k) => {
+    for (const [name, value] of Object.entries(kept[k] ?? {})) {
+      const cut = name === 'from' || name === 'to';
+      const like = cut
+        ? value === null || Number.isFinite(value)
+        : typeof value === typeof line[name];
+      if (name in line && like) line[name] = value;
+    }
+  });
+}
+
 /** The map position that an EBL or VRM begins at. @returns {[number, number]} m */
 export function originOf(/** @type {Ebl|Vrm} */ tool, own) {
   const { origin } = tool;

@@ -2,6 +2,7 @@
 
 import { NAUTICAL_MILE, degrees, radians, wrap } from './geometry.js';
 import { element } from './panel.js';
+import { keep } from './settings.js';
 import { lineThrough, originAt, reset, setRelative } from './tools.js';
 
 /** @typedef {import('./app.js').App} App */
@@ -51,6 +52,10 @@ export function listen(/** @type {App} */ app) {
       }),
     ]);
   });
+  // Index lines are there again when the page is opened the next time.
+  for (const kind of ['change', 'click']) {
+    box.addEventListener(kind, () => keep(tools.lines, 'lines'));
+  }
   element('tools-reset').addEventListener('click', () => {
     reset(tools);
     app.redraw();

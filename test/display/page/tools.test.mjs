@@ -143,6 +143,19 @@ test('a relative index line turns with the ship, there are four', () => {
   near(degrees(rangeBearing(...a, ...b)[1]), 37);
 });
 
+test('index lines come back as they were kept, and rubbish does not', () => {
+  const before = tools.newTools();
+  Object.assign(before.lines[1], { on: true, bearing: 2, distance: -700, from: -90, to: null });
+  const after = tools.newTools();
+  tools.restoreLines(after, JSON.parse(JSON.stringify(before.lines)));
+  assert.deepEqual(after.lines, before.lines);
+  for (const rubbish of [null, 7, [3, null], [{ on: 'yes', bearing: null, from: 'x', more: 1 }]]) {
+    const set = tools.newTools();
+    tools.restoreLines(set, rubbish);
+    assert.deepEqual(set, tools.newTools());
+  }
+});
+
 test('the measure tells bearing and distance of two places', () => {
   const set = tools.newTools();
   set.measure = [
