@@ -314,7 +314,7 @@ def test_a_lost_heading_turns_the_picture_head_up_and_says_so(visit):
         await choose(page, orientation='north-up')
         bow = sea.own['heading']
         sea.own |= {'heading': None, 'bow': bow}
-        await page.until(CORNER % 'scale' + ".includes('RELATIVE BEARINGS ONLY')")
+        await page.until("!document.getElementById('no-heading').hidden")
         assert 'head-up' in await page.evaluate(CORNER % 'scale')
         x, y, radius = await middle_of(page)
         await page.click(x, y - 100)  # right ahead
@@ -323,6 +323,7 @@ def test_a_lost_heading_turns_the_picture_head_up_and_says_so(visit):
         assert await page.evaluate('ppi.scopeNow().view.up') == pytest.approx(bow)
         sea.own['heading'] = bow
         await page.until(CORNER % 'scale' + ".includes('north-up')")
+        assert await page.evaluate("document.getElementById('no-heading').hidden")
 
     visit(act, '?range=6', **STILL)
 

@@ -14,11 +14,11 @@ import { bearingText, readouts } from './tools.js';
  */
 export function showCorners(state, settings, scope, marks, pointer) {
   const [range, rings] = RANGES[settings.range];
-  const missing = scope.north ? '' : '\nHEADING MISSING\nRELATIVE BEARINGS ONLY';
+  element('no-heading').hidden = scope.north;
   say(
     element('scale'),
     `${range} NM\n${settings.rings === 'on' ? `rings ${rings} NM` : 'no rings'}\n` +
-      `${scope.orientation}\n${scope.motion} motion${missing}`,
+      `${scope.orientation}\n${scope.motion} motion`,
   );
   const trails = settings.trails === 'off' ? '' : `, ${format.duration(settings.trailMinutes)}`;
   say(
