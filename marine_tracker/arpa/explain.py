@@ -12,10 +12,11 @@ from ..extent.land_map import LandMap, on_land
 from ..geometry import NAUTICAL_MILE
 from ..tracking.lifecycle import LOST, REASONS, TENTATIVE, hits
 from ..tracking.tracker import Tracker, TrackerMemory
-from ..types import Array, take
+from ..types import Array
 from . import zones
 from .acquisition import NOWHERE, ZONES
-from .arpa import Arpa, ArpaMemory, Picture
+from .arpa import Arpa, ArpaMemory
+from .cpa import OwnMotion
 from .explain_plots import (
     SIGMAS,
     Place,
@@ -51,10 +52,10 @@ def explain(
     there = Place(position, reach_of(position, tracker, newest))
     reasons = [
         *_ranges(there, tracker, arpa, newest),
-        *_zones(there, arpa, newest[-1].picture),
+        *_zones(there, arpa, newest[-1].own),
         *_land(there, land),
         *_tracks(there, tracker, arpa, memory, known, newest[-1]),
-        *_lost(there, tracker, recent),
+        *_lost(there, recent),
         *plots_seen(there, tracker, arpa, memory, recent),
         *clutter(there, tracker, arpa, memory, newest),
         *_capacity(tracker, arpa, memory, known),
@@ -85,8 +86,7 @@ def _ranges(there: Place, tracker: Tracker, arpa: Arpa, newest: Sequence[Seen]) 
         yield Reason('range', text, len(found) == len(arpa.radars))
 
 
-def _zones(there: Place, arpa: Arpa, picture: Picture) -> Iterator[Reason]:
-    own = picture.own
+def _zones(there: Place, arpa: Arpa, own: OwnMotion) -> Iterator[Reason]:
     inside = zones.inside(arpa.zones, there.position[None], own.position, own.heading)[0]
     for name, here, guard in zip(arpa.zones.name, inside, arpa.zones.guard):
         if here and not guard:
@@ -157,19 +157,14 @@ def _tentative(where: str, tracker: Tracker, memory: TrackerMemory, row: int) ->
     return Reason('tentative', '; '.join([text, *missing]), True)
 
 
-def _lost(there: Place, tracker: Tracker, recent: Sequence[Seen]) -> Iterator[Reason]:
+def _lost(there: Place, recent: Sequence[Seen]) -> Iterator[Reason]:
     now = recent[-1].scan.end
     for seen in reversed(recent):
         tracks = seen.report.tracks
-        gone = take(tracks, (tracks.status == LOST) & (tracks.number > 0))
-        if not len(gone.id):
-            continue
-        at = tracker.extrapolate(gone, seen.scan.end)
-        near = np.hypot(*(at.position - there.position).T) <= there.reach
-        reason = seen.report.reason[(tracks.status == LOST) & (tracks.number > 0)]
-        for row in near.nonzero()[0]:
-            (name,) = label(gone.id[row : row + 1], gone.number[row : row + 1])
-            why = REASONS[reason[row]]
+        near = np.hypot(*(seen.position - there.position).T) <= there.reach
+        for row in ((tracks.status == LOST) & (tracks.number > 0) & near).nonzero()[0]:
+            (name,) = label(tracks.id[row : row + 1], tracks.number[row : row + 1])
+            why = REASONS[seen.report.reason[row]]
             yield Reason(
                 'lost', f'{name} was lost here {now - seen.scan.end:.0f} s ago: {why}', True
             )

@@ -11,8 +11,9 @@ from ..tracking.initiate import PAIRING_GATE
 from ..tracking.lifecycle import TENTATIVE
 from ..tracking.noise import noise_of
 from ..tracking.tracker import Report, Tracker, TrackerMemory
-from ..types import Array, BoolArray, Plots, Scan, take
+from ..types import Array, BoolArray, Extrapolation, Plots, Scan, take
 from .arpa import Arpa, Picture
+from .cpa import OwnMotion
 from .targets import label
 
 SCANS = 10  # that are looked back on, of each radar
@@ -29,11 +30,18 @@ class Reason(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What one scan came to (fields of service.Output)."""
+    """What one scan came to, as far as it is looked back on; see `seen`.
+
+    scan      as the tracker took it
+    report    without the states of the tracks, which are large
+    position  [N, 2]  m, of the report's tracks
+    own       own ship at its end
+    """
 
     scan: Scan
     report: Report
-    picture: Picture
+    position: Array
+    own: OwnMotion
 
 
 class Place(NamedTuple):
@@ -41,6 +49,12 @@ class Place(NamedTuple):
 
     position: Array
     reach: float
+
+
+def seen(scan: Scan, report: Report, estimate: Extrapolation, picture: Picture) -> Seen:
+    """Of the fields of a service.Output what is worth keeping."""
+    tracks = report.tracks._replace(state=(), past=())
+    return Seen(scan, report._replace(tracks=tracks), estimate.position, picture.own)
 
 
 def newest_of(recent: Sequence[Seen]) -> list[Seen]:

@@ -15,7 +15,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PointStamped
 
 from ..arpa.explain import explain
-from ..arpa.explain_plots import SCANS, Reason, Seen
+from ..arpa.explain_plots import SCANS, Reason, Seen, seen
 from ..service import Output, Service, ServiceMemory
 from ..types import Array
 from . import convert, topics
@@ -47,7 +47,7 @@ class Explanations:
 
     def take(self, output: Output) -> None:
         """A scan was taken: only looked at when somebody asks."""
-        self._recent.append(Seen(output.scan, output.report, output.picture))
+        self._recent.append(seen(output.scan, output.report, output.estimate, output.picture))
 
     def _on_question(self, message: PointStamped) -> None:
         try:

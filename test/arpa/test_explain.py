@@ -4,7 +4,7 @@ import numpy as np
 
 from marine_tracker.arpa import acquisition
 from marine_tracker.arpa.explain import explain
-from marine_tracker.arpa.explain_plots import Seen
+from marine_tracker.arpa.explain_plots import seen as seen_of
 from marine_tracker.geometry import to_range_bearing
 from marine_tracker.parameters import ArpaParameters, TrackerParameters
 from marine_tracker.service import Service
@@ -41,7 +41,7 @@ class Sea:
             scan = scan_of(self.count, places, radar)
             self.count += 1
             self.memory, out = self.service.step(self.memory, scan, 0.0)
-            self.seen.append(Seen(out.scan, out.report, out.picture))
+            self.seen.append(seen_of(out.scan, out.report, out.estimate, out.picture))
         return self
 
     def ask(self, *position):

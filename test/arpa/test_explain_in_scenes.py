@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from marine_tracker.arpa.explain import explain
-from marine_tracker.arpa.explain_plots import Seen
+from marine_tracker.arpa.explain_plots import seen as seen_of
 from marine_tracker.parameters import ArpaParameters, TrackerParameters, from_mapping
 from marine_tracker.service import Service
 from marine_tracker.simulation import radar, scenario
@@ -25,9 +25,9 @@ def coast():
         ),
     )
     memory, seen = service.start(), []
-    for scan, truth in itertools.islice(radar.simulate(chosen, seed=4), 45):  # noqa: B007, the last one counts
+    for scan, truth in itertools.islice(radar.simulate(chosen, seed=4), 45):  # noqa: B007
         memory, out = service.step(memory, scan)
-        seen.append(Seen(out.scan, out.report, out.picture))
+        seen.append(seen_of(out.scan, out.report, out.estimate, out.picture))
 
     def why(position):
         found = explain(
@@ -41,7 +41,7 @@ def coast():
         )
         return {reason.about: reason.text for reason in found if reason.decides}
 
-    return why, truth, seen[-1].picture.own.position
+    return why, truth, seen[-1].own.position
 
 
 @pytest.mark.parametrize(
