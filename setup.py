@@ -53,6 +53,8 @@ setup(
         ],
         # The PPI in a browser: node ppi_display.
         'display': ['aiohttp>=3.9'],
+        # The picture in a terminal: marine_tracker top.
+        'top': ['textual>=1.0'],
         'parallel': ['pytest-xdist>=3.3'],
         # Parts of experiments on other machines: --scheduler.
         'cluster': ['distributed>=2024.1', 'threadpoolctl>=3.1'],

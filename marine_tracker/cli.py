@@ -11,6 +11,8 @@ from .processes import one_thread, stop_on_sigterm
 
 COMMANDS = (
     'demo',
+    'top',
+    'screenshots',
     'replay',
     'score',
     'bench',

@@ -7,7 +7,15 @@ from typing import Any, NamedTuple
 from . import zone_fields
 
 LONGEST = 8000  # characters of a message from a viewer: a zone of 200 corners
+LONGEST_WORD = 300
 FAR_M = 1e6  # m from the origin of `map`: nobody clicks further away
+
+
+def _word(command: str, field: str, value: Any) -> str:
+    if not isinstance(value, str) or len(value) > LONGEST_WORD:
+        raise ValueError(f'{command} needs {field}, a text of at most {LONGEST_WORD} characters')
+    return value
+
 
 # Of each command its fields: lowest and highest value, where whole numbers are ints; or a function
 # of command, field and value, that gives the value or raises ValueError.
@@ -24,6 +32,7 @@ FIELDS: dict[str, dict[str, Field]] = {
     'explain': {'x': (-FAR_M, FAR_M), 'y': (-FAR_M, FAR_M)},
     'zone_put': {'zone': zone_fields.zone, 'was': zone_fields.name},
     'zone_delete': {'name': zone_fields.name},
+    'show': {'scenario': _word, 'recording': _word, 'rate': (0.01, 1000.0)},
 }
 LOGIN = 'login'
 

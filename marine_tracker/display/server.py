@@ -150,6 +150,10 @@ class DisplayServer:
         )
         self._in_loop(self._put, kind if part is None else f'{kind} {part}', text)
 
+    def forget(self, *kinds: str) -> None:
+        """The newest messages of these kinds: a viewer who comes later does not get them."""
+        self._in_loop(self._drop, kinds)
+
     def close(self) -> None:
         """All viewers are let go."""
         self._in_loop(self._stop.set)
@@ -167,6 +171,10 @@ class DisplayServer:
         self._latest[kind] = text
         for viewer in self._viewers:
             viewer.put(kind, text)
+
+    def _drop(self, kinds: tuple[str, ...]) -> None:
+        for name in [name for name in self._latest if name.split(' ')[0] in kinds]:
+            del self._latest[name]
 
     def _run(self, started: threading.Event) -> None:
         asyncio.set_event_loop(self.loop)

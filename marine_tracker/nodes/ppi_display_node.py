@@ -29,6 +29,7 @@ from .convert import ConversionError
 from .declare import declare
 from .diagnostics import FAILED, OK, WARN, Tally
 from .display_commands import LIMITS, TrackerCommands
+from .display_demo import SHOW, DemoLink
 from .display_own import OwnShipHeard
 from .display_tracker import radars_told, zones_told
 
@@ -43,6 +44,8 @@ class PpiDisplayNode(RunnableNode):
         super().__init__('ppi_display', **node_arguments)
         (p,) = declare(self, PpiDisplayParameters)
         self._bad = Tally((*convert.CLOUD_REASONS, BAD_TARGETS, BAD_OWN, BAD_FIX), self.tell)
+        self._demo = DemoLink(self)
+        self._shown: dict[str, Any] = {}  # by the demo, where there is one
         self._waiting: queue.SimpleQueue[tuple[Command, Future[str]]] = queue.SimpleQueue()
         self._wake = self.create_guard_condition(self._guarded(self._run_commands))
         self._commands = TrackerCommands(self, p.tracker, self._wake.trigger)
@@ -108,7 +111,7 @@ class PpiDisplayNode(RunnableNode):
             return
         good = np.isfinite(position).all(1)
         self.server.publish(
-            f'plots{radar or ""}',  # a kind for each radar: a newer one of another replaces none
+            _kind_of(radar),
             {
                 'at': time.monotonic(),
                 'stamp': stamp_ns * 1e-9,
@@ -181,7 +184,9 @@ class PpiDisplayNode(RunnableNode):
 
     def _run_commands(self) -> None:
         while not self._waiting.empty():
-            self._commands.run(*self._waiting.get())
+            command, answer = self._waiting.get()
+            to = self._demo.choose if command.name == SHOW else self._commands.run
+            to(command, answer)
         self._commands.go_on()
 
     # -- how it fares ----------------------------------------------------------------------------
@@ -189,6 +194,7 @@ class PpiDisplayNode(RunnableNode):
     def _on_second(self) -> None:
         self._run_commands()
         self._commands.ask(self._hear_parameters)
+        self._demo.ask(self._hear_demo)
         self._forget()
         wall = time.monotonic()
         fresh = self._bad.fresh(wall)
@@ -230,3 +236,20 @@ class PpiDisplayNode(RunnableNode):
             if told != self._told.get(kind):
                 self._told[kind] = told
                 self.server.publish(kind, told)
+
+    def _hear_demo(self, shown: dict[str, Any]) -> None:
+        if shown == self._shown:
+            return
+        if shown.get('run') != self._shown.get('run'):  # what was seen so far is of another run
+            self._trails = Trails()
+            self._own.begin_anew()
+            self._scanned.clear()
+            plots = (_kind_of(radar) for radar in range(len(self._plots)))
+            self.server.forget('targets', 'trails', *plots)
+        self._shown = shown
+        self.server.publish('demo', {'demo': shown})
+
+
+def _kind_of(radar: int) -> str:
+    """The kind of message of a radar's plots: a newer one of another radar replaces none."""
+    return f'plots{radar or ""}'

@@ -5,6 +5,7 @@ import { alive } from './alive.js';
 import { seconds } from './app.js';
 import * as controls from './controls.js';
 import { showCorners } from './corners.js';
+import * as demo from './demo.js';
 import * as forms from './forms.js';
 import { rangeBearing, toMap, toScreen } from './geometry.js';
 import * as keys from './keys.js';
@@ -150,6 +151,7 @@ function showPanel() {
   panel.showState(state);
   toolsPanel.show();
   zonesPanel.show(app);
+  demo.showDemo(state);
   for (const id of ['acknowledge-all', 'acquire', 'cancel', 'trial-off']) {
     /** @type {HTMLButtonElement} */ (panel.element(id)).disabled = !mayCommand;
   }
@@ -164,6 +166,7 @@ pointer.listen(app);
 forms.listen(app);
 toolsPanel.listen(app);
 zonesPanel.listen(app);
+demo.listen(app);
 makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;

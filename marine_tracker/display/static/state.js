@@ -27,6 +27,7 @@ export const UNACKNOWLEDGED = 2;
  * @property {Record<string, Message>} health
  * @property {Message|null} limits
  * @property {Message} zones         of the tracker, in m and rad; `error` where they are not known
+ * @property {Record<string, any>} demo  what a demo shows and offers; empty where there is none
  * @property {{commands: boolean, why: string}} role
  * @property {number} heard          s of this browser's clock; -Infinity before the first message
  * @property {number} clockError     s, how far this browser's time of day is ahead of the server's
@@ -47,6 +48,7 @@ export function emptyState() {
     health: {},
     limits: null,
     zones: { zones: [], error: '' },
+    demo: {},
     role: { commands: false, why: '' },
     heard: -Infinity,
     offset: -Infinity,
@@ -81,6 +83,12 @@ export function receive(state, message, local) {
       break;
     case 'alarms':
       state.alarms = message.alarms;
+      break;
+    case 'demo':
+      if (state.demo.run !== undefined && message.demo.run !== state.demo.run) {
+        Object.assign(state, { targets: [], scan: null, plots: [], trails: null }); // another run
+      }
+      state.demo = message.demo;
       break;
     case 'health':
       state.health = message.parts;
