@@ -11,7 +11,12 @@ from .processes import one_thread, stop_on_sigterm
 
 COMMANDS = (
     'demo',
+    'top',
+    'screenshots',
+    'record',
+    'recording',
     'replay',
+    'incident',
     'score',
     'bench',
     'experiments',

@@ -323,3 +323,22 @@ def _alive(alerts: Alerts) -> BoolArray:
     """Mask of the rows to keep: not normal, about to be raised, or acknowledged."""
     found: BoolArray = (alerts.state != NORMAL) | np.isfinite(alerts.turn) | ~np.isnan(alerts.until)
     return found
+
+
+class Raised:
+    """Which of the alerts that change are new: raised, and not raised already."""
+
+    def __init__(self) -> None:
+        self._standing: set[tuple[int, ...]] = set()  # kind, zone and id of those not normal
+
+    def rows(self, changed: Alerts) -> list[int]:
+        """The rows of the new ones among the alerts that changed in a scan."""
+        new = []
+        keys = zip(changed.kind.tolist(), changed.zone.tolist(), changed.id.tolist())
+        for row, (key, state) in enumerate(zip(keys, changed.state.tolist())):
+            if state == NORMAL:
+                self._standing.discard(key)
+            elif key not in self._standing:
+                self._standing.add(key)
+                new.append(row)
+        return new

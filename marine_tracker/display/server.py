@@ -157,9 +157,9 @@ class DisplayServer:
         """How many viewers have asked for a kind that comes on demand."""
         return sum(kind in viewer.wants for viewer in tuple(self._viewers))
 
-    def forget(self, kind: str) -> None:
-        """The newest message of this kind is no longer kept for those who come."""
-        self._in_loop(self._latest.pop, kind, None)
+    def forget(self, *kinds: str) -> None:
+        """The newest messages of these kinds: a viewer who comes later does not get them."""
+        self._in_loop(self._drop, kinds)
 
     def close(self) -> None:
         """All viewers are let go."""
@@ -185,6 +185,10 @@ class DisplayServer:
         viewer.wants = {kind for kind, on in kinds.items() if on}
         for kind in viewer.wants & self._latest.keys():
             viewer.put(kind, self._latest[kind])
+
+    def _drop(self, kinds: tuple[str, ...]) -> None:
+        for name in [name for name in self._latest if name.split(' ')[0] in kinds]:
+            del self._latest[name]
 
     def _run(self, started: threading.Event) -> None:
         asyncio.set_event_loop(self.loop)

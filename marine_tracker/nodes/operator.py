@@ -27,6 +27,7 @@ from ..arpa.targets import EVENTS, NO_ROOM, NOTHING_THERE, Events
 from ..service import Output, Service, Tracking
 from ..types import Array, Scan, append, take
 from . import diagnostics, topics
+from .alarm_log import AlarmLog
 from .arpa_messages import alarms_message, alarms_past_message, trial_message
 from .base_node import RunnableNode
 from .diagnostics import Tally, answered
@@ -66,20 +67,23 @@ class Operator:
         self._end, self._end_ns = 0.0, 0  # s, and stamp, of the last scan's end
         self.picture: Picture | None = None
 
-        self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched(10))
+        self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched())
         self._to_past = node.publisher(DiagnosticArray, topics.ALARMS_PAST, topics.latched())
+        self._alarm_log = AlarmLog(node.get_logger())
         self._to_trial = node.publisher(DiagnosticArray, topics.TRIAL, topics.latched())
         for kind, topic, callback in (
             (PointStamped, topics.ACQUIRE, self._on_acquire),
             (PointStamped, topics.CLICKED_POINT, self._on_acquire),
             (UInt32, topics.CANCEL, self._on_cancel),
+            (UInt32, f'~/{topics.CANCEL}', self._on_cancel),
             (UInt32, topics.ACKNOWLEDGE_TARGET, self._on_acknowledge_target),
             (UInt32, topics.ACKNOWLEDGE_ALERT, self._on_acknowledge_alert),
         ):
             node.subscription(kind, topic, callback, topics.reliable())
-        node.create_service(Trigger, topics.CANCEL_ALL, self._on_cancel_all)
-        node.create_service(Trigger, topics.ACKNOWLEDGE, self._on_acknowledge)
-        node.create_service(Trigger, topics.SILENCE, self._on_silence)
+        for own in ('', '~/'):
+            node.create_service(Trigger, own + topics.CANCEL_ALL, self._on_cancel_all)
+            node.create_service(Trigger, own + topics.ACKNOWLEDGE, self._on_acknowledge)
+            node.create_service(Trigger, own + topics.SILENCE, self._on_silence)
         node.create_service(SetBool, topics.TRIAL_MANOEUVRE, self._on_trial)
 
     # -- in ------------------------------------------------------------------------------------
@@ -271,6 +275,7 @@ class Operator:
                 take(present, present.state != NORMAL), take(changed, changed.state == NORMAL)
             )
             radars = [radar.name for radar in self.arpa.radars]
+            self._alarm_log.tell(changed, self.arpa.zones, radars)
             about = self.arpa.zones, radars, self._now(), self._stamp(), self._hardware_id
             self._to_alarms.publish(alarms_message(alert_list.in_order(shown, alarms.RANK), *about))
             if (changed.state == NORMAL).any():

@@ -30,6 +30,7 @@ from .declare import declare
 from .diagnostics import FAILED, OK, WARN, Tally
 from .display_commands import TrackerCommands
 from .display_danger_areas import DangerAreas
+from .display_demo import SHOW, DemoLink
 from .display_own_ship import OwnWay, ship
 
 FIX_S = 10.0  # a position that is older is not shown
@@ -46,6 +47,8 @@ class PpiDisplayNode(RunnableNode):
         (p,) = declare(self, PpiDisplayParameters)
         self._bad = Tally((*convert.CLOUD_REASONS, BAD_TARGETS, BAD_OWN, BAD_FIX), self.tell)
         self._commands = TrackerCommands(self, p.tracker)
+        self._demo = DemoLink(self)
+        self._shown: dict[str, Any] = {}  # by the demo, where there is one
         self._waiting: queue.SimpleQueue[tuple[Command, Future[str]]] = queue.SimpleQueue()
         self._wake = self.create_guard_condition(self._guarded(self._run_commands))
         self._own: deque[tuple[int, float, float]] = deque(maxlen=SAMPLES)  # ns, m, m
@@ -211,13 +214,16 @@ class PpiDisplayNode(RunnableNode):
 
     def _run_commands(self) -> None:
         while not self._waiting.empty():
-            self._commands.run(*self._waiting.get())
+            command, answer = self._waiting.get()
+            to = self._demo.choose if command.name == SHOW else self._commands.run
+            to(command, answer)
 
     # -- how it fares ----------------------------------------------------------------------------
 
     def _on_second(self) -> None:
         self._run_commands()
         self._commands.ask_limits(self._hear_limits)
+        self._demo.ask(self._hear_demo)
         self._forget()
         self._areas.look()
         about = ship(self._given, self)
@@ -257,3 +263,14 @@ class PpiDisplayNode(RunnableNode):
         if limits != self._limits:
             self._limits = limits
             self.server.publish('limits', limits)
+
+    def _hear_demo(self, shown: dict[str, Any]) -> None:
+        if shown == self._shown:
+            return
+        if shown.get('run') != self._shown.get('run'):  # what was seen so far is of another run
+            self._trails = Trails()
+            self._own.clear()
+            self._scanned.clear()
+            self.server.forget('targets', 'plots', 'trails')
+        self._shown = shown
+        self.server.publish('demo', {'demo': shown})

@@ -40,12 +40,14 @@ SIZES = ('length', 'length_sd', 'beam', 'heading', 'heading_sd')  # fields of ex
 AT_REST = 2  # of the field motion, beside STEADY and MANOEUVRING of arpa.motion
 NO_ALARM, ACKNOWLEDGED, UNACKNOWLEDGED = range(3)  # of the field alarm
 
+# What sentences are made of has all its digits; RViz wants x, y, z as float32.
 TARGET_TYPE = np.dtype(
-    [('number', '<u4'), ('id', '<u4')]
+    [('number', '<u4'), ('id', '<u4'), ('mmsi', '<u4')]
     + [(name, '<f4') for name in ('x', 'y', 'z', 'vx', 'vy', *COVARIANCE)]
-    + [(name + ending, '<f4') for name in MEASURED for ending in ('', '_sd')]
+    + [(name + of, kind) for name in MEASURED for of, kind in (('', '<f8'), ('_sd', '<f4'))]
+    + [('relative_bearing', '<f8')]
     + [(name, '<f4') for name in ('danger_probability', *SIZES, 'hull_clearance')]
-    + [(name, 'u1') for name in ('status', 'alarm', 'acquired', 'motion')]
+    + [(name, 'u1') for name in ('status', 'alarm', 'acquired', 'motion', 'reference')]
 )
 
 
@@ -63,6 +65,7 @@ def message(seen: View, alerts: Alerts, time_ns: int) -> PointCloud2:
         rows[name + '_sd'] = getattr(approach, name + '_sigma')
     still = approach.speed == 0  # who lies still has no course
     rows['course'][still] = rows['course_sd'][still] = np.nan
+    rows['relative_bearing'] = seen.bow
     rows['danger_probability'] = approach.danger_probability
     for name in (*SIZES, 'hull_clearance'):
         rows[name] = np.nan
@@ -72,6 +75,7 @@ def message(seen: View, alerts: Alerts, time_ns: int) -> PointCloud2:
             rows[name] = np.where(sized, getattr(seen.hulls.shapes, name), np.nan)
         rows['hull_clearance'] = seen.hulls.clearance
     rows['status'], rows['acquired'] = seen.status, seen.acquired
+    rows['reference'] = seen.reference
     rows['motion'] = np.where(motion.stationary, AT_REST, motion.memory)
     for states, value in (((ACTIVE_ACKNOWLEDGED,), ACKNOWLEDGED), (WAITING, UNACKNOWLEDGED)):
         of = alerts.id[(alerts.kind == alarms.DANGER) & np.isin(alerts.state, states)]

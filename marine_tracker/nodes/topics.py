@@ -2,7 +2,8 @@
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-FRAME = 'map'  # ground-stabilised, east and north
+from ..recording.ros_messages import FRAME  # noqa: F401
+
 OWN_SHIP_FRAME = 'base_link'
 
 PLOTS = 'radar/plots'
@@ -32,6 +33,7 @@ CANCEL = 'cancel'
 ACKNOWLEDGE_TARGET = 'acknowledge_target'
 ACKNOWLEDGE_ALERT = 'acknowledge_alert'
 DIAGNOSTICS = '/diagnostics'
+CLOCK = '/clock'
 
 CANCEL_ALL = 'cancel_all'  # services
 ACKNOWLEDGE = 'acknowledge'

@@ -5,6 +5,7 @@ import { alive } from './alive.js';
 import { seconds } from './app.js';
 import * as controls from './controls.js';
 import { dangersSay, keepWatch } from './dangers.js';
+import * as demo from './demo.js';
 import * as forms from './forms.js';
 import { rangeBearing, toMap, toScreen } from './geometry.js';
 import * as keys from './keys.js';
@@ -140,6 +141,7 @@ function showPanel() {
   showTargets(state.targets, sorted, marks.id, app.choose);
   panel.showState(state);
   showTrial(state, seconds());
+  demo.showDemo(state);
   for (const id of ['acknowledge-all', 'acquire', 'cancel', 'trial-off']) {
     /** @type {HTMLButtonElement} */ (panel.element(id)).disabled = !mayCommand;
   }
@@ -155,6 +157,7 @@ controls.listen(app);
 keys.listen(app);
 pointer.listen(app);
 forms.listen(app);
+demo.listen(app);
 makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;

@@ -29,6 +29,7 @@ export const UNACKNOWLEDGED = 2;
  * @property {Message} trial
  * @property {Record<string, Message>} health
  * @property {Message|null} limits
+ * @property {Record<string, any>} demo  what a demo shows and offers; empty where there is none
  * @property {{commands: boolean, why: string}} role
  * @property {number} heard          s of this browser's clock; -Infinity before the first message
  * @property {number} clockError     s, how far this browser's time of day is ahead of the server's
@@ -51,6 +52,7 @@ export function emptyState() {
     trial: { on: false },
     health: {},
     limits: null,
+    demo: {},
     role: { commands: false, why: '' },
     heard: -Infinity,
     offset: -Infinity,
@@ -92,6 +94,12 @@ export function receive(state, message, local) {
       break;
     case 'alarms_past':
       state.settled = message.alarms;
+      break;
+    case 'demo':
+      if (state.demo.run !== undefined && message.demo.run !== state.demo.run) {
+        Object.assign(state, { targets: [], scan: null, plots: [], trails: null }); // another run
+      }
+      state.demo = message.demo;
       break;
     case 'health':
       state.health = message.parts;

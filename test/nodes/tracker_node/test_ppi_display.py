@@ -233,17 +233,41 @@ def test_alarms_go_with_their_tracker(graph, bridge, sea, display):
     look(node, act)
 
 
-def test_the_tracks_are_the_same_with_and_without_a_display(
+async def harass(address, until):
+    """Clients that mean no good, until the task has ended, and 1,000 wrong messages at least."""
+    host, port = address.split('/')[2].split(':')
+    async with aiohttp.ClientSession() as session:
+        count = 0
+        while count < 1000 or not until.done():
+            async with session.ws_connect(address + 'live') as link:
+                for k in range(250):
+                    await link.send_str(f'{{"command": "cancel_all", "id": -{k}' + '}' * (k % 3))
+                await link.send_bytes(b'\xff' * 20_000)  # ends the connection
+                count += 251
+            reader, writer = await asyncio.open_connection(host, int(port))
+            writer.write(b'GET /live HTTP/1.1\r\n' + bytes(range(256)) * 50)
+            writer.close()
+            async with session.get(address + '%2e%2e/tracker.yaml') as page:
+                assert page.status == 404
+            await asyncio.sleep(0.02)
+
+
+def test_the_tracks_are_the_same_without_a_display_with_one_and_under_bad_clients(
     graph, node_helpers, sea, bridge, display
 ):
     clouds = []
-    for with_display in (False, True):
+    for with_display in (False, 'display', 'bad clients'):
         here = bridge(sea)
         heard = here.listen(PointCloud2, topics.TRACKS_CLOUD)
         node = display(here) if with_display else None
 
-        async def act(viewer, here=here):
-            await asyncio.to_thread(here.sail, 20)
+        async def act(viewer, here=here, node=node, bad=with_display == 'bad clients'):
+            sailing = asyncio.ensure_future(asyncio.to_thread(here.sail, 20))
+            if bad:
+                await harass(node.server.url.split('#')[0], sailing)
+                assert node.server.counts[server.BAD] >= 1000
+                assert not node.failures.counts
+            await sailing
 
         if node:
             look(node, act)
@@ -252,7 +276,7 @@ def test_the_tracks_are_the_same_with_and_without_a_display(
         here.wait(lambda heard=heard: len(heard) >= 20)
         clouds.append([bytes(message.data) for message in heard.messages])
         graph.executor.remove_node(here.tracker)
-    assert clouds[0] == clouds[1]
+    assert clouds[0] == clouds[1] == clouds[2]
     assert len(clouds[0][-1]) > 100
 
 
