@@ -11,6 +11,7 @@ from argparse import ArgumentParser, Namespace
 from typing import Any, ClassVar
 
 import numpy as np
+from rich.text import Text
 from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
@@ -28,6 +29,7 @@ ORIENTATIONS = ('north-up', 'head-up')
 STATUS = {top_picture.ACQUIRING: 'acquiring', COASTING: 'coasting'}
 HEADS = ('target', 'NM', 'bearing', 'course', 'kn', 'CPA', 'TCPA', 'status')
 MOST_ALARMS = 6
+DANGER = 'bold red'
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -159,7 +161,13 @@ class TopApp(App[None]):
         self.query_one('#alarms', Static).update('\n'.join(alarms))
 
     def _fill(self, table: DataTable[Any]) -> None:
-        rows = [(int(target['id']), cells(target)) for target in self._in_order()]
+        rows = [
+            (
+                int(target['id']),
+                [Text(one, DANGER if target['alarm'] else '') for one in cells(target)],
+            )
+            for target in self._in_order()
+        ]
         if [key.value for key in table.rows] != [str(id) for id, _ in rows]:
             table.clear()
             for id, values in rows:

@@ -48,8 +48,8 @@ def test_targets_of_a_live_tracker_show_in_picture_and_table(launch, tmp_path):
             table = app.query_one(DataTable)
             await until(pilot, lambda: table.row_count == 2)
             await until(pilot, lambda: 'DANGER' in table.get_row_at(0)[-1])
-            assert table.get_row_at(0)[0].startswith('TT') and 'COG 050.0' in words('#state')
-            number = table.get_row_at(0)[0][2:]
+            assert str(table.get_row_at(0)[0]).startswith('TT') and 'COG 050.0' in words('#state')
+            number = str(table.get_row_at(0)[0])[2:]
             await until(pilot, lambda: f'●{number}' in words('#picture'))
             assert 'N' in words('#picture') and '◎' in words('#picture')
             assert words('#alarms')
@@ -58,7 +58,7 @@ def test_targets_of_a_live_tracker_show_in_picture_and_table(launch, tmp_path):
             await pilot.press('minus', 'o')
             await until(pilot, lambda: '12 NM  head-up' in words('#state'))
             await pilot.press('a')
-            await until(pilot, lambda: table.get_row_at(0)[-1] == 'danger')
+            await until(pilot, lambda: str(table.get_row_at(0)[-1]) == 'danger')
             # A radar that goes quiet is told, within seconds.
             simulator.process.kill()
             await until(pilot, lambda: 'NO LIVE DATA: no own ship for' in words('#state'), 10)

@@ -1,6 +1,5 @@
 // The keyboard: all that a mouse does, and the arrows for the cursor.
 
-import { seconds } from './app.js';
 import { toMap, toScreen } from './geometry.js';
 import { next } from './settings.js';
 import { edit, moveHandle, nextHandle } from './zones_panel.js';
@@ -24,6 +23,9 @@ const SETTINGS = {
   k: 'motion',
   T: 'trailMinutes',
   i: 'labels',
+  d: 'areas',
+  w: 'safeCourses',
+  u: 'ellipses',
 };
 
 /** Whether a key is meant for a field that somebody types in. */
@@ -39,7 +41,7 @@ export function listen(/** @type {import('./app.js').App} */ app) {
     '=': () => app.zoom(-1),
     '-': () => app.zoom(1),
     n: () => chooseNext(app),
-    s: () => app.sound.silence(seconds()),
+    s: app.silence,
     e: app.mark,
     q: app.acquire,
     a: () => {
@@ -51,7 +53,7 @@ export function listen(/** @type {import('./app.js').App} */ app) {
     b: app.ownShipHere,
     x: app.resetView,
     m: app.measure,
-    w: () => (app.marks.cursor ? app.whyAt(app.marks.cursor) : app.why()),
+    y: () => (app.marks.cursor ? app.whyAt(app.marks.cursor) : app.why()),
     h: () => app.hide('heading'),
     g: () => app.hide('graphics'),
     '[': () => nextHandle(app, -1),

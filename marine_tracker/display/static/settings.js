@@ -24,6 +24,9 @@ export const CHOICES = {
   labels: ['on', 'off'],
   rings: ['on', 'off'],
   offCentre: ['off', 'ahead', 'place'],
+  areas: ['off', 'on'],
+  safeCourses: ['off', 'on'],
+  ellipses: ['selected', 'all', 'off'],
   palette: ['day', 'dusk', 'night'],
   sound: ['off', 'on'],
 };
@@ -43,6 +46,9 @@ const KEY = 'marine_tracker ppi';
  * @property {string} offCentre
  * @property {number} offRight  radii from the middle to own ship, where offCentre is `place`
  * @property {number} offDown
+ * @property {string} areas        predicted areas of danger
+ * @property {string} safeCourses  the ring of safe courses
+ * @property {string} ellipses     of uncertainty
  * @property {string} palette
  * @property {string} sound
  */
@@ -63,6 +69,9 @@ export function load(/** @type {string} */ search) {
     offCentre: 'off',
     offRight: 0,
     offDown: 0,
+    areas: 'off',
+    safeCourses: 'off',
+    ellipses: 'selected',
     palette: 'day',
     sound: 'off',
   };
