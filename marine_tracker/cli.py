@@ -23,6 +23,7 @@ COMMANDS = (
     'imo',
     'soak',
     'doctor',
+    'explain',
 )
 
 DESCRIPTION = """\

@@ -2,6 +2,7 @@
 
 import { seconds } from './app.js';
 import { element, say } from './panel.js';
+import { duration } from './format.js';
 import { next } from './settings.js';
 
 /** Names in colours.css that the picture is drawn with. */
@@ -18,10 +19,11 @@ export function applySettings(/** @type {import('./app.js').App} */ app) {
   );
   const words = {
     orientation: settings.orientation,
+    motion: `${settings.motion} motion`,
     vectors: `Vectors ${settings.vectors}`,
     vectorMinutes: `${settings.vectorMinutes} min`,
     trails: `Trails ${settings.trails}`,
-    trailMinutes: `${settings.trailMinutes} min`,
+    trailMinutes: duration(settings.trailMinutes),
     offCentre: `Off centre ${settings.offCentre}`,
     rings: `Rings ${settings.rings}`,
     labels: `Numbers ${settings.labels}`,
@@ -45,6 +47,11 @@ export function listen(/** @type {import('./app.js').App} */ app) {
     farther: () => app.zoom(1),
     silence: () => app.sound.silence(seconds()),
     mark: app.mark,
+    measure: app.measure,
+    why: app.why,
+    'reset-view': app.resetView,
+    'no-heading-line': () => app.hide('heading'),
+    'no-graphics': () => app.hide('graphics'),
     acquire: app.acquire,
     cancel: app.cancel,
     'acknowledge-all': () => app.command('acknowledge_all'),

@@ -27,6 +27,7 @@ export const UNACKNOWLEDGED = 2;
  * @property {Record<string, Message>} health
  * @property {Message|null} limits
  * @property {Record<string, any>} demo  what a demo shows and offers; empty where there is none
+ * @property {Message} zones         of the tracker, in m and rad; `error` where they are not known
  * @property {{commands: boolean, why: string}} role
  * @property {number} heard          s of this browser's clock; -Infinity before the first message
  * @property {number} clockError     s, how far this browser's time of day is ahead of the server's
@@ -47,6 +48,7 @@ export function emptyState() {
     health: {},
     limits: null,
     demo: {},
+    zones: { zones: [], error: '' },
     role: { commands: false, why: '' },
     heard: -Infinity,
     offset: -Infinity,
@@ -67,7 +69,7 @@ export function receive(state, message, local) {
   state.offset = Math.max(Number.isFinite(held) ? held : difference, difference);
   state.late = state.offset - difference;
   state.heard = local;
-  switch (message.kind) {
+  switch (message.kind.replace(/\d+$/, '')) {
     case 'targets':
       state.targets = rows(message.columns);
       state.scan = {
@@ -77,11 +79,7 @@ export function receive(state, message, local) {
       };
       break;
     case 'plots':
-      if (state.plots.length && message.stamp < state.plots[state.plots.length - 1].stamp) {
-        state.plots = []; // time went back: another run
-      }
-      state.plots.push(message);
-      if (state.plots.length > GLOW_SCANS) state.plots.shift();
+      takePlots(state, message);
       break;
     case 'alarms':
       state.alarms = message.alarms;
@@ -105,9 +103,19 @@ export function receive(state, message, local) {
     case 'trails':
     case 'trial':
     case 'limits':
+    case 'zones':
       state[message.kind] = message;
       break;
   }
+}
+
+/** Of each radar the newest scans; where its time goes back, it is another run. */
+function takePlots(/** @type {State} */ state, /** @type {Message} */ message) {
+  const radar = message.radar ?? 0;
+  const of = state.plots.filter((scan) => (scan.radar ?? 0) === radar);
+  if (of.length && message.stamp < of[of.length - 1].stamp) state.plots = [];
+  else if (of.length >= GLOW_SCANS) state.plots.splice(state.plots.indexOf(of[0]), 1);
+  state.plots.push(message);
 }
 
 /** After a new connection the clocks are compared anew: it may be another server. */
