@@ -89,6 +89,8 @@ class TrackerNode(RunnableNode):
             )
         # The wall's second, whatever the node's clock does.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        if output_parameters.managed:
+            self.manage()
         self.get_logger().info(
             f'estimator {parameters.estimator}, waiting for '
             + ', '.join(heard.radar.topic for heard in self.inputs)

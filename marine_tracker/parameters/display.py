@@ -32,5 +32,10 @@ class PpiDisplayParameters:
     tracker: str = parameter('tracker', 'Name of the tracker node that commands are for.')
     plots_topic: str = parameter('radar/plots', 'Topic of the plots that are drawn.')
 
+    managed: bool = parameter(
+        False,
+        'Whether the node is a lifecycle node: it waits to be configured and activated by ROS.',
+    )
+
     def __post_init__(self) -> None:
         check(self)

@@ -110,6 +110,10 @@ class TrackerOutputParameters:
         'Whether the messages of `tracks` are spread over the revolution. Else those of a scan '
         'come at once, and a listener needs a depth of as many as there are tracks.',
     )
+    managed: bool = parameter(
+        False,
+        'Whether the node is a lifecycle node: it waits to be configured and activated by ROS.',
+    )
 
     def __post_init__(self) -> None:
         check(self)
