@@ -85,6 +85,8 @@ class PpiDisplayNode(RunnableNode):
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        if p.managed:
+            self.manage()
         # Printed, not logged: the log is kept on disk and published, and this holds the token.
         print(f'ppi_display: {self.server.url}', flush=True)
 
