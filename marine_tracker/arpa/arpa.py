@@ -6,6 +6,7 @@ import numpy as np
 
 from ..geometry import NAUTICAL_MILE, polar_to_position
 from ..parameters import ArpaParameters, TrackerParameters
+from ..tracking.at_rest import NOTHING_SHOWN, Shown
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.noise import noise_of
@@ -23,7 +24,7 @@ from ..types import (
     row_of,
     take,
 )
-from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
+from . import acquisition, alarms, alerts, motion, past_positions, situation, stationary, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
 from .anchor import at_anchor, harmless
@@ -31,7 +32,9 @@ from .cpa import Approach, OwnMotion, approach
 from .motion import Motion
 from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
+from .situation import SAFE
 from .stabilisation import ALL_WELL, NONE, OwnSensors, Stabilisation, stabilisation
+from .stationary import Stationary
 from .swap_risk import swap_risk
 from .targets import Events, Targets
 
@@ -69,6 +72,7 @@ class Picture(NamedTuple):
     alerts    those that are not normal
     changed   the alerts that changed in this scan, also those that became normal
     stabilised   the reference of courses and speeds
+    fixed        stationary objects, which are no targets
     """
 
     time: float
@@ -85,6 +89,7 @@ class Picture(NamedTuple):
     alerts: Alerts
     changed: Alerts
     stabilised: Stabilisation
+    fixed: Stationary
 
 
 class Arpa:
@@ -132,12 +137,14 @@ class Arpa:
         heading: float,
         fallen: Mask = False,
         sensors: OwnSensors = ALL_WELL,
+        places: Shown = NOTHING_SHOWN,
     ) -> tuple[ArpaMemory, Picture]:
         """Processes one antenna revolution. All results are for its end.
 
         heading  rad, own ship's, true; nan if unknown
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
         sensors  what is known of own ship beside her positions
+        places   where plots always are
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
         samples, p = lately(memory.own, scan.own_ship, now), self.parameters
@@ -151,6 +158,7 @@ class Arpa:
 
         # cpa: how the tracks pass own ship
         own, no_danger = self._anchored(samples, moving, own, now, sensors)
+        fixed = stationary.look(places, own, self.limits, now)
         moving, own, against = self._stabilised(moving, own, sensors, tracks)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
@@ -164,7 +172,10 @@ class Arpa:
 
         # alarms: those after the scan, and those that changed
         swap = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        tracking = alarms.Tracking(p.max_targets, _fallen(fallen, acquired, tracks), *swap)
+        in_the_way = stationary.first_in_the_way(fixed), bool((fixed.danger > SAFE).any())
+        tracking = alarms.Tracking(
+            p.max_targets, _fallen(fallen, acquired, tracks), *swap, *in_the_way
+        )
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
@@ -173,7 +184,7 @@ class Arpa:
         moving, passing = take(moving, row), take(passing, row)
         told = no_danger[row], seen.danger[row], swap[0][row], events, *alarm, against
         known = ArpaMemory(samples, remembered, acquired, alarm[0], past)
-        return known, Picture(now, own, row, targets, moving, passing, past, *told)
+        return known, Picture(now, own, row, targets, moving, passing, past, *told, fixed)
 
     def _stabilised(
         self, moving: Motion, own: OwnMotion, sensors: OwnSensors, tracks: Tracks

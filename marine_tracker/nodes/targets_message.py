@@ -9,7 +9,7 @@ from ..arpa.motion import MEMORY_NAMES
 from ..arpa.targets import LETTERS
 from ..arpa.view import View
 from ..geometry import KNOT, NAUTICAL_MILE
-from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, REASONS, TENTATIVE
+from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, REASONS, STATIONARY, TENTATIVE
 from . import hull_columns
 from .convert import time_message
 from .diagnostics import ERROR, OK, STALE, WARN
@@ -50,8 +50,14 @@ COLUMNS = (
     'age_min',
     'reason',
 )
-LEVEL = {TENTATIVE: OK, CONFIRMED: OK, COASTING: WARN, LOST: STALE}
-MESSAGE = {TENTATIVE: 'ACQUIRING', CONFIRMED: 'TRACKING', COASTING: 'COASTING', LOST: 'LOST'}
+LEVEL = {TENTATIVE: OK, CONFIRMED: OK, COASTING: WARN, LOST: STALE, STATIONARY: OK}
+MESSAGE = {
+    TENTATIVE: 'ACQUIRING',
+    CONFIRMED: 'TRACKING',
+    COASTING: 'COASTING',
+    LOST: 'LOST',
+    STATIONARY: 'STATIONARY',
+}
 
 
 class TargetsWriter:

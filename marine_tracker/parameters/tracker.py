@@ -224,6 +224,22 @@ class TrackerParameters:
         high=1000.0,
         live=True,
     )
+    stationary_places: bool = parameter(
+        True,
+        'Whether places where plots always are (quays, moored craft) are learnt and shown as '
+        'stationary objects, not as ever new targets; see doc/tracking.md.',
+        live=True,
+    )
+    land_mask: str = parameter(
+        '',
+        'GeoJSON file of polygons of land: plots on land begin no track. Longitude and latitude, '
+        'counted from land_mask_origin, or metres if the file says so; empty: none.',
+    )
+    land_mask_origin: str = parameter(
+        '',
+        'Latitude and longitude, deg, of the origin of the local positions, as in "63.43 10.39"; '
+        'for a land_mask in longitude and latitude.',
+    )
     max_tracks: int = parameter(
         2000,
         'Largest number of tracks, including tentative ones; above it none are initiated.',

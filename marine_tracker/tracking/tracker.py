@@ -20,12 +20,12 @@ from ..types import (
     append,
     take,
 )
-from . import clutter_map, doppler, late_plots, lifecycle, score, sectors
+from . import at_rest, clutter_map, doppler, late_plots, lifecycle, places, score, sectors
 from .associate import associate, gain
 from .expected import expect
 from .gate import gate, gate_size, split, windows
 from .initiate import pair_up, unexplained
-from .lifecycle import LOST, TENTATIVE
+from .lifecycle import LOST, STATIONARY, TENTATIVE
 from .look import look
 from .merge import duplicates
 from .noise import noise_of
@@ -55,6 +55,7 @@ class TrackerMemory(NamedTuple):
     origin       [2] m, own ship's last known position
     next_id      the next track's id
     next_number  the next confirmed track's target number
+    ground       places where plots always are
     """
 
     tracks: Tracks
@@ -62,6 +63,7 @@ class TrackerMemory(NamedTuple):
     origin: Array
     next_id: int
     next_number: int
+    ground: at_rest.Ground
 
 
 class Report(NamedTuple):
@@ -130,7 +132,12 @@ class Tracker:
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
         of_radar = OfRadar(plots, clutter_map.empty())
         return TrackerMemory(
-            self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1
+            self._begin(plots, 1, 0),
+            (of_radar,) * len(self.radars),
+            np.zeros(2),
+            1,
+            1,
+            at_rest.begin(),
         )
 
     def extrapolate(self, tracks: Tracks, time: float | Array) -> Extrapolation:
@@ -144,8 +151,7 @@ class Tracker:
         if scan.sector is not None:
             return self._part(memory, scan)
         memory, report, left = self._judge(memory, scan)
-        clutter = clutter_map.learn(memory.radars[scan.radar].clutter, *left.found)
-        return _with(memory, scan.radar, clutter=clutter), report
+        return self._learnt(memory, scan.radar, left.found), report
 
     def _part(self, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemory, Report]:
         """A sector: judges the tracks whose windows are swept, with plots that may be theirs."""
@@ -178,9 +184,21 @@ class Tracker:
         )
         if not sectors.complete(waiting):
             return memory, report
-        clutter = clutter_map.learn(of_radar.clutter, *sectors.found(waiting))
-        waiting = sectors.next_revolution(waiting)
-        return _with(memory, scan.radar, clutter=clutter, waiting=waiting), report
+        memory = self._learnt(memory, scan.radar, sectors.found(waiting))
+        return _with(memory, scan.radar, waiting=sectors.next_revolution(waiting)), report
+
+    def _learnt(self, memory: TrackerMemory, radar: int, found: sectors.Found) -> TrackerMemory:
+        """The memory after a whole revolution: false plots, and places where plots always are."""
+        p, (*for_clutter, position, variance, time) = self.radars[radar], found
+        clutter = clutter_map.learn(memory.radars[radar].clutter, *for_clutter)
+        known, number = at_rest.name(memory.ground.places, memory.next_number)
+        distance = np.hypot(*(known.position - memory.origin).T)
+        visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
+        if p.stationary_places:
+            known = places.learn(known, position, variance, time, visible)
+        ground = memory.ground._replace(places=known, revolutions=memory.ground.revolutions + 1)
+        memory = memory._replace(next_number=number, ground=ground)
+        return _with(memory, radar, clutter=clutter)
 
     def _windows(
         self, memory: TrackerMemory, pool: Scan, sweep: Sweep, looked: Array
@@ -246,12 +264,22 @@ class Tracker:
         elsewhere = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
         tracks, reason = lifecycle.step(tracks, seen, gained, elsewhere, p, self.farthest, scan.end)
         tracks, reason = lifecycle.merge(tracks, reason, duplicates(pairs, plot_of, ahead, tracks))
+        hit, was = seen.hit, np.zeros(len(plot_of), bool)
+        was[:count] = memory.tracks.status == STATIONARY
+        still = at_rest.standing(hit, chosen, ahead, noise.with_glint(expected).covariance[:count])
+        ground, tracks, learnable = at_rest.step(memory.ground, tracks, was, still)
         tracks, next_number = lifecycle.number(tracks, memory.next_number)
 
         # remember
         begun = take(of_radar.leftover, first)
         nowhere = np.delete(np.arange(len(lone.time)), first)
-        found = lone.range[nowhere], lone.bearing[nowhere]
+        fixed = np.ones(len(plots.time), bool)
+        fixed[plot_of[hit & ~learnable]] = False
+        rest = take(plots, fixed)
+        found = (
+            *(lone.range[nowhere], lone.bearing[nowhere]),
+            *(rest.position, at_rest.larger(rest.covariance), rest.time),
+        )
         alive = tracks.status != LOST
         memory = TrackerMemory(
             tracks if alive.all() else take(tracks, alive),
@@ -259,6 +287,7 @@ class Tracker:
             scan.own_ship.position[-1],
             memory.next_id + len(first),
             next_number,
+            ground,
         )
         report = Report(seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan)
         memory = _with(memory, scan.radar, leftover=take(measured, free))
