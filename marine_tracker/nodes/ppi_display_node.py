@@ -167,9 +167,11 @@ class PpiDisplayNode(RunnableNode):
                 'time': seconds,
                 'period': median(gaps) if gaps else None,
                 'columns': display_messages.targets(rows),
+                'fixed': display_messages.stationary(rows),
             },
         )
         own = self._own[-1][1:] if self._own else None
+        rows = rows[rows['id'] > 0]
         position = np.stack([rows['x'], rows['y']], 1).astype(float)
         if own and self._trails.add(seconds, own, rows['id'], position):
             self.server.publish('trails', self._trails.plain())

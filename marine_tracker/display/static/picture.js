@@ -13,6 +13,7 @@ import { echoKey, paintEchoes } from './echoes.js';
 import { placed } from './labels.js';
 import { Layer, Stamps } from './layers.js';
 import { RANGES } from './settings.js';
+import { drawStationary } from './stationary.js';
 import { drawMarks, drawScale, drawTrial } from './surround.js';
 import {
   ACQUIRING,
@@ -119,6 +120,7 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
         drawTrails(pen, state, settings, scope, colors),
       );
     }
+    drawStationary(canvas, state.fixed, scope.view, colors.trail);
     drawOwnShip(canvas, state, settings, scope, colors);
     drawTargets(canvas, state, settings, scope, colors, marks.id, local);
   }
