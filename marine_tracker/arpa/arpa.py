@@ -32,7 +32,6 @@ from .cpa import Approach, OwnMotion, approach
 from .motion import Motion
 from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
-from .situation import SAFE
 from .stabilisation import ALL_WELL, NONE, OwnSensors, Stabilisation, stabilisation
 from .stationary import Stationary
 from .swap_risk import swap_risk
@@ -172,10 +171,8 @@ class Arpa:
 
         # alarms: those after the scan, and those that changed
         swap = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        in_the_way = stationary.first_in_the_way(fixed), bool((fixed.danger > SAFE).any())
-        tracking = alarms.Tracking(
-            p.max_targets, _fallen(fallen, acquired, tracks), *swap, *in_the_way
-        )
+        way = stationary.in_the_way(fixed)
+        tracking = alarms.Tracking(p.max_targets, _fallen(fallen, acquired, tracks), *swap, *way)
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )

@@ -13,7 +13,7 @@ from ..types import Array, CodeArray
 from . import situation
 from .cpa import Approach, OwnMotion, approach
 from .motion import STEADY, Motion
-from .situation import DANGEROUS, Limits
+from .situation import DANGEROUS, SAFE, Limits
 
 
 class Stationary(NamedTuple):
@@ -47,14 +47,15 @@ def look(shown: Shown, own: OwnMotion, limits: Limits, now: float) -> Stationary
     return Stationary(shown, passing, situation.danger(passing, np.zeros(count, bool), limits))
 
 
-def first_in_the_way(objects: Stationary) -> tuple[float, ...]:
+def in_the_way(objects: Stationary) -> tuple[tuple[float, ...], bool]:
     """Of the dangerous objects: their number, and of the one that is reached first range m, bearing
-    rad, CPA m and TCPA s; nan where there is none."""
+    rad, CPA m and TCPA s; nan where there is none. And whether any is nearly dangerous."""
     rows = (objects.danger == DANGEROUS).nonzero()[0]
+    nearly = bool((objects.danger > SAFE).any())
     if not len(rows):
-        return 0.0, np.nan, np.nan, np.nan, np.nan
+        return (0.0, np.nan, np.nan, np.nan, np.nan), nearly
     tcpa: Array = np.nan_to_num(objects.approach.tcpa[rows], nan=np.inf)
     first = rows[tcpa.argmin()]
     passing = objects.approach
     values = (passing.range, passing.bearing, passing.cpa, passing.tcpa)
-    return float(len(rows)), *(float(value[first]) for value in values)
+    return (float(len(rows)), *(float(value[first]) for value in values)), nearly

@@ -57,9 +57,10 @@ def run(args: Namespace) -> int:
             alarm_file = stack.enter_context(written(args.alarms, newline=''))
         summary = write_tracks(Service(parameters), scans, file, alarm_file)
     left_out = f', {summary.left_out} pairs left out' if summary.left_out else ''
+    at_rest = f', {summary.stationary} stationary objects' if summary.stationary else ''
     print(
         f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '
-        f'{summary.cpu_ms:.2f} ms CPU a scan{left_out}',
+        f'{summary.moving} of them moving{at_rest}, {summary.cpu_ms:.2f} ms CPU a scan{left_out}',
         file=sys.stderr if args.out == '-' else sys.stdout,
     )
     if parameters.estimator in WANT_DOPPLER and not summary.doppler:

@@ -231,14 +231,12 @@ class TrackerParameters:
         live=True,
     )
     land_mask: str = parameter(
-        '',
-        'GeoJSON file of polygons of land: plots on land begin no track. Longitude and latitude, '
-        'counted from land_mask_origin, or metres if the file says so; empty: none.',
+        '', 'GeoJSON file of polygons of land: plots on land begin no track. Empty: none.'
     )
     land_mask_origin: str = parameter(
         '',
-        'Latitude and longitude, deg, of the origin of the local positions, as in "63.43 10.39"; '
-        'for a land_mask in longitude and latitude.',
+        'Latitude and longitude, deg, of the origin of the local positions, as in "63.43 10.39". '
+        'Empty: the coordinates in land_mask are metres, east and north.',
     )
     max_tracks: int = parameter(
         2000,

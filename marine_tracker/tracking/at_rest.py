@@ -67,6 +67,11 @@ class Ground(NamedTuple):
     anchors: Anchors
     revolutions: int
 
+    @property
+    def moving(self) -> IntArray:
+        """Ids of the tracks that have moved for sure."""
+        return self.anchors.id[self.anchors.moved]
+
 
 def begin() -> Ground:
     """Nothing is known."""
