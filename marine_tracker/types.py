@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 FloatArray = NDArray[np.floating[Any]]  # of float32 as well, for the trained networks
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+StrengthArray = NDArray[np.unsignedinteger[Any]]  # of radar video, uint8 or uint16
 CodeArray = NDArray[np.int8]  # one of a few named numbers, such as Tracks.status
 Numbers = Sequence[float] | Array
 HISTORY = 20  # scans of hits and misses that a track remembers, bits of Tracks.history
@@ -91,6 +92,43 @@ class Scan(NamedTuple):
     def measured_from(self) -> OwnShip:
         """Where the plots were measured from."""
         return self.own_ship if self.antenna is None else self.antenna
+
+
+class Sweep(NamedTuple):
+    """Spokes as a radar sends them, S of them, not yet placed.
+
+    time      [S]     s, when the beam passed
+    angle     [S]     rad, clockwise from own ship's bow
+    heading   [S]     rad, true, as the radar tells it; nan where it does not
+    range     [S]     m, of the end of the last sample; samples are even from 0 on
+    strength  [S, B]  uint8 or uint16, the radar's own scale: higher is stronger, 0 is nothing
+    """
+
+    time: Array
+    angle: Array
+    heading: Array
+    range: Array
+    strength: StrengthArray
+
+
+class Spokes(NamedTuple):
+    """Radar video of a sector: echo strengths along S directions, in the order of the beam.
+
+    A sector is any number of spokes. Sample b of a spoke lies from b to b + 1 range steps.
+
+    time        [S]     s, when the beam passed
+    bearing     [S]     rad, clockwise from true north, by the heading of that moment; nan where
+                        no heading was known
+    range_step  [S]     m, depth of a sample
+    strength    [S, B]  uint8 or uint16, the radar's own scale: higher is stronger, 0 is nothing
+    own_ship    K samples that cover the sector as well as is known
+    """
+
+    time: Array
+    bearing: Array
+    range_step: Array
+    strength: StrengthArray
+    own_ship: OwnShip
 
 
 class Truth(NamedTuple):

@@ -14,33 +14,21 @@ from ..arpa.alarm_text import parts, text
 from ..arpa.situation import DANGERS
 from ..arpa.targets import label
 from ..geometry import NAUTICAL_MILE
-from ..recording import csv_folder, track_file
+from ..recording import csv_folder, spokes_file, track_file
 from ..recording.csv_folder import Recording
+from ..recording.mcap_name import is_mcap
 from ..recording.track_file import TargetColumns, TrackRows
 from ..service import Output, Service, service_for
 from ..simulation import radar, scenario
 from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
 from ..tracking.radars import fused, merged
 from ..types import Scan
-from . import metrics, screened
+from . import metrics, screened, video_source
+from .source import Source
+from .video_source import DEFAULT_VIDEO, VideoOptions
 
 NAMES = np.array(STATUS_NAMES)
 ALARM_COLUMNS = ('time_s', 'alarm', 'target', 'where', 'priority', 'state', 'text')
-
-
-class Source(NamedTuple):
-    """Scans to track.
-
-    scans               (number, scan) in time order
-    total               how many; None where it is not known
-    tracker_parameters  those that belong to the radar and its waters
-    remarks             what people should know of the files that were read
-    """
-
-    scans: Iterable[tuple[int, Scan]]
-    total: int | None
-    tracker_parameters: dict[str, Any]
-    remarks: tuple[str, ...] = ()
 
 
 class Summary(NamedTuple):
@@ -58,12 +46,16 @@ class Summary(NamedTuple):
     stationary: int
 
 
-def open_source(name: str, seed: int = 1) -> Source:
-    """A recording if `name` is a folder, else a scenario run with `seed`.
+def open_source(name: str, seed: int = 1, video: VideoOptions = DEFAULT_VIDEO) -> Source:
+    """A recording if `name` is a folder, a file of spokes or an MCAP file, else a scenario run with
+    `seed`.
 
-    ValueError if it is neither, or has an error.
+    video  how plots are taken out of spokes
+    ValueError if it is none of these, or has an error.
     """
-    if Path(name).is_dir():
+    if spokes_file.is_spokes_file(name):
+        return video_source.open_recording(name, video)
+    if Path(name).is_dir() or is_mcap(name):
         recording, remarks = screened.read(name)
         numbers = recording.numbers.tolist()
         return Source(
@@ -74,14 +66,14 @@ def open_source(name: str, seed: int = 1) -> Source:
     return Source(simulated, None, chosen.tracker_parameters(), chosen.fleet.remarks)
 
 
-def fuse(names: Sequence[str], seed: int = 1) -> Source:
+def fuse(names: Sequence[str], seed: int = 1, video: VideoOptions = DEFAULT_VIDEO) -> Source:
     """The sources of one scene combined, each as a radar of its own. A single source is returned as
     it is.
 
     Scans are numbered in the order of their ends. Each scenario has its own noise: seeds count up
     from `seed`.
     """
-    sources = [open_source(name, seed + k) for k, name in enumerate(names)]
+    sources = [open_source(name, seed + k, video) for k, name in enumerate(names)]
     if len(sources) == 1:
         return sources[0]
     radars = [f'radar_{k}' for k in range(1, len(sources) + 1)]

@@ -1,0 +1,124 @@
+"""Plots from the cells of components whose echoes have ended."""
+
+import math
+
+import numpy as np
+
+from ..geometry import unit_vector, wrap_bearing
+from ..parameters import VideoParameters
+from ..types import Array, BoolArray, IntArray, PolarPlots, take
+from . import detection, measure, pieces, tail
+from .found import LAND, Details, Found, nothing
+from .stack import Stack
+
+CORE = 2 * math.log(2)  # nepers: an echo is measured across where it is 6 dB below its peak
+POINT = np.array([1.0, math.sqrt(2.0)])  # beams and pulses that a point is wide there
+ROUND = 1.4  # times that: still a point
+SKIRTS = 2.0  # beams that the flanks of a strong echo may add to its width
+LEAST_CELLS = 3  # of an echo, where beam and pulse spread it over more
+DECIBEL = 10 / math.log(10)  # of a neper
+
+
+def measured(
+    held: Stack,
+    row: IntArray,
+    sample: IntArray,
+    component: IntArray,
+    limits: tail.Thresholds,
+    full: int,
+    parameters: VideoParameters,
+) -> Found:
+    """The plots of the components [n] of cells at rows and samples [n]."""
+    lobe, count = held.lobe, int(component.max()) + 1
+    slope = np.ones(count)
+    slope[component] = limits.slope[tail.zone_of(sample)]
+    found = pieces.split(row, sample, component, count, held.strength, lobe, slope)
+    row, sample, piece, count = found.row, found.sample, found.piece, found.number
+    power, value = detection.power_at(held, row, sample, limits)
+    top = np.full(count, -np.inf)
+    np.maximum.at(top, piece, power)
+    core = power >= top[piece] - CORE
+    centre, covariance, extent = measure.lengths(
+        row[core],
+        sample[core],
+        piece[core],
+        np.maximum(power[core], 0.1),
+        count,
+        POINT * lobe.shape,
+    )
+    centre[:, 1] += 0.5
+    cells = np.bincount(piece, minlength=count)
+    spokes = _spokes(row, piece, count)
+    across = centre[:, 1] * held.range_step * held.spacing  # m, of a spoke
+    size = np.stack([extent[:, 1] * held.range_step, extent[:, 0] * across], 1)
+    flanks = SKIRTS * lobe.shape[0] * across
+    land = (size - np.stack([0 * flanks, flanks], 1) > parameters.max_size_m).any(1)
+    spread = lobe.shape[0] >= detection.LEAST_SPOKES
+    enough = (cells >= LEAST_CELLS) & (spokes >= 2) if spread else cells >= 1
+    keep = ~land & enough
+    if not keep.any():
+        return nothing()._replace(counts={LAND: int(land.sum())} if land.any() else {})
+
+    point = keep & (extent <= (ROUND - 1) * POINT * lobe.shape + 1).all(1)
+    snr = top.copy()
+    chosen = np.flatnonzero(point)
+    if len(chosen):
+        place, known, height, held_ = _fitted(held, found, chosen, limits, full)
+        chosen = chosen[held_]
+        centre[chosen] = place[held_] + [0.0, 0.5]
+        covariance[chosen], snr[chosen] = known[held_], height[held_]
+    doppler = np.zeros(count)
+    if parameters.doppler_codes:
+        sign = np.where(value == full - 1, 1.0, np.where(value == full, -1.0, 0.0))
+        doppler = np.bincount(piece, sign, count) / cells
+    floor = (measure.FLOOR * lobe.shape) ** 2
+    covariance[:, [0, 1], [0, 1]] += floor
+    return Found(
+        _polar(held, centre[keep], covariance[keep], snr[keep], parameters.range_offset_m),
+        Details(size[keep], cells[keep], doppler[keep]),
+        {LAND: int(land.sum())} if land.any() else {},
+        (np.nan, np.nan),
+    )
+
+
+def _spokes(row: IntArray, piece: IntArray, count: int) -> IntArray:
+    """[count] spokes in which each piece has cells."""
+    pairs = np.unique(piece * (int(row.max()) + 1) + row)
+    return np.bincount(pairs // (int(row.max()) + 1), minlength=count)
+
+
+def _fitted(
+    held: Stack, found: pieces.Pieces, chosen: IntArray, limits: tail.Thresholds, full: int
+) -> tuple[Array, Array, Array, BoolArray]:
+    """The chosen pieces as points (measure.points)."""
+    peak = found.peak[chosen]
+    rows, samples, usable = measure.patches(peak, held.strength, held.lobe)
+    power, value = detection.power_at(held, rows, samples, limits)
+    usable &= value < full
+    # Cells of another piece are not this one's echo.
+    width = held.strength.shape[1]
+    owner = np.full(held.strength.size, -1, np.int32)
+    owner[found.row * width + found.sample] = found.piece
+    owners = owner[rows * width + samples]
+    usable &= (owners < 0) | (owners == chosen[:, None, None])
+    step = 1.0 / limits.slope[tail.zone_of(peak[:, 1])]
+    return measure.points(peak, power, usable, held.lobe, step)
+
+
+def _polar(held: Stack, place: Array, covariance: Array, snr: Array, offset: float) -> PolarPlots:
+    """Plots at places [M, 2], rows and samples, with covariance [M, 2, 2] of these."""
+    rows = np.arange(len(held.time))
+    time = np.interp(place[:, 0], rows, held.time)
+    bearing = np.interp(place[:, 0], rows, held.bearing)
+    range_ = np.maximum(place[:, 1] * held.range_step + offset, 1.0)
+    along = unit_vector(bearing)
+    across = np.stack([along[:, 1], -along[:, 0]], -1)
+    to_metres = np.stack([across * (held.spacing * range_)[:, None], along * held.range_step], 2)
+    plots = PolarPlots(
+        time,
+        range_,
+        wrap_bearing(bearing),
+        DECIBEL * snr,
+        covariance=to_metres @ covariance @ to_metres.transpose(0, 2, 1),
+    )
+    return take(plots, np.argsort(time, kind='stable'))
