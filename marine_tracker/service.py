@@ -23,7 +23,6 @@ from .extent.extents import Extents, ExtentsMemory
 from .extent.hulls import Shapes
 from .geometry import heading_from
 from .parameters import ArpaParameters, TrackerParameters, from_mapping
-from .tracking.at_rest import shown
 from .tracking.mounting import mounted
 from .tracking.revolution import Turn, report_of, whole
 from .tracking.tracker import Report, Tracker, TrackerMemory
@@ -161,13 +160,7 @@ class Service:
         """The second half of `step`: targets and alarms."""
         fares = standing(done.report, self.tracker.estimator)
         known, picture = self.arpa.step(
-            memory.arpa,
-            done.scan,
-            done.report,
-            heading,
-            fares.fallen_at,
-            sensors,
-            shown(memory.tracker.ground.places, memory.tracker.tracks),
+            memory.arpa, done.scan, done.report, heading, fares.fallen_at, sensors
         )
         return memory._replace(arpa=known), Output(*done, fares, picture)
 

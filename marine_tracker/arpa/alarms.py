@@ -123,7 +123,7 @@ class Tracking(NamedTuple):
     fallen    confirmed targets that have fallen back from their filter
     overlap   [N]  of the gates and
     other     [N]  row of the track they overlap with, as swap_risk gives them
-    in_the_way  of stationary objects, as stationary.in_the_way tells it
+    in_the_way  of stationary objects, as Stationary.way tells it
     nearly    stationary objects are nearly dangerous
     """
 

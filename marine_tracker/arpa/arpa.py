@@ -6,7 +6,6 @@ import numpy as np
 
 from ..geometry import NAUTICAL_MILE, polar_to_position
 from ..parameters import ArpaParameters, TrackerParameters
-from ..tracking.at_rest import NOTHING_SHOWN, Shown
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.noise import noise_of
@@ -136,14 +135,12 @@ class Arpa:
         heading: float,
         fallen: Mask = False,
         sensors: OwnSensors = ALL_WELL,
-        places: Shown = NOTHING_SHOWN,
     ) -> tuple[ArpaMemory, Picture]:
         """Processes one antenna revolution. All results are for its end.
 
         heading  rad, own ship's, true; nan if unknown
         fallen   [N] of the report's tracks, or one for all: their estimator has fallen back
         sensors  what is known of own ship beside her positions
-        places   where plots always are
         """
         now, tracks, radar = scan.end, report.tracks, self.radars[scan.radar].parameters
         samples, p = lately(memory.own, scan.own_ship, now), self.parameters
@@ -157,7 +154,7 @@ class Arpa:
 
         # cpa: how the tracks pass own ship
         own, no_danger = self._anchored(samples, moving, own, now, sensors)
-        fixed = stationary.look(places, own, self.limits, now)
+        fixed = stationary.look(report.places, own, self.limits, now)
         moving, own, against = self._stabilised(moving, own, sensors, tracks)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
@@ -166,13 +163,13 @@ class Arpa:
 
         # acquisition: which of them are targets
         acquired, events = acquisition.step(memory.acquisition, self.acquisition, seen, now)
-        targets = _shown(acquired, memory.acquisition, tracks)
-        row = row_of(tracks.id, targets.id)
+        targets, row = _shown(acquired, memory.acquisition, tracks)
 
         # alarms: those after the scan, and those that changed
         swap = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        way = stationary.in_the_way(fixed)
-        tracking = alarms.Tracking(p.max_targets, _fallen(fallen, acquired, tracks), *swap, *way)
+        tracking = alarms.Tracking(
+            p.max_targets, _fell(fallen, acquired, tracks), *swap, *fixed.way
+        )
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
@@ -239,14 +236,16 @@ class Arpa:
         return overlap, other
 
 
-def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Targets:
-    """The targets in the order of their numbers, including those that were lost in this scan."""
+def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> tuple[Targets, IntArray]:
+    """The targets in the order of their numbers, including those that were lost in this scan; and
+    their rows [T] in the tracks."""
     lost = np.isin(before.targets.id, tracks.id[tracks.status == LOST])
     targets = append(acquired.targets, take(before.targets, lost))
-    return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+    targets = take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+    return targets, row_of(tracks.id, targets.id)
 
 
-def _fallen(fallen: Mask, acquired: Acquisition, tracks: Tracks) -> int:
+def _fell(fallen: Mask, acquired: Acquisition, tracks: Tracks) -> int:
     """Number of confirmed targets that have fallen back; `fallen` [N] for the tracks, or one for
     all.
     """

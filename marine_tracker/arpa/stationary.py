@@ -28,6 +28,20 @@ class Stationary(NamedTuple):
     approach: Approach
     danger: CodeArray
 
+    @property
+    def way(self) -> tuple[tuple[float, ...], bool]:
+        """Of the dangerous objects: their number, and of the one that is reached first range m,
+        bearing rad, CPA m and TCPA s; nan where there is none. And whether any is nearly so."""
+        rows = (self.danger == DANGEROUS).nonzero()[0]
+        nearly = bool((self.danger > SAFE).any())
+        if not len(rows):
+            return (0.0, np.nan, np.nan, np.nan, np.nan), nearly
+        tcpa: Array = np.nan_to_num(self.approach.tcpa[rows], nan=np.inf)
+        first = rows[tcpa.argmin()]
+        passing = self.approach
+        values = (passing.range, passing.bearing, passing.cpa, passing.tcpa)
+        return (float(len(rows)), *(float(value[first]) for value in values)), nearly
+
 
 def look(shown: Shown, own: OwnMotion, limits: Limits, now: float) -> Stationary:
     """The objects as own ship, over ground, meets them; now s."""
@@ -45,17 +59,3 @@ def look(shown: Shown, own: OwnMotion, limits: Limits, now: float) -> Stationary
     )
     passing = approach(motion, own, limits.cpa, limits.tcpa)
     return Stationary(shown, passing, situation.danger(passing, np.zeros(count, bool), limits))
-
-
-def in_the_way(objects: Stationary) -> tuple[tuple[float, ...], bool]:
-    """Of the dangerous objects: their number, and of the one that is reached first range m, bearing
-    rad, CPA m and TCPA s; nan where there is none. And whether any is nearly dangerous."""
-    rows = (objects.danger == DANGEROUS).nonzero()[0]
-    nearly = bool((objects.danger > SAFE).any())
-    if not len(rows):
-        return (0.0, np.nan, np.nan, np.nan, np.nan), nearly
-    tcpa: Array = np.nan_to_num(objects.approach.tcpa[rows], nan=np.inf)
-    first = rows[tcpa.argmin()]
-    passing = objects.approach
-    values = (passing.range, passing.bearing, passing.cpa, passing.tcpa)
-    return (float(len(rows)), *(float(value[first]) for value in values)), nearly

@@ -30,6 +30,7 @@ class Anchors(NamedTuple):
     away      [A]     plots in a row far from it that were off every place, or at speed
     moved     [A]     it has moved for sure
     number    [A]     of the target, 0 for none
+    target    [A]     it is a target, and no place
     """
 
     id: IntArray
@@ -38,6 +39,7 @@ class Anchors(NamedTuple):
     away: IntArray
     moved: BoolArray
     number: IntArray
+    target: BoolArray
 
 
 class Standing(NamedTuple):
@@ -76,7 +78,9 @@ class Ground(NamedTuple):
 def begin() -> Ground:
     """Nothing is known."""
     ids = np.zeros(0, np.int64)
-    return Ground(empty(), Anchors(ids, np.zeros((0, 2)), np.zeros(0), ids, ids > 0, ids), 0)
+    return Ground(
+        empty(), Anchors(ids, np.zeros((0, 2)), np.zeros(0), ids, ids > 0, ids, ids > 0), 0
+    )
 
 
 def step(
@@ -95,7 +99,8 @@ def step(
     anchors = moving(follow(ground.anchors, tracks, seen), at, seen, learnt)
     others = take(ground.anchors, ~np.isin(ground.anchors.id, tracks.id))
     tracks, places = settle(tracks, was, anchors, at, ground.places, others.number)
-    anchors = anchors._replace(number=tracks.number)
+    target = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
+    anchors = anchors._replace(number=tracks.number, target=target)
     every = append(others, take(anchors, tracks.status != LOST))
     every = take(every, every.id.argsort(kind='stable'))
     ground = ground._replace(places=places, anchors=every)
@@ -110,7 +115,7 @@ def follow(before: Anchors, tracks: Tracks, seen: Standing) -> Anchors:
     if old is None:
         none = np.zeros(len(new), np.int64)
         still = np.zeros(len(new), bool)
-        return Anchors(tracks.id, seen.position, seen.variance, none, still, tracks.number)
+        return Anchors(tracks.id, seen.position, seen.variance, none, still, tracks.number, still)
     return Anchors(
         tracks.id,
         np.where(new[:, None], seen.position, old.position),
@@ -118,6 +123,7 @@ def follow(before: Anchors, tracks: Tracks, seen: Standing) -> Anchors:
         np.where(new, 0, old.away),
         ~new & old.moved,
         tracks.number,
+        ~new & old.target,
     )
 
 
@@ -194,9 +200,9 @@ NOTHING_SHOWN = Shown(
 )
 
 
-def shown(places: Places, tracks: Tracks) -> Shown:
+def shown(ground: Ground) -> Shown:
     """The established places, without those for which a target stands."""
-    targets = tracks.number[(tracks.status == CONFIRMED) | (tracks.status == COASTING)]
+    places, targets = ground.places, ground.anchors.number[ground.anchors.target]
     chosen = (places.number > 0) & ~np.isin(places.number, targets)
     there = take(places, chosen.nonzero()[0][places.number[chosen].argsort()])
     return Shown(

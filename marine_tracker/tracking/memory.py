@@ -50,6 +50,7 @@ class Report(NamedTuple):
     reason     [N]     why a LOST track was lost: index into lifecycle.REASONS, 0 = not lost
     begun      [B]     the first plots, of the last scan, of the new tracks: the last B
     scan       whose plots `plot` refers to: of a sector those that were decided in it
+    places     where plots always are, as they are to be shown
     """
 
     time: Array
@@ -60,6 +61,7 @@ class Report(NamedTuple):
     begun: Plots
     left_out: int
     scan: Scan
+    places: at_rest.Shown
 
 
 class Left(NamedTuple):

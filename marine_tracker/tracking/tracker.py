@@ -181,7 +181,8 @@ class Tracker:
             next_number,
             ground,
         )
-        report = Report(seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan)
+        told = seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan
+        report = Report(*told, at_rest.shown(ground))
         memory = changed(memory, scan.radar, leftover=take(measured, free))
         return memory, report, Left(free, found)
 
