@@ -154,7 +154,7 @@ class Arpa:
 
         # cpa: how the tracks pass own ship
         own, no_danger = self._anchored(samples, moving, own, now, sensors)
-        fixed = stationary.look(report.places, own, self.limits, now)
+        rest = stationary.look(report.places, own, self.limits, now)
         moving, own, against = self._stabilised(moving, own, sensors, tracks)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
@@ -167,9 +167,7 @@ class Arpa:
 
         # alarms: those after the scan, and those that changed
         swap = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        tracking = alarms.Tracking(
-            p.max_targets, _fell(fallen, acquired, tracks), *swap, *fixed.way
-        )
+        tracking = alarms.Tracking(p.max_targets, _fell(fallen, acquired, tracks), *swap, *rest.way)
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
@@ -178,7 +176,7 @@ class Arpa:
         moving, passing = take(moving, row), take(passing, row)
         told = no_danger[row], seen.danger[row], swap[0][row], events, *alarm, against
         known = ArpaMemory(samples, remembered, acquired, alarm[0], past)
-        return known, Picture(now, own, row, targets, moving, passing, past, *told, fixed)
+        return known, Picture(now, own, row, targets, moving, passing, past, *told, rest)
 
     def _stabilised(
         self, moving: Motion, own: OwnMotion, sensors: OwnSensors, tracks: Tracks
