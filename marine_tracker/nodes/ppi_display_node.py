@@ -166,8 +166,10 @@ class PpiDisplayNode(RunnableNode):
                 'time': seconds,
                 'period': median(gaps) if gaps else None,
                 'columns': display_messages.targets(rows),
+                'fixed': display_messages.stationary(rows),
             },
         )
+        rows = rows[rows['id'] > 0]
         own = self._own.position
         position = np.stack([rows['x'], rows['y']], 1).astype(float)
         if own is not None and self._trails.add(seconds, own, rows['id'], position):
