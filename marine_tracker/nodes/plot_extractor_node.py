@@ -66,6 +66,7 @@ class PlotExtractorNode(RunnableNode):
                 *placing.REASONS,
                 found.LAND,
                 found.LONE,
+                found.LOBE,
                 NO_PLACE,
             ),
             self.tell,
@@ -233,7 +234,7 @@ class PlotExtractorNode(RunnableNode):
             level, message = WARN, f'no spokes for {silent:.0f} s'
         elif came and not usable:
             level, message = ERROR, 'spokes come, none is usable: ' + ', '.join(fresh)
-        elif any(reason not in (found.LAND, found.LONE) for reason in fresh):
+        elif any(reason not in (found.LAND, found.LONE, found.LOBE) for reason in fresh):
             level, message = WARN, 'lately: ' + ', '.join(fresh)
         if self.failures.fresh(wall):
             level, message = ERROR, 'callbacks fail'
