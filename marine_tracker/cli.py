@@ -26,6 +26,7 @@ COMMANDS = (
     'imo',
     'soak',
     'doctor',
+    'explain',
 )
 
 DESCRIPTION = """\

@@ -4,7 +4,9 @@ import json
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-LONGEST = 2000  # characters of a message from a viewer
+from . import zone_fields
+
+LONGEST = 8000  # characters of a message from a viewer: a zone of 200 corners
 LONGEST_WORD = 300
 FAR_M = 1e6  # m from the origin of `map`: nobody clicks further away
 
@@ -30,6 +32,9 @@ FIELDS: dict[str, dict[str, Field]] = {
     'silence': {},
     'limits': {'cpa_nm': (0.01, 20.0), 'tcpa_min': (0.1, 120.0)},
     'watch': {'areas': (0, 1)},
+    'explain': {'x': (-FAR_M, FAR_M), 'y': (-FAR_M, FAR_M)},
+    'zone_put': {'zone': zone_fields.zone, 'was': zone_fields.name},
+    'zone_delete': {'name': zone_fields.name},
     'show': {'scenario': _word, 'recording': _word, 'rate': (0.01, 1000.0)},
 }
 LOGIN, WATCH = 'login', 'watch'

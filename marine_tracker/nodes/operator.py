@@ -31,6 +31,7 @@ from .alarm_log import AlarmLog
 from .arpa_messages import alarms_message, alarms_past_message, trial_message
 from .base_node import RunnableNode
 from .diagnostics import Tally, answered
+from .explanations import Explanations
 from .own_sensors import SensorsInput
 
 REFUSED = 'commands refused'
@@ -84,6 +85,9 @@ class Operator:
             node.create_service(Trigger, own + topics.CANCEL_ALL, self._on_cancel_all)
             node.create_service(Trigger, own + topics.ACKNOWLEDGE, self._on_acknowledge)
             node.create_service(Trigger, own + topics.SILENCE, self._on_silence)
+        self._explanations = Explanations(
+            node, lambda: (self.service, self.memory), self._point, hardware_id
+        )
         node.create_service(SetBool, topics.TRIAL_MANOEUVRE, self._on_trial)
 
     # -- in ------------------------------------------------------------------------------------
@@ -117,6 +121,7 @@ class Operator:
         if scan.end >= self._end or self.picture is None:  # of a slow radar they come later
             self._end, self._end_ns = scan.end, end_ns
         self.picture = output.picture
+        self._explanations.take(output)
         self._publish_alarms(self.picture.changed)
         self._tell_of_clicks(self.picture.events)
         if self._trial_since is not None:
@@ -180,13 +185,13 @@ class Operator:
             return point
         if frame != topics.OWN_SHIP_FRAME:
             raise ValueError(
-                f'the point to acquire is in frame {frame!r}; it must be '
+                f'the point is in frame {frame!r}; it must be '
                 f'{topics.FRAME} or {topics.OWN_SHIP_FRAME}'
             )
         heading = self.sensors.heading
         if self.picture is None or not np.isfinite(heading):
             raise ValueError(
-                f'a point in {topics.OWN_SHIP_FRAME} cannot be acquired before '
+                f'a point in {topics.OWN_SHIP_FRAME} cannot be taken before '
                 "plots came, or without own ship's heading"
             )
         ahead = np.array([np.sin(heading), np.cos(heading)])

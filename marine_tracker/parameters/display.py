@@ -30,7 +30,11 @@ class PpiDisplayParameters:
         "Under any other name than this machine's own the page is refused.",
     )
     tracker: str = parameter('tracker', 'Name of the tracker node that commands are for.')
-    plots_topic: str = parameter('radar/plots', 'Topic of the plots that are drawn.')
+    plots_topic: str = parameter(
+        'radar/plots',
+        'Topic of the plots that are drawn, of a tracker with one radar. Those of several are '
+        'known from its parameter radars.',
+    )
     own_length_m: float = parameter(
         0.0,
         "Own ship's length. With it she is drawn to scale where she is large enough; 0: never.",

@@ -1,6 +1,7 @@
 // The buttons below and beside the picture: what they say, and what they do.
 
 import { element, say } from './panel.js';
+import { duration } from './format.js';
 import { next } from './settings.js';
 
 /** Names in colours.css that the picture is drawn with. */
@@ -17,10 +18,11 @@ export function applySettings(/** @type {import('./app.js').App} */ app) {
   );
   const words = {
     orientation: settings.orientation,
+    motion: `${settings.motion} motion`,
     vectors: `Vectors ${settings.vectors}`,
     vectorMinutes: `${settings.vectorMinutes} min`,
     trails: `Trails ${settings.trails}`,
-    trailMinutes: `${settings.trailMinutes} min`,
+    trailMinutes: duration(settings.trailMinutes),
     offCentre: `Off centre ${settings.offCentre}`,
     rings: `Rings ${settings.rings}`,
     areas: `Danger areas ${settings.areas}`,
@@ -47,6 +49,11 @@ export function listen(/** @type {import('./app.js').App} */ app) {
     farther: () => app.zoom(1),
     silence: app.silence,
     mark: app.mark,
+    measure: app.measure,
+    why: app.why,
+    'reset-view': app.resetView,
+    'no-heading-line': () => app.hide('heading'),
+    'no-graphics': () => app.hide('graphics'),
     acquire: app.acquire,
     cancel: app.cancel,
     'acknowledge-all': () => app.command('acknowledge_all'),

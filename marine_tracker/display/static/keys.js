@@ -2,6 +2,7 @@
 
 import { toMap, toScreen } from './geometry.js';
 import { next } from './settings.js';
+import { edit, moveHandle, nextHandle } from './zones_panel.js';
 
 const STEP_PX = 8; // of the cursor
 const ARROWS = {
@@ -20,8 +21,11 @@ const SETTINGS = {
   r: 'rings',
   p: 'palette',
   d: 'areas',
-  w: 'safeCourses',
+  f: 'safeCourses',
   u: 'ellipses',
+  k: 'motion',
+  T: 'trailMinutes',
+  i: 'labels',
 };
 
 /** Whether a key is meant for a field that somebody types in. */
@@ -46,8 +50,16 @@ export function listen(/** @type {import('./app.js').App} */ app) {
         ? app.command('acknowledge', { number: target.number })
         : app.command('acknowledge_all');
     },
+    b: app.ownShipHere,
+    x: app.resetView,
+    m: app.measure,
+    w: () => (app.marks.cursor ? app.whyAt(app.marks.cursor) : app.why()),
+    h: () => app.hide('heading'),
+    g: () => app.hide('graphics'),
+    '[': () => nextHandle(app, -1),
+    ']': () => nextHandle(app, 1),
     Delete: app.cancel,
-    Escape: () => app.choose(null),
+    Escape: () => escape(app),
   };
   for (const [key, name] of Object.entries(SETTINGS)) {
     keys[key] = () => app.change(name, next(app.settings, name));
@@ -59,15 +71,24 @@ export function listen(/** @type {import('./app.js').App} */ app) {
   });
 }
 
+/** Ends what is going on: a question, a zone that is being changed, at last the selection. */
+function escape(app) {
+  if (app.asking) app.stopAsking();
+  else if (app.marks.draft) edit(app, null);
+  else app.choose(null);
+}
+
 function onPicture(app, /** @type {KeyboardEvent} */ event) {
   const step = ARROWS[event.key];
   if (step) {
-    moveCursor(app, STEP_PX * step[0], STEP_PX * step[1]);
+    const move = event.shiftKey ? moveHandle : moveCursor;
+    move(app, STEP_PX * step[0], STEP_PX * step[1]);
     event.preventDefault();
   }
   if (event.key === 'Enter' && app.marks.cursor) {
+    const asked = app.asking !== null;
     app.selectAt(...toScreen(app.scopeNow().view, ...app.marks.cursor));
-    if (app.marks.id === null) app.acquire();
+    if (!asked && app.marks.id === null) app.acquire();
   }
 }
 

@@ -1,9 +1,9 @@
 // What stands beside the picture: own ship, alarms, the selected target, the table, the state.
 
-import { rangeBearing, toMap } from './geometry.js';
 import * as format from './format.js';
+import { rangeBearing } from './geometry.js';
+import { bowOf } from './scope.js';
 import { COASTING, LOST, ACQUIRING, nameOf } from './state.js';
-import { RANGES } from './settings.js';
 
 const STATUS = {
   [ACQUIRING]: 'acquiring',
@@ -12,7 +12,7 @@ const STATUS = {
   [LOST]: 'lost',
 };
 const MOTION = ['steady', 'manoeuvring', 'at rest'];
-const STABILISED = {
+export const STABILISED = {
   ground: 'courses over ground',
   sea: 'courses through the water',
   none: 'COURSES NOT KNOWN',
@@ -56,7 +56,7 @@ export function showOwnShip(/** @type {import('./state.js').State} */ state) {
 }
 
 /** The data of the selected target, each with its standard deviation. */
-export function showSelected(/** @type {import('./state.js').Target|undefined} */ target) {
+export function showSelected(/** @type {import('./state.js').Target|undefined} */ target, own) {
   say(
     element('selected-name'),
     target
@@ -67,6 +67,7 @@ export function showSelected(/** @type {import('./state.js').Target|undefined} *
   const figures = [
     ['Range', `${format.miles(target.range)} NM`, format.miles(target.range_sd, 3)],
     ['Bearing', `${format.bearing(target.bearing)}°`, angleSd(target.bearing_sd)],
+    ['Rel. brg', `${format.bearing(relativeBearing(target, own))}°`],
     ['Course', `${format.bearing(target.course)}°`, angleSd(target.course_sd)],
     ['Speed', `${format.knots(target.speed)} kn`, format.knots(target.speed_sd)],
     ['CPA', `${format.miles(target.cpa)} NM`, format.miles(target.cpa_sd)],
@@ -85,37 +86,14 @@ export function showSelected(/** @type {import('./state.js').Target|undefined} *
   fill(element('selected'), figures);
 }
 
-function angleSd(/** @type {number|null} */ sd) {
-  return format.number(sd === null ? null : (sd * 180) / Math.PI, 1);
+/** From the bow, or from where it was when the heading was lost; null where nobody knows. */
+function relativeBearing(target, own) {
+  if (!own || target.x === null || (own.heading === null && own.bow == null)) return null;
+  return rangeBearing(own.x, own.y, target.x, target.y)[1] - bowOf(own);
 }
 
-/** The words in the corners of the picture. */
-export function showCorners(state, settings, scope, marks, pointer, more = '') {
-  const [range, rings] = RANGES[settings.range];
-  const heading = state.own?.heading ?? null;
-  const missing = heading === null ? '\nHEADING MISSING' : '';
-  say(
-    element('scale'),
-    `${range} NM\n${settings.rings === 'on' ? `rings ${rings} NM` : 'no rings'}\n` +
-      `${scope.orientation}\nrelative motion${missing}`,
-  );
-  say(
-    element('modes'),
-    `vectors ${settings.vectors}, ${settings.vectorMinutes} min\n` +
-      `trails ${settings.trails}${settings.trails === 'off' ? '' : `, ${settings.trailMinutes} min`}` +
-      `\n${STABILISED[state.own?.stabilised ?? 'none']}${more}`,
-  );
-  const lines = [];
-  const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
-  if (place && state.own) {
-    lines.push(['cursor', rangeBearing(state.own.x, state.own.y, place[0], place[1])]);
-  }
-  marks.lines.forEach((line, k) => lines.push([`EBL${k + 1}/VRM${k + 1}`, line]));
-  const told = lines.map(
-    ([name, [away, angle]]) => `${name} ${format.bearing(angle)}° ${format.miles(away)} NM`,
-  );
-  say(element('cursor'), told.join('\n'));
-  say(element('time'), state.scan ? `${format.clock(state.scan.time)} UTC` : '');
+function angleSd(/** @type {number|null} */ sd) {
+  return format.number(sd === null ? null : (sd * 180) / Math.PI, 1);
 }
 
 /** Health, limits, trial, and what this viewer may do. */

@@ -1,18 +1,19 @@
 // The radar picture on its canvas: scale, rings, echoes, targets, own ship.
 
-import { NAUTICAL_MILE, direction, toScreen } from './geometry.js';
+import { NAUTICAL_MILE, toScreen } from './geometry.js';
 import { drawAreas, drawSafeCourses } from './dangers.js';
 import { echoKey, paintEchoes } from './echoes.js';
 import { Layer, Stamps } from './layers.js';
+import { farthestSeen } from './scope.js';
 import { RANGES } from './settings.js';
 import { drawOwnShip } from './own_ship.js';
 import { drawMarks, drawScale, drawSimulation, drawTrial } from './surround.js';
 import { LOST } from './state.js';
 import * as symbols from './symbols.js';
 import { drawTargets } from './targets.js';
+import { drawTools } from './tools_draw.js';
+import { drawZones } from './zones_draw.js';
 
-const MARGIN = 40; // px, for the bearing scale
-const OFF = 0.5; // of the radius: how far own ship is moved back when off-centre
 const around = new Layer(); // sea, rings, bearing scale
 const glow = new Layer(); // echoes
 const past = new Layer(); // trails
@@ -22,41 +23,8 @@ const stamps = new Stamps();
  * @typedef {import('./geometry.js').View} View
  * @typedef {import('./state.js').State} State
  * @typedef {import('./settings.js').Settings} Settings
- * @typedef {object} Scope
- * @property {View} view
- * @property {number} middleX  px, of the picture's circle
- * @property {number} middleY
- * @property {number} radius
- * @property {string} orientation  as it is: north-up where no heading is known
+ * @typedef {import('./scope.js').Scope} Scope
  */
-
-/**
- * How the map lies on the screen at this moment; drawing and clicking ask this.
- * @param {State} state @param {Settings} settings
- * @param {number} width px @param {number} height px @param {number} courseUp rad
- * @returns {Scope}
- */
-export function scopeOf(state, settings, width, height, courseUp) {
-  const radius = Math.max(Math.min(width, height) / 2 - MARGIN, 40);
-  const own = state.own;
-  const heading = own?.heading ?? null;
-  const orientation = heading === null ? 'north-up' : settings.orientation;
-  const up = { 'north-up': 0, 'head-up': heading ?? 0, 'course-up': courseUp }[orientation] ?? 0;
-  const view = {
-    originX: own?.x ?? 0,
-    originY: own?.y ?? 0,
-    centreX: width / 2,
-    centreY: height / 2,
-    scale: radius / (RANGES[settings.range][0] * NAUTICAL_MILE),
-    up,
-  };
-  if (settings.offCentre === 'on' && heading !== null) {
-    const [right, down] = direction(view, heading);
-    view.centreX -= OFF * radius * right;
-    view.centreY -= OFF * radius * down;
-  }
-  return { view, middleX: width / 2, middleY: height / 2, radius, orientation };
-}
 
 /**
  * Draw everything.
@@ -69,15 +37,16 @@ export function scopeOf(state, settings, width, height, courseUp) {
 export function draw(canvas, state, settings, scope, colors, marks, local) {
   const { middleX, middleY, radius } = scope;
   canvas.clearRect(0, 0, canvas.canvas.width, canvas.canvas.height);
-  const lies = [...Object.values(scope.view), settings.palette];
-  around.onto(canvas, [...lies, settings.range, settings.rings], (pen) => {
+  const lies = [...Object.values(scope.view), scope.north, settings.palette];
+  const graphics = local >= marks.hidden.graphics;
+  around.onto(canvas, [...lies, settings.range, settings.rings, graphics], (pen) => {
     pen.fillStyle = colors.sea;
     pen.beginPath();
     pen.arc(middleX, middleY, radius, 0, 2 * Math.PI);
     pen.fill();
     pen.save();
     pen.clip();
-    if (settings.rings === 'on') drawRings(pen, settings, scope, colors);
+    if (graphics && settings.rings === 'on') drawRings(pen, settings, scope, colors);
     pen.restore();
     drawScale(pen, scope, colors);
   });
@@ -89,31 +58,39 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
     glow.onto(canvas, [...lies, ...echoKey(state, local)], (pen) =>
       paintEchoes(pen, state, scope.view, colors.echo, local),
     );
-    if (settings.trails !== 'off') {
-      const shown = [settings.trails, settings.trailMinutes, state.trails?.count];
-      past.onto(canvas, [...lies, ...shown, state.scan?.at], (pen) =>
-        drawTrails(pen, state, settings, scope, colors),
-      );
-    }
-    drawAreas(canvas, state, settings, scope, colors, local);
-    drawOwnShip(canvas, state, settings, scope, colors);
-    drawTargets(canvas, state, settings, scope, colors, marks.id, local);
   }
-  drawMarks(canvas, scope, colors, marks);
+  if (graphics) {
+    const names = drawZones(canvas, state, scope, colors, marks);
+    if (state.own) {
+      if (settings.trails !== 'off') {
+        const shown = [settings.trails, settings.trailMinutes, state.trails?.count];
+        past.onto(canvas, [...lies, ...shown, state.scan?.at], (pen) =>
+          drawTrails(pen, state, settings, scope, colors),
+        );
+      }
+      drawAreas(canvas, state, settings, scope, colors, local);
+      drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
+      drawTargets(canvas, state, settings, scope, colors, marks.id, local, names);
+    }
+    drawTools(canvas, state, scope, colors, marks);
+    drawMarks(canvas, scope, colors, marks);
+  }
   canvas.restore();
+  if (!graphics) return;
   drawSafeCourses(canvas, state, settings, scope, colors, local);
   if (state.ship?.source === 'simulation') drawSimulation(canvas, scope, colors);
   if (state.trial.on) drawTrial(canvas, state, scope, colors);
 }
 
-function drawRings(canvas, settings, { view, radius }, colors) {
-  const [range, spacing] = RANGES[settings.range];
-  const far = settings.offCentre === 'on' ? (1 + OFF) * range : range;
+function drawRings(canvas, settings, scope, colors) {
+  const { view } = scope;
+  const spacing = RANGES[settings.range][1] * NAUTICAL_MILE;
+  const far = farthestSeen(scope);
   canvas.strokeStyle = colors.ring;
   canvas.lineWidth = 1;
-  for (let ring = 1; ring * spacing <= far + 1e-9; ring++) {
+  for (let ring = 1; ring * spacing <= far * (1 + 1e-9); ring++) {
     canvas.beginPath();
-    canvas.arc(view.centreX, view.centreY, (ring * spacing * radius) / range, 0, 2 * Math.PI);
+    canvas.arc(view.centreX, view.centreY, ring * spacing * view.scale, 0, 2 * Math.PI);
     canvas.stroke();
   }
 }

@@ -29,6 +29,7 @@ export const UNACKNOWLEDGED = 2;
  * @property {Message} trial
  * @property {Record<string, Message>} health
  * @property {Message|null} limits
+ * @property {Message} zones         of the tracker, in m and rad; `error` where they are not known
  * @property {Record<string, any>} demo  what a demo shows and offers; empty where there is none
  * @property {{commands: boolean, why: string}} role
  * @property {number} heard          s of this browser's clock; -Infinity before the first message
@@ -52,6 +53,7 @@ export function emptyState() {
     trial: { on: false },
     health: {},
     limits: null,
+    zones: { zones: [], error: '' },
     demo: {},
     role: { commands: false, why: '' },
     heard: -Infinity,
@@ -73,7 +75,7 @@ export function receive(state, message, local) {
   state.offset = Math.max(Number.isFinite(held) ? held : difference, difference);
   state.late = state.offset - difference;
   state.heard = local;
-  switch (message.kind) {
+  switch (message.kind.replace(/\d+$/, '')) {
     case 'targets':
       state.targets = rows(message.columns);
       state.scan = {
@@ -83,11 +85,7 @@ export function receive(state, message, local) {
       };
       break;
     case 'plots':
-      if (state.plots.length && message.stamp < state.plots[state.plots.length - 1].stamp) {
-        state.plots = []; // time went back: another run
-      }
-      state.plots.push(message);
-      if (state.plots.length > GLOW_SCANS) state.plots.shift();
+      takePlots(state, message);
       break;
     case 'alarms':
       state.alarms = message.alarms;
@@ -118,9 +116,19 @@ export function receive(state, message, local) {
     case 'limits':
     case 'ship':
     case 'areas':
+    case 'zones':
       state[message.kind] = message;
       break;
   }
+}
+
+/** Of each radar the newest scans; where its time goes back, it is another run. */
+function takePlots(/** @type {State} */ state, /** @type {Message} */ message) {
+  const radar = message.radar ?? 0;
+  const of = state.plots.filter((scan) => (scan.radar ?? 0) === radar);
+  if (of.length && message.stamp < of[of.length - 1].stamp) state.plots = [];
+  else if (of.length >= GLOW_SCANS) state.plots.splice(state.plots.indexOf(of[0]), 1);
+  state.plots.push(message);
 }
 
 /** After a new connection the clocks are compared anew: it may be another server. */

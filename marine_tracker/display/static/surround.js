@@ -8,30 +8,15 @@ import { edge, radians, toScreen } from './geometry.js';
  * @typedef {object} Marks
  * @property {number|null} id           of the selected target's track
  * @property {number[]|null} cursor     map position, m
- * @property {number[][]} lines         range, m, and bearing, rad: electronic bearing lines
  * @property {number[]|null} drag       px, to where own ship's vector is being dragged
+ * @property {import('./tools.js').Tools} tools
+ * @property {import('./zones.js').Draft|null} draft  the zone that is being drawn or changed
+ * @property {number[]|null} asked      map position, m, that was asked about
+ * @property {{heading: number, graphics: number}} hidden  local s until which they are not drawn
  */
 
-/** Cursor, bearing lines with their range markers, and the vector that is being dragged. */
-export function drawMarks(
-  canvas,
-  { view, middleX, middleY, radius },
-  colors,
-  /** @type {Marks} */ marks,
-) {
-  marks.lines.forEach(([range, bearing], place) => {
-    canvas.strokeStyle = colors.marker;
-    canvas.lineWidth = 1.2;
-    canvas.setLineDash(place ? [3, 5] : [9, 5]);
-    canvas.beginPath();
-    canvas.moveTo(view.centreX, view.centreY);
-    canvas.lineTo(...edge(view, bearing, middleX, middleY, radius));
-    canvas.stroke();
-    canvas.beginPath();
-    canvas.arc(view.centreX, view.centreY, range * view.scale, 0, 2 * Math.PI);
-    canvas.stroke();
-    canvas.setLineDash([]);
-  });
+/** The cursor, and the vector that is being dragged. */
+export function drawMarks(canvas, { view }, colors, /** @type {Marks} */ marks) {
   if (marks.drag) {
     canvas.strokeStyle = colors.safe;
     canvas.lineWidth = 2;
@@ -58,8 +43,12 @@ export function drawMarks(
   }
 }
 
-/** The bearing scale around the picture: marks each 5 degrees, numbers each 30. */
-export function drawScale(canvas, { view, middleX, middleY, radius }, colors) {
+/**
+ * The bearing scale around the picture: marks each 5 degrees, numbers each 30. From true north, or,
+ * where that is not known, from the bow.
+ */
+export function drawScale(canvas, { view, middleX, middleY, radius, north }, colors) {
+  const zero = north ? 0 : view.up;
   canvas.strokeStyle = colors.scale;
   canvas.fillStyle = colors.scale;
   canvas.font = '600 12px system-ui, sans-serif';
@@ -70,7 +59,7 @@ export function drawScale(canvas, { view, middleX, middleY, radius }, colors) {
   canvas.arc(middleX, middleY, radius, 0, 2 * Math.PI);
   for (let mark = 0; mark < 360; mark++) {
     if (mark % 5 && radius < 250) continue;
-    const [x, y] = edge(view, radians(mark), middleX, middleY, radius);
+    const [x, y] = edge(view, zero + radians(mark), middleX, middleY, radius);
     const length = mark % 10 === 0 ? 10 : mark % 5 === 0 ? 6 : 3;
     const out = [(x - middleX) / radius, (y - middleY) / radius];
     canvas.moveTo(x, y);

@@ -38,10 +38,11 @@ export function vectorOf(settings, own, vx, vy) {
 /**
  * @param {CanvasRenderingContext2D} canvas
  * @param {import('./state.js').State} state @param {import('./settings.js').Settings} settings
- * @param {import('./picture.js').Scope} scope @param {Record<string, string>} colors
+ * @param {import('./scope.js').Scope} scope @param {Record<string, string>} colors
  * @param {number|null} chosen  track of the selected target @param {number} local s
+ * @param {import('./labels.js').Label[]} others  more labels: they take the room that is left
  */
-export function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
+export function drawTargets(canvas, state, settings, scope, colors, chosen, local, others) {
   const { view, middleX, middleY, radius } = scope;
   const shown = Math.floor(local / FLASH_S) % 2 === 0;
   const fresh = newTargets(state);
@@ -89,7 +90,7 @@ export function drawTargets(canvas, state, settings, scope, colors, chosen, loca
     symbols.lost(canvas, x, y, colors.lost);
     if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: false });
   }
-  drawLabels(canvas, labels, colors.label);
+  drawLabels(canvas, [...labels, ...others], colors.label);
 }
 
 /** state: 'danger', 'caught' or the target's status; probability: of danger. */
@@ -109,8 +110,15 @@ function drawLabels(canvas, labels, color) {
   canvas.textBaseline = 'middle';
   canvas.textAlign = 'left';
   canvas.fillStyle = color;
-  for (const { label, left, middle } of placed(labels, (text) => widthOf(canvas, text))) {
+  canvas.strokeStyle = color;
+  canvas.lineWidth = 1;
+  for (const { label, left, middle, far } of placed(labels, (text) => widthOf(canvas, text))) {
     canvas.fillText(label.text, left, middle);
+    if (!far) continue;
+    canvas.beginPath();
+    canvas.moveTo(left > label.x ? left - 2 : left + widthOf(canvas, label.text) + 2, middle);
+    canvas.lineTo(label.x, label.y);
+    canvas.stroke();
   }
 }
 
