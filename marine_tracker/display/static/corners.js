@@ -24,7 +24,7 @@ export function showCorners(state, settings, scope, marks, pointer, more) {
   say(
     element('modes'),
     `vectors ${settings.vectors}, ${settings.vectorMinutes} min\ntrails ${settings.trails}${trails}\n` +
-      `${STABILISED[state.own?.stabilised ?? 'none']}${more}`,
+      `${STABILISED[state.own?.stabilised ?? 'none']}${state.own?.by ? `, by ${state.own.by}` : ''}${more}`,
   );
   const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
   const lines = place && state.own ? cursorLines(place, state.own) : [];
