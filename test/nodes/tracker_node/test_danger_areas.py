@@ -88,6 +88,8 @@ def test_viewers_get_them_on_demand_and_silence_what_sounds(bridge, sea, display
         said = await viewer.command('silence')
         assert 'silenced for 30 s' in said['text']
         await viewer.until(lambda me: 'active silenced' in str(me.newest['alarms']['alarms']))
+        await asyncio.to_thread(here.sail, 1)  # silenced is not acknowledged
+        await viewer.until(lambda me: 2 in me.newest['targets']['columns']['alarm'])
         one = next(a for a in viewer.newest['alarms']['alarms'] if a['kind'] == 'danger')
         assert one['category'] == 'A' and one['instance'] and one['sounds'] == 1
         assert (await viewer.command('acknowledge_alert', instance=one['instance']))['ok']
