@@ -27,7 +27,7 @@ import numpy as np
 from ..tracking.lifecycle import CONFIRMED, LOST
 from ..types import Array, CodeArray, IntArray, row_of, take
 from . import alerts as machine
-from . import encounters
+from . import encounters, sounding
 from .acquisition import Acquisition, how_acquired
 from .alerts import KEEP, OFF, ON, VALUES, Alerts, Causes, Rule
 from .situation import Limits, Situation
@@ -76,9 +76,15 @@ PRIORITY = (
     'warning',
     'warning',
 )
-CAUTION = np.array([priority == 'caution' for priority in PRIORITY])
+PRIORITIES = ('alarm', 'warning', 'caution')
+RANK = np.array([PRIORITIES.index(priority) for priority in PRIORITY])
+WARNING, CAUTION = RANK == 1, RANK == 2
 MOMENTARY = np.arange(len(NAMES)) == LOST_TARGET
 REMEMBERED = np.arange(len(NAMES)) == DANGER
+# Categories of MSC.302: A is judged by the picture, B needs none. C, beyond the bridge, are none.
+BY_PICTURE = (DANGER, LOST_TARGET, NEW_TARGET, SWAP_RISK)
+CATEGORY = tuple('A' if kind in BY_PICTURE else 'B' for kind in range(len(NAMES)))
+IDENTIFIER = tuple(10001 + kind for kind in range(len(NAMES)))  # makers' own begin at 10000
 NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level that keeps an alert
 APART = 1.44  # overlap of gates (see swap_risk) that ends a swap risk
 
@@ -211,13 +217,14 @@ def acknowledge(
     kind: int | None = None,
     number: int | None = None,
     duration: float = 0.0,
+    instance: int | None = None,
 ) -> tuple[Alerts, Alerts]:
     """The operator has seen one alert, all of a kind, all of a target, or all (alerts.py).
 
     duration  s, after which it must be acknowledged again; 0: not before its cause has ended
     """
     until = now + duration if duration > 0 else np.inf
-    return machine.acknowledge(alerts, now, MOMENTARY, kind, number, until, REMEMBERED)
+    return machine.acknowledge(alerts, now, MOMENTARY, kind, number, until, REMEMBERED, instance)
 
 
 def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
@@ -238,18 +245,22 @@ def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
 def _advance(
     alerts: Alerts, causes: list[Named], settings: AlarmSettings, now: float
 ) -> tuple[Alerts, Alerts]:
-    """Each kind and zone separately. Those without causes here do not change."""
+    """Each kind and zone separately; then what the time brings to all."""
     by_kind, parts, changes = rules(settings), [], [machine.begin()]
+    first = 1 + int(alerts.instance.max(initial=0))
     rest = np.ones(len(alerts.kind), bool)
     for kind, zone, cause in causes:
         rows = (alerts.kind == kind) & (alerts.zone == zone)
         if not rows.any() and not (cause.level == ON).any():
             continue
         rest &= ~rows
-        part, changed = machine.advance(take(alerts, rows), kind, zone, cause, by_kind[kind], now)
+        rule = by_kind[kind]
+        part, changed = machine.advance(take(alerts, rows), kind, zone, cause, rule, now, first)
+        first = max(first, 1 + int(part.instance.max(initial=0)))
         parts.append(part)
         changes.append(changed)
-    return _join([take(alerts, rest), *parts]), _join(changes)
+    alerts, loud = sounding.pass_time(_join([take(alerts, rest), *parts]), WARNING, now)
+    return alerts, _join([*changes, loud])
 
 
 def _in_guard_zones(

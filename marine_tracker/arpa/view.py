@@ -13,7 +13,7 @@ from ..tracking.lifecycle import CONFIRMED
 from ..tracking.tracker import Report
 from ..types import Array, BoolArray, CodeArray, IntArray, take
 from . import alarms
-from .alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
+from .alerts import ACTIVE
 from .arpa import Picture
 from .cpa import Approach
 from .motion import Motion
@@ -82,9 +82,7 @@ def view(
     """
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
-    active = (alerts.kind == alarms.DANGER) & np.isin(
-        alerts.state, (ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED)
-    )
+    active = (alerts.kind == alarms.DANGER) & np.isin(alerts.state, ACTIVE)
     return View(
         label(targets.id, tracks.number),
         targets.id,

@@ -39,7 +39,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     source.add_argument(
         '--recording',
         metavar='FOLDER',
-        help='a recorded folder instead, or a file of spokes (.npz)',
+        help='a recording instead: a folder, a file of spokes (.npz), or of topics (.mcap)',
     )
     tracker_options.add_video_arguments(parser, heading=False)
     parser.add_argument(

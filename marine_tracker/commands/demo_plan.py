@@ -13,7 +13,7 @@ from ..parameters import (
     TrackerParameters,
     from_mapping,
 )
-from ..recording import csv_folder, spokes_file
+from ..recording import csv_folder, mcap_name, spokes_file
 from ..simulation import scenario as scenarios
 from . import tracker_options
 
@@ -32,7 +32,7 @@ class Offers(NamedTuple):
     """What can be chosen, by name: nobody who looks at the page names a path.
 
     scenarios   names of shipped ones and paths of files
-    recordings  paths of folders, and of files of spokes
+    recordings  paths of folders, of files of spokes, and of topics
     """
 
     scenarios: dict[str, str]
@@ -57,6 +57,7 @@ def offers(scenario: str, recording: str | None, folder: str | None) -> Offers:
     if folder is not None:
         inside = Path(os.path.abspath(folder))
         places = [*(file.parent for file in inside.glob('*/plots.csv')), *inside.glob('*.npz')]
+        places += [place for place in inside.iterdir() if mcap_name.is_mcap(place)]
         found = {place.name: str(place) for place in sorted(places)[:MOST_RECORDINGS]}
     if recording:
         found[os.path.basename(os.path.abspath(recording))] = os.path.abspath(recording)
@@ -82,6 +83,10 @@ def plan(args: Namespace, offered: Offers, shown: Shown) -> Plan:
             sweep = spokes_file.read(place).sweep
             for_tracker = dict(video_source.tracker_parameters(video, sweep))
             nodes['plot_extractor'] = dataclasses.asdict(video)
+        elif mcap_name.is_mcap(place):
+            from ..recording import mcap_topics
+
+            for_tracker = mcap_topics.contents(place).of(TrackerParameters)
         else:
             for_tracker = dict(csv_folder.read(place).tracker_parameters)
     else:

@@ -28,13 +28,16 @@ FIELDS: dict[str, dict[str, Field]] = {
     'acknowledge_all': {},
     'trial': {'course_deg': (0.0, 360.0), 'speed_kn': (0.0, 100.0), 'delay_min': (0.0, 60.0)},
     'trial_off': {},
+    'acknowledge_alert': {'instance': (1, 2**32 - 1)},
+    'silence': {},
     'limits': {'cpa_nm': (0.01, 20.0), 'tcpa_min': (0.1, 120.0)},
-    'show': {'scenario': _word, 'recording': _word, 'rate': (0.01, 1000.0)},
+    'watch': {'areas': (0, 1)},
     'explain': {'x': (-FAR_M, FAR_M), 'y': (-FAR_M, FAR_M)},
     'zone_put': {'zone': zone_fields.zone, 'was': zone_fields.name},
     'zone_delete': {'name': zone_fields.name},
+    'show': {'scenario': _word, 'recording': _word, 'rate': (0.01, 1000.0)},
 }
-LOGIN = 'login'
+LOGIN, WATCH = 'login', 'watch'
 
 
 class Command(NamedTuple):

@@ -16,6 +16,7 @@ from ..arpa.targets import label
 from ..geometry import NAUTICAL_MILE
 from ..recording import csv_folder, spokes_file, track_file
 from ..recording.csv_folder import Recording
+from ..recording.mcap_name import is_mcap
 from ..recording.track_file import TargetColumns, TrackRows
 from ..service import Output, Service, service_for
 from ..simulation import radar, scenario
@@ -43,14 +44,15 @@ class Summary(NamedTuple):
 
 
 def open_source(name: str, seed: int = 1, video: VideoOptions = DEFAULT_VIDEO) -> Source:
-    """A recording if `name` is a folder or a file of spokes, else a scenario run with `seed`.
+    """A recording if `name` is a folder, a file of spokes or an MCAP file, else a scenario run with
+    `seed`.
 
     video  how plots are taken out of spokes
     ValueError if it is none of these, or has an error.
     """
     if spokes_file.is_spokes_file(name):
         return video_source.open_recording(name, video)
-    if Path(name).is_dir():
+    if Path(name).is_dir() or is_mcap(name):
         recording, remarks = screened.read(name)
         numbers = recording.numbers.tolist()
         return Source(

@@ -13,6 +13,7 @@ from .alpha_beta import alpha_beta
 from .clutter import clutter
 from .compare import compare
 from .crossings import crossings
+from .danger_areas import danger_areas
 from .dense import dense
 from .extended import extended
 from .gwnn import gwnn, monte_carlo
@@ -36,6 +37,7 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'compare': compare,
     'dense': dense,
     'alarms': alarms,
+    'danger_areas': danger_areas,
     'clutter': clutter,
     'crossings': crossings,
 }

@@ -2,7 +2,7 @@
 
 import functools
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -12,12 +12,15 @@ from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallba
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 
 from . import diagnostics, topics
 from .diagnostics import FAILED, Tally, one_line
+
+State = tuple[bytes, str, Mapping[str, Any]]  # level, message and values on /diagnostics
 
 
 class RunnableNode(Node):
@@ -32,7 +35,6 @@ class RunnableNode(Node):
 
     def __init__(self, name: str, **node_arguments: Any) -> None:
         self.failures = Tally((), self.tell)
-        self._to_failures: Publisher | None = None
         super().__init__(name, **node_arguments)
 
     @property
@@ -113,36 +115,42 @@ class RunnableNode(Node):
 
     @property
     def hardware_id(self) -> str:
-        """The radar that the node belongs to, as in radar_1/radar."""
-        return f'{self.get_namespace()}/radar'.strip('/')
+        """The node that tells it, as in radar_1/tracker."""
+        return self.label
 
-    def watch_failures(self, clock: Clock) -> None:
-        """For a node with nothing else on /diagnostics: publishes failures if there are any."""
-        self.create_timer(1.0, self._tell_failures, clock=clock)
-
-    def _tell_failures(self) -> None:
-        counts = self.failures.counts
-        if not counts:
-            return
-        if self._to_failures is None:
-            self._to_failures = self.publisher(
-                DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
-            )
-        fresh = self.failures.fresh(time.monotonic())
-        self._to_failures.publish(
-            diagnostics.array(
-                self.get_clock().now().nanoseconds,
-                [
-                    diagnostics.status(
-                        f'{self.label}: callbacks',
-                        self.hardware_id,
-                        diagnostics.ERROR if fresh else diagnostics.OK,
-                        'lately: ' + ', '.join(fresh) if fresh else 'they work again',
-                        {FAILED: sum(counts.values()), **counts},
-                    )
-                ],
-            )
+    def watch(self, clock: Clock, task: str, state: Callable[[], State]) -> None:
+        """Tells the state of a task on /diagnostics each second, or that callbacks fail."""
+        publisher = self.publisher(DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
+        self.create_timer(
+            1.0, functools.partial(self._tell_state, publisher, task, state), clock=clock
         )
+
+    def _tell_state(self, publisher: Publisher, task: str, state: Callable[[], State]) -> None:
+        level, message, values = state()
+        fresh, counts = self.failures.fresh(time.monotonic()), self.failures.counts
+        if fresh:
+            level, message = diagnostics.ERROR, 'lately: ' + ', '.join(fresh)
+        values = {**values, FAILED: sum(counts.values()), **counts}
+        status = diagnostics.status(
+            f'{self.label}: {task}', self.hardware_id, level, message, values
+        )
+        publisher.publish(diagnostics.array(self.get_clock().now().nanoseconds, [status]))
+
+    # -- under two names -------------------------------------------------------------------------
+
+    def publisher_of_both(
+        self, kind: type[Any], topic: str, quality: QoSProfile
+    ) -> Callable[[Any], None]:
+        """Publishes on the topic and on `~/topic`: the second is of this node alone, where others
+        use the first name as well."""
+        both = [self.publisher(kind, name, quality) for name in (topic, f'~/{topic}')]
+
+        def publish(message: Any) -> None:
+            data = serialize_message(message)  # once: the dear part
+            for publisher in both:
+                publisher.publish(data)
+
+        return publish
 
     # -- without event handlers ------------------------------------------------------------------
 

@@ -10,31 +10,37 @@ from collections.abc import Sequence
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import Odometry
 from numpy.typing import NDArray
 from sensor_msgs.msg import NavSatFix, NavSatStatus, PointCloud2
 from std_msgs.msg import Header
 
-from ..geometry import AT_REST, bearing_from_yaw, heading_from, own_ship_at, unit_vector
-from ..types import Array, IntArray, PolarPlots, Scan
-from . import cloud_layout
-from .cloud_layout import FLOATS, Wanted
-from .faults import (
+from ..geometry import heading_from, own_ship_at, unit_vector
+
+# The reading half, which needs no ROS; told here as well, so that all of it has one name.
+from ..recording.ros_messages import (  # noqa: F401
     BAD_LAYOUT,
-    BAD_STAMP,
+    CLOUD_REASONS,
+    COVARIANCE,
+    FLOATS,
     MISSING_FIELD,
     MISTYPED_FIELD,
+    NEEDED,
+    NO_HEADING,
+    RADIAL_SPEED,
     TRUNCATED,
     ConversionError,
-    bare,
+    cloud_to_plots,
+    heading_of_odometry,
+    nanoseconds,
+    odometry_to_own_ship,
+    yaw_of,
 )
+from ..types import Array, IntArray, Scan
+from . import cloud_layout
 from .topics import FRAME, OWN_SHIP_FRAME
 
 PLOT_FIELDS = ('x', 'y', 'z', 'range', 'bearing', 'amplitude', 'time_offset')
-NEEDED = ('range', 'bearing', 'amplitude', 'time_offset')
-RADIAL_SPEED = 'radial_speed'  # of a radar with Doppler
-COVARIANCE = ('xx', 'xy', 'yy')  # m^2, where each plot tells its own
 
 TRACK_TYPE = np.dtype(
     [('id', '<u4'), ('number', '<u4'), ('status', '<u4'), ('time_offset', '<f4')]
@@ -61,17 +67,6 @@ TRACK_TYPE = np.dtype(
         )
     ]
 )
-
-
-CLOUD_REASONS = (MISSING_FIELD, MISTYPED_FIELD, BAD_LAYOUT, TRUNCATED)
-NO_HEADING = math.pi**2 / 3  # rad^2, variance of a yaw of which there is no idea at all
-
-
-def nanoseconds(stamp: Time) -> int:
-    """A stamp as integer nanoseconds. ConversionError where it is none."""
-    if stamp.nanosec >= 1_000_000_000:
-        raise ConversionError(BAD_STAMP, f'nanosec is {stamp.nanosec}; it must be below 1000000000')
-    return stamp.sec * 1_000_000_000 + stamp.nanosec
 
 
 def time_message(time_ns: int) -> Time:
@@ -120,36 +115,6 @@ def plots_to_cloud(scan: Scan, start_ns: int) -> PointCloud2:
     return cloud_message(rows, start_ns)
 
 
-def cloud_to_plots(message: PointCloud2) -> PolarPlots:
-    """The plots of a cloud, their time counted from the stamp; values are not judged here.
-
-    Takes any order of fields, float32 or float64, either byte order, organised clouds, padding
-    and fields beyond those needed (range, bearing, amplitude, time_offset); of those, radial_speed
-    and the covariance xx, xy, yy are read. ConversionError else.
-    """
-    count = message.width * message.height
-    if count == 0:
-        if len(message.data):
-            raise ConversionError(BAD_LAYOUT, f'no points, but {len(message.data)} bytes')
-        none = np.empty(0)
-        return PolarPlots(none, none, none, none)
-    optional = (RADIAL_SPEED, *COVARIANCE)
-    rows = cloud_layout.rows(
-        message,
-        [Wanted(name, FLOATS) for name in NEEDED]
-        + [Wanted(name, FLOATS, needed=False) for name in optional],
-    )
-    there = rows.dtype.names or ()
-    with np.errstate(invalid='ignore'):  # signalling NaNs from a torn buffer
-        range_, bearing, amplitude, offset = (rows[name].astype(float) for name in NEEDED)
-        speed = rows[RADIAL_SPEED].astype(float) if RADIAL_SPEED in there else None
-        covariance = None
-        if set(COVARIANCE) <= set(there):
-            xx, xy, yy = (rows[name].astype(float) for name in COVARIANCE)
-            covariance = np.stack([xx, xy, xy, yy], -1).reshape(-1, 2, 2)
-    return PolarPlots(offset, range_, bearing, amplitude, speed, covariance)
-
-
 def own_ship_to_odometry(
     time_ns: int, position: Array, velocity: Array, heading: float | None = None
 ) -> Odometry:
@@ -171,47 +136,6 @@ def own_ship_to_odometry(
     twist.x, twist.y = cos * east + sin * north, cos * north - sin * east
     message.pose.covariance[35] = 0.0 if known else NO_HEADING
     return message
-
-
-def odometry_to_own_ship(message: Odometry) -> tuple[Array, Array]:
-    """Position [2] m and velocity [2] m/s over ground, east and north; not judged here.
-
-    The twist is in the ship's own frame, turned into the ground's by the orientation; where
-    child_frame_id says so it is in the ground's. nan where the orientation does not tell.
-    """
-    pose, twist = message.pose.pose, message.twist.twist.linear
-    position = np.array([pose.position.x, pose.position.y])
-    velocity = np.array([twist.x, twist.y])
-    child = message.child_frame_id
-    if child and bare(child) == bare(message.header.frame_id or FRAME):
-        return position, velocity
-    yaw = yaw_of(pose.orientation)
-    if not message.pose.covariance[35] < NO_HEADING and np.hypot(*velocity) >= AT_REST:
-        yaw = math.nan
-    cos, sin = math.cos(yaw), math.sin(yaw)
-    return position, np.array([[cos, -sin], [sin, cos]]) @ velocity
-
-
-def heading_of_odometry(message: Odometry, doubtful: bool = False) -> float:
-    """rad, true; nan where it is not known: the orientation is none, its variance that of no idea,
-    or it is the unit quaternion as those leave it who know nothing but a position: without
-    variance beside a position that has some, or `doubtful`, for the twist is not the way made, and
-    without a twist."""
-    q, covariance = message.pose.pose.orientation, message.pose.covariance
-    unset, twist = (q.x, q.y, q.z, q.w) == (0.0, 0.0, 0.0, 1.0), message.twist.twist.linear
-    bare_position = (covariance[0] > 0 and not covariance[35]) or (
-        doubtful and twist.x == 0 and twist.y == 0
-    )
-    if not covariance[35] < NO_HEADING or (unset and bare_position):
-        return math.nan
-    return float(bearing_from_yaw(yaw_of(q)))
-
-
-def yaw_of(q: Quaternion) -> float:
-    """Yaw, rad counter-clockwise from east; nan for an orientation that is none."""
-    norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z
-    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z)
-    return yaw if norm > 0 else math.nan
 
 
 def fix_message(time_ns: int, latitude_deg: float, longitude_deg: float) -> NavSatFix:

@@ -49,6 +49,7 @@ class TrackerCommands:
             for name, topic in (
                 ('cancel', topics.CANCEL),
                 ('acknowledge', topics.ACKNOWLEDGE_TARGET),
+                ('acknowledge_alert', topics.ACKNOWLEDGE_ALERT),
             )
         }
         self._triggers = {
@@ -56,6 +57,7 @@ class TrackerCommands:
             for name, service in (
                 ('cancel_all', topics.CANCEL_ALL),
                 ('acknowledge_all', topics.ACKNOWLEDGE),
+                ('silence', topics.SILENCE),
             )
         }
         self._trial = node.create_client(SetBool, topics.TRIAL_MANOEUVRE)
@@ -84,9 +86,11 @@ class TrackerCommands:
             point.point.x, point.point.y = values['x'], values['y']
             self._publish(self._acquire, point, answer, 'acquiring at the next scan')
         elif name in self._numbers:
-            number = UInt32(data=values['number'])
+            ((what, number),) = values.items()
             said = 'cancelled' if name == 'cancel' else 'acknowledged'
-            self._publish(self._numbers[name], number, answer, f'target {values["number"]} {said}')
+            which = 'alert' if what == 'instance' else 'target'
+            message = UInt32(data=number)
+            self._publish(self._numbers[name], message, answer, f'{which} {number} {said}')
         elif name in self._triggers:
             call(self._triggers[name], Trigger.Request(), answer, told)
         elif name == 'trial_off':

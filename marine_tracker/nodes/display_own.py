@@ -53,6 +53,11 @@ class OwnShipHeard:
         self._last_heading = math.nan
         self._fix: Fixed | None = None
 
+    def begin_anew(self) -> None:
+        """What was heard so far is of another run."""
+        self._samples.clear()
+        self._last_heading, self._fix = math.nan, None
+
     def hear(self, message: Odometry) -> bool:
         """Take an odometry message; False where its position is not finite."""
         position, velocity = convert.odometry_to_own_ship(message)

@@ -3,7 +3,7 @@
 Commands come as topics and services. A service answers if a command is not possible. For a topic
 this is logged once and counted on /diagnostics; a click that finds no track is counted too.
 Commands take effect at the next scan. `alarms` is published on change: every alert that is not
-normal, and those that have just become normal.
+normal, and those that have just become normal. `alarms_past` has the last that are settled.
 
 Time is that of the plots' stamps. It stops at the end of the last scan. If the next scan is late,
 it continues with the wall clock, so that messages in the meantime have a stamp.
@@ -19,7 +19,7 @@ from geometry_msgs.msg import PointStamped
 from std_msgs.msg import UInt32
 from std_srvs.srv import SetBool, Trigger
 
-from ..arpa import acquisition, alarms, alerts
+from ..arpa import acquisition, alarms, alert_list, alerts, sounding
 from ..arpa.acquisition import Acquisition
 from ..arpa.alerts import NORMAL, Alerts
 from ..arpa.arpa import Arpa, Picture
@@ -27,7 +27,8 @@ from ..arpa.targets import EVENTS, NO_ROOM, NOTHING_THERE, Events
 from ..service import Output, Service, Tracking
 from ..types import Array, Scan, append, take
 from . import diagnostics, topics
-from .arpa_messages import alarms_message, trial_message
+from .alarm_log import AlarmLog
+from .arpa_messages import alarms_message, alarms_past_message, trial_message
 from .base_node import RunnableNode
 from .diagnostics import Tally, answered
 from .explanations import Explanations
@@ -54,6 +55,7 @@ class Operator:
         self.sensors = sensors
         self.service = service
         self.memory = service.start()
+        self._settled = alerts.begin()
         self._trial_since: float | None = None  # s, when the trial manoeuvre was switched on
         self.refused = Tally((REFUSED,), node.tell)
         # Of the wall, s: when each was last heard, and between the last plots of each radar.
@@ -66,20 +68,26 @@ class Operator:
         self._end, self._end_ns = 0.0, 0  # s, and stamp, of the last scan's end
         self.picture: Picture | None = None
 
-        self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched(10))
+        self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched())
+        self._to_past = node.publisher(DiagnosticArray, topics.ALARMS_PAST, topics.latched())
+        self._alarm_log = AlarmLog(node.get_logger())
         self._to_trial = node.publisher(DiagnosticArray, topics.TRIAL, topics.latched())
         for kind, topic, callback in (
             (PointStamped, topics.ACQUIRE, self._on_acquire),
             (PointStamped, topics.CLICKED_POINT, self._on_acquire),
             (UInt32, topics.CANCEL, self._on_cancel),
+            (UInt32, f'~/{topics.CANCEL}', self._on_cancel),
             (UInt32, topics.ACKNOWLEDGE_TARGET, self._on_acknowledge_target),
+            (UInt32, topics.ACKNOWLEDGE_ALERT, self._on_acknowledge_alert),
         ):
             node.subscription(kind, topic, callback, topics.reliable())
+        for own in ('', '~/'):
+            node.create_service(Trigger, own + topics.CANCEL_ALL, self._on_cancel_all)
+            node.create_service(Trigger, own + topics.ACKNOWLEDGE, self._on_acknowledge)
+            node.create_service(Trigger, own + topics.SILENCE, self._on_silence)
         self._explanations = Explanations(
             node, lambda: (self.service, self.memory), self._point, hardware_id
         )
-        node.create_service(Trigger, topics.CANCEL_ALL, self._on_cancel_all)
-        node.create_service(Trigger, topics.ACKNOWLEDGE, self._on_acknowledge)
         node.create_service(SetBool, topics.TRIAL_MANOEUVRE, self._on_trial)
 
     # -- in ------------------------------------------------------------------------------------
@@ -214,17 +222,30 @@ class Operator:
         return f'{self._acknowledge()} alerts acknowledged'
 
     def _on_acknowledge_target(self, message: UInt32) -> None:
+        self._acknowledge_one(number=message.data)
+
+    def _on_acknowledge_alert(self, message: UInt32) -> None:
+        self._acknowledge_one(instance=message.data)
+
+    def _acknowledge_one(self, **which: int) -> None:
         try:
-            self._acknowledge(message.data)
+            self._acknowledge(**which)
         except ValueError as error:
             self._refuse(str(error))
 
-    def _acknowledge(self, number: int | None = None) -> int:
+    @answered
+    def _on_silence(self, _: Trigger.Request) -> str:
+        found, changed = sounding.silence(self.memory.arpa.alerts, self._now())
+        self._put(alerts=found)
+        self._publish_alarms(changed)
+        return f'{len(changed.kind)} alerts silenced for {sounding.SILENT:.0f} s'
+
+    def _acknowledge(self, **which: int) -> int:
         found, changed = alarms.acknowledge(
             self.memory.arpa.alerts,
             self._now(),
-            number=number,
             duration=60 * self.arpa.parameters.acknowledge_for_min,
+            **which,
         )
         self._put(alerts=found)
         self._publish_alarms(changed)
@@ -258,16 +279,13 @@ class Operator:
             shown = append(
                 take(present, present.state != NORMAL), take(changed, changed.state == NORMAL)
             )
-            self._to_alarms.publish(
-                alarms_message(
-                    shown,
-                    self.arpa.zones,
-                    [radar.name for radar in self.arpa.radars],
-                    self._now(),
-                    self._stamp(),
-                    self._hardware_id,
-                )
-            )
+            radars = [radar.name for radar in self.arpa.radars]
+            self._alarm_log.tell(changed, self.arpa.zones, radars)
+            about = self.arpa.zones, radars, self._now(), self._stamp(), self._hardware_id
+            self._to_alarms.publish(alarms_message(alert_list.in_order(shown, alarms.RANK), *about))
+            if (changed.state == NORMAL).any():
+                self._settled = alert_list.settled(self._settled, changed)
+                self._to_past.publish(alarms_past_message(self._settled, *about))
 
     def _stamp(self) -> int:
         """ns of now; of the node's clock before the first scan."""

@@ -13,6 +13,7 @@ time never runs slower, and a node that starts late leaves out what is past.
 """
 
 import itertools
+import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -27,8 +28,9 @@ from ..geodesy import LocalFrame
 from ..service import heading_of
 from ..types import OwnShip, Scan, Sweep, Truth, take
 from . import convert, topics
-from .base_node import RunnableNode
+from .base_node import RunnableNode, State
 from .convert import OdometryPool
+from .diagnostics import FRESH_S, OK, WARN
 from .readable_plots import plots_to_readable
 from .spokes import sweep_to_cloud
 
@@ -106,16 +108,18 @@ class Playback:
         self._odometry = node.publisher(Odometry, topics.ODOMETRY, reliable())
         self._truth = node.publisher(Odometry, topics.TRUTH, reliable(topics.BURST))
         self._fix = node.publisher(NavSatFix, topics.FIX, reliable()) if origin else None
-        self._clock = node.publisher(ClockMessage, '/clock', reliable(1)) if rate != 1 else None
+        self._clock = node.publisher(ClockMessage, topics.CLOCK, reliable(1)) if rate != 1 else None
         self._pool = OdometryPool()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._created = self._wall()
         self._heard: float | None = None
         self._told_waiting = False
         self._start_ns: int | None = None  # stamp of the time _first
+        self._scans, self._slowed = 0, 0  # published; times that it could not keep the rate
+        self._slow = -math.inf  # s of the wall, the last time
         self._anchor = (0.0, self._first)  # a moment of the wall and the time it stands for
         self._timer = node.create_timer(TICK_S, self._tick, clock=self._steady)
-        node.watch_failures(self._steady)
+        node.watch(self._steady, 'playback', self._state)
 
     def close(self) -> None:
         """Stop, and see that what was published arrives."""
@@ -141,10 +145,24 @@ class Playback:
             return
         if now - due > LAG_S * self.rate and not self.begin_at:
             self._anchor = (self._elapsed(), due)
+            self._slowed, self._slow = self._slowed + 1, self._wall()
         self._publish_clock(min(now, due))
         wait = (due - self._now()) / self.rate
         self._timer.timer_period_ns = int(1e9 * min(max(wait, 1e-3), TICK_S))
         self._timer.reset()
+
+    def _state(self) -> State:
+        """For /diagnostics."""
+        level, message = OK, f'plays at rate {self.rate:g}'
+        if self._start_ns is None:
+            message = 'waits for a listener'
+            if self._told_waiting:
+                level, message = WARN, 'use_sim_time is set and /clock is silent'
+        elif self._wall() - self._slow < FRESH_S:
+            level, message = WARN, f'slower than the rate of {self.rate:g}: the machine is too slow'
+        elif self.done:
+            message = 'has ended'
+        return level, message, {'scans': self._scans, 'times too slow': self._slowed}
 
     def _begin(self) -> bool:
         """Whether time runs now; sets the stamp of the first moment."""
@@ -237,6 +255,7 @@ class Playback:
                 self._truth.publish(message)
         self._next = next(self._revolutions, None)
         self._sample = 0
+        self._scans += 1
 
     def _publish_own_ship(self, sample: OwnShip) -> None:
         stamp, position = self._stamp(sample.time[0]), sample.position[0]

@@ -29,8 +29,10 @@ from .convert import ConversionError
 from .declare import declare
 from .diagnostics import FAILED, OK, WARN, Tally
 from .display_commands import LIMITS, TrackerCommands
+from .display_danger_areas import DangerAreas
 from .display_demo import SHOW, DemoLink
 from .display_own import OwnShipHeard
+from .display_own_ship import OwnWay, ship
 from .display_tracker import radars_told, zones_told
 
 OWN_EVERY_S = 0.1  # between two positions of own ship sent to the page
@@ -61,11 +63,17 @@ class PpiDisplayNode(RunnableNode):
         self.server = DisplayServer(
             p.address, self._on_command, p.remote_commands, p.token or None, p.names.split()
         )
+        self._given = p
+        self._ship: dict[str, Any] = {}
+        self._way = OwnWay()
+        self._areas = DangerAreas(self, self.server)
         for kind, topic, callback, quality in (
             (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort(1)),
             (PointCloud2, topics.TARGETS_CLOUD, self._on_targets, topics.latched()),
             (DiagnosticArray, topics.ALARMS, self._on_alarms, topics.latched()),
+            (DiagnosticArray, topics.ALARMS_PAST, self._on_alarms_past, topics.latched()),
+            (DiagnosticArray, topics.OWN_SHIP_STATE, self._way.hear, topics.latched()),
             (DiagnosticArray, topics.TRIAL, self._on_trial, topics.latched()),
             (DiagnosticArray, topics.DIAGNOSTICS, self._on_diagnostics, topics.reliable()),
         ):
@@ -90,7 +98,8 @@ class PpiDisplayNode(RunnableNode):
             self._bad.add(BAD_OWN, wall)
         elif wall - self._own_told >= OWN_EVERY_S:
             self._own_told = wall
-            self.server.publish('own', self._own.plain(wall))
+            own = self._own.plain(wall)
+            self.server.publish('own', {**own, **self._way.told(own['vx'], own['vy'])})
 
     def _on_fix(self, message: NavSatFix) -> None:
         wall = time.monotonic()
@@ -111,7 +120,7 @@ class PpiDisplayNode(RunnableNode):
             return
         good = np.isfinite(position).all(1)
         self.server.publish(
-            f'plots{radar or ""}',  # a kind for each radar: a newer one of another replaces none
+            _kind_of(radar),
             {
                 'at': time.monotonic(),
                 'stamp': stamp_ns * 1e-9,
@@ -166,7 +175,11 @@ class PpiDisplayNode(RunnableNode):
 
     def _on_trial(self, message: DiagnosticArray) -> None:
         self._alarmed = True
-        self.server.publish('trial', display_messages.trial(message))
+        trial = display_messages.trial(message)
+        self.server.publish('trial', {'at': time.monotonic(), **trial})
+
+    def _on_alarms_past(self, message: DiagnosticArray) -> None:
+        self.server.publish('alarms_past', {'alarms': display_messages.alarms_past(message)})
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for name, about in display_messages.health(message).items():
@@ -196,6 +209,11 @@ class PpiDisplayNode(RunnableNode):
         self._commands.ask(self._hear_parameters)
         self._demo.ask(self._hear_demo)
         self._forget()
+        self._areas.look()
+        about = ship(self._given, self)
+        if about != self._ship:
+            self._ship = about
+            self.server.publish('ship', about)
         wall = time.monotonic()
         fresh = self._bad.fresh(wall)
         values = {
@@ -242,10 +260,14 @@ class PpiDisplayNode(RunnableNode):
             return
         if shown.get('run') != self._shown.get('run'):  # what was seen so far is of another run
             self._trails = Trails()
-            own = OwnShipHeard()
-            own.radars = self._own.radars
-            self._own = own
+            self._own.begin_anew()
             self._scanned.clear()
-            self.server.forget('targets', 'plots', 'trails')
+            plots = (_kind_of(radar) for radar in range(len(self._plots)))
+            self.server.forget('targets', 'trails', *plots)
         self._shown = shown
         self.server.publish('demo', {'demo': shown})
+
+
+def _kind_of(radar: int) -> str:
+    """The kind of message of a radar's plots: a newer one of another radar replaces none."""
+    return f'plots{radar or ""}'

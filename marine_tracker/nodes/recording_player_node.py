@@ -2,20 +2,24 @@
 
 A file of spokes (recording/spokes_file.py) is played as `radar/spokes`, with own ship.
 
-Of a folder it publishes the same as radar_simulator, from plots.csv, own_ship.csv and truth.csv.
-Own ship comes as often as it was recorded. Rate and `/clock`: see playback.py. The node ends when
-the recording has ended, unless it loops. The values of radar.yaml are for the tracker; give them as
-its parameters.
+Else it publishes the same as radar_simulator, from plots.csv, own_ship.csv and truth.csv of a
+folder, or from the topics in MCAP files. Nothing else of those is played: logs, alarms and health
+of the past would pass for new. Own ship comes as often as it was recorded. Rate and `/clock`: see
+playback.py. The node ends when the recording has ended, unless it loops. The values of radar.yaml,
+and the parameters that were recorded, are for the tracker; give them as its parameters.
 """
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..geodesy import LocalFrame
 from ..parameters import RecordingPlayerParameters
 from ..recording import csv_folder, spokes_file
+from ..recording.mcap_name import is_mcap
 from ..types import OwnShip, PolarPlots, Scan, Truth, take
 from .base_node import RunnableNode
 from .declare import declare
@@ -45,6 +49,24 @@ def _parts(video: spokes_file.Video) -> Iterator[Revolution]:
         yield Revolution(scan, NO_TRUTH, samples, sweep)
 
 
+def _read(
+    folder: str,
+) -> tuple[list[Revolution], dict[str, Any], LocalFrame | None, tuple[str, ...]]:
+    """The revolutions, the tracker's parameters, where the frame is, and remarks."""
+    if is_mcap(folder):
+        from ..recording import mcap_topics  # needs packages of the extra `record`
+
+        inside = mcap_topics.contents(folder)
+        played = [Revolution(*one) for one in mcap_topics.revolutions(inside)]
+        return played, inside.parameters, mcap_topics.origin(inside), inside.files.remarks
+    recording = csv_folder.read(folder)
+    played = [
+        Revolution(scan, truth, take(recording.own_ship, slice(k, k + 1)))
+        for k, (scan, truth) in enumerate(zip(recording.scans, recording.truths))
+    ]
+    return played, recording.tracker_parameters, None, ()
+
+
 class RecordingPlayerNode(RunnableNode):
     """Plays a recording. ValueError if the parameters or the recording are wrong."""
 
@@ -56,22 +78,19 @@ class RecordingPlayerNode(RunnableNode):
         if spokes_file.is_spokes_file(parameters.folder):
             self._playback = self._of_video(parameters)
             return
-        recording = csv_folder.read(parameters.folder)
-
-        def revolutions() -> Iterator[Revolution]:
-            for k, (scan, truth) in enumerate(zip(recording.scans, recording.truths)):
-                yield Revolution(scan, truth, take(recording.own_ship, slice(k, k + 1)))
-
-        self._playback = Playback(self, revolutions, parameters.rate, parameters.loop)
+        played, for_tracker, origin, remarks = _read(parameters.folder)
+        self._playback = Playback(
+            self, lambda: iter(played), parameters.rate, parameters.loop, origin
+        )
+        for remark in remarks:
+            self.get_logger().warning(one_line(remark))
         self.get_logger().info(
-            f'recording {one_line(recording.name)}, {len(recording.scans)} scans, '
+            f'recording {one_line(Path(parameters.folder).name)}, {len(played)} scans, '
             f'rate {parameters.rate:g}'
         )
-        if recording.tracker_parameters:
-            named = ', '.join(
-                f'{name}: {value}' for name, value in recording.tracker_parameters.items()
-            )
-            self.get_logger().info(f'its radar.yaml has for the tracker {one_line(named, 2_000)}')
+        if for_tracker:
+            named = ', '.join(f'{name}: {value}' for name, value in for_tracker.items())
+            self.get_logger().info(f'it has for the tracker {one_line(named, 2_000)}')
 
     def _of_video(self, parameters: RecordingPlayerParameters) -> Playback:
         """Plays a file of spokes."""

@@ -33,6 +33,7 @@ NODES = {
     'recording_player': 'RecordingPlayerNode',
     'nmea_output': 'NmeaOutputNode',
     'ppi_display': 'PpiDisplayNode',
+    'recorder': 'RecorderNode',
 }
 LONGEST = 600  # characters of why a node cannot start
 ASKED = (signal.SIGINT, signal.SIGTERM)
@@ -137,6 +138,11 @@ def nmea_output() -> int:
 def ppi_display() -> int:
     """The exit code of the PPI."""
     return run('ppi_display')
+
+
+def recorder() -> int:
+    """The exit code of the recorder."""
+    return run('recorder')
 
 
 if __name__ == '__main__':

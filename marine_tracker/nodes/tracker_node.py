@@ -22,7 +22,7 @@ from sensor_msgs.msg import PointCloud2
 
 from ..arpa.arpa import Picture
 from ..arpa.view import Standing
-from ..parameters import ArpaParameters, TrackerParameters
+from ..parameters import NODES, ArpaParameters, TrackerParameters
 from ..service import Service
 from ..tracking import clocks, own_ship
 from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
@@ -40,13 +40,15 @@ from .own_ship_state import sources
 from .radar_input import Arrival, RadarInput
 from .tracker_output import TrackerOutput
 
+ANOTHER_CLOCK_S = 60.0  # no load makes plots so late
+
 
 class TrackerNode(RunnableNode):
     """See the module. ValueError where the parameters are wrong."""
 
     def __init__(self, **node_arguments: Any) -> None:
         super().__init__('tracker', **node_arguments)
-        parameters, arpa_parameters = declare(self, TrackerParameters, ArpaParameters)
+        parameters, arpa_parameters, output_parameters = declare(self, *NODES['tracker'])
         service = Service(parameters, arpa_parameters)
         self._base_ns: int | None = None  # stamps are seconds after this
         self._own_log, self._own_frame = own_ship.empty_log(), topics.OWN_SHIP_FRAME
@@ -68,7 +70,7 @@ class TrackerNode(RunnableNode):
 
         self._operator = Operator(self, service, self._sensors, self.hardware_id)
         follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
-        self._output = TrackerOutput(self, self.hardware_id)
+        self._output = TrackerOutput(self, self.hardware_id, output_parameters.tracks_paced)
         self._to_diagnostics = self.publisher(
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
@@ -141,7 +143,7 @@ class TrackerNode(RunnableNode):
 
     def _on_plots(self, heard: RadarInput, message: PointCloud2) -> None:
         began, p = time.perf_counter(), self._operator.arpa.parameters
-        found = heard.scan_of(
+        found = heard.read(
             message,
             self._arrival(),
             self._own_log,
@@ -176,7 +178,6 @@ class TrackerNode(RunnableNode):
         tracker = service.tracker
         for heard, radar in zip(self.inputs, radars_of(tracker.parameters), strict=True):
             heard.radar = radar
-        self.get_logger().info(f'parameters changed; estimator {tracker.parameters.estimator}')
 
     @property
     def picture(self) -> Picture | None:
@@ -235,7 +236,7 @@ class TrackerNode(RunnableNode):
         if slow > 0.5 * self.period:
             worries.append(f'a scan takes up to {slow:.2f} s of {self.period:.2f} s')
         elif self._lateness.percentile(50) > self.period:
-            worries.append('plots come more than a revolution late')
+            worries.append('plots come more than a revolution late' + self._why_late())
         confirmed, (states, fallen, reason, _) = self._status_count[CONFIRMED], self._standing
         if fallen > 0.5 * confirmed:
             worries.append(f'{fallen} of {confirmed} targets have fallen back: {reason}')
@@ -267,6 +268,15 @@ class TrackerNode(RunnableNode):
             **self.failures.counts,
         }
         return self._status('tracking', level, message, values)
+
+    def _why_late(self) -> str:
+        """The cause, where the clock is: plots of another time than this node's."""
+        late = self._lateness.percentile(50)
+        if self.get_parameter('use_sim_time').value or late < ANOTHER_CLOCK_S:
+            return ''
+        if self.count_publishers(topics.CLOCK):
+            return f': {late:.0f} s; /clock is published: set use_sim_time'
+        return f': {late:.0f} s; if they are of a recording, play its /clock and set use_sim_time'
 
     def _own_ship_status(self, wall: float) -> DiagnosticStatus:
         worries = []

@@ -2,7 +2,8 @@
 
 Of a radar that sends sectors the tracks come as the beam sweeps them, targets once a revolution.
 
-Tracks that have no number yet are in `tracks_cloud` only. A message without listeners is not made.
+Tracks that have no number yet are in `tracks_cloud` only. A message without listeners is not made,
+unless it is latched: who comes late is told the last scan, and none before.
 """
 
 from collections.abc import Callable
@@ -18,25 +19,30 @@ from ..geometry import wrap_bearing
 from ..service import Output, Service, Tracking
 from ..tracking.lifecycle import LOST
 from ..types import Extrapolation, take
-from . import convert, targets_cloud, topics
+from . import convert, danger_areas_cloud, targets_cloud, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
 from .markers import MarkersWriter
+from .paced import Paced
 from .targets_message import TargetsWriter
 
 
 class TrackerOutput:
     """The publishers of one tracker node."""
 
-    def __init__(self, node: RunnableNode, hardware_id: str) -> None:
+    def __init__(self, node: RunnableNode, hardware_id: str, paced: bool) -> None:
         burst = topics.reliable(topics.BURST)
         self._to_tracks = node.publisher(Odometry, topics.TRACKS, burst)
         self._to_extrapolations = node.publisher(Odometry, topics.EXTRAPOLATIONS, burst)
         self._to_cloud = node.publisher(PointCloud2, topics.TRACKS_CLOUD, topics.reliable())
         self._to_numeric = node.publisher(PointCloud2, topics.TARGETS_CLOUD, topics.latched())
-        self._to_targets = node.publisher(DiagnosticArray, topics.TARGETS, topics.latched())
+        self._tell_targets = node.publisher_of_both(
+            DiagnosticArray, topics.TARGETS, topics.latched()
+        )
         self._to_markers = node.publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
+        self._to_areas = node.publisher(PointCloud2, topics.DANGER_AREAS, topics.latched())
         self._pool = OdometryPool()
+        self._paced = Paced(node, self._to_tracks) if paced else None
         self._targets = TargetsWriter(hardware_id)
         self._markers = MarkersWriter()
 
@@ -60,9 +66,10 @@ class TrackerOutput:
         name = service.tracker.parameters.estimator
         arpa = service.arpa
         seen = view(output.picture, output.report, service.tracker.estimator, output.shapes)
-        self._to_targets.publish(self._targets.message(seen, name, output.scan.end, end_ns))
-        if self._to_numeric.get_subscription_count():
-            self._to_numeric.publish(targets_cloud.message(seen, output.picture.alerts, end_ns))
+        self._to_numeric.publish(targets_cloud.message(seen, output.picture.alerts, end_ns))
+        self._tell_targets(self._targets.message(seen, name, output.scan.end, end_ns))
+        if self._to_areas.get_subscription_count():
+            self._to_areas.publish(danger_areas_cloud.message(arpa, output.picture, end_ns))
         if self._to_markers.get_subscription_count():
             self._to_markers.publish(
                 self._markers.message(seen, output.picture, arpa.zones, arpa.parameters, end_ns)
@@ -74,7 +81,11 @@ class TrackerOutput:
         alive = alive[np.argsort(tracks.number[alive])]
         frames = [f'track_{n:02d}' for n in tracks.number[alive].tolist()]
         if self._to_tracks.get_subscription_count():
-            self._publish_each(self._to_tracks, stamps, frames, take(done.estimate, alive))
+            estimate = take(done.estimate, alive)
+            if self._paced is None:
+                self._publish_each(self._to_tracks, stamps, frames, estimate)
+            else:
+                self._paced.publish(stamps, frames, estimate, period)
         if self._to_extrapolations.get_subscription_count():
             ahead = service.tracker.extrapolate(
                 take(tracks, alive), done.report.time[alive] + period

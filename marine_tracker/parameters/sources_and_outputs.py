@@ -1,4 +1,4 @@
-"""The parameters of the nodes other than the tracker: simulator, player, NMEA output."""
+"""The parameters of the nodes other than the tracker's own: simulator, player, outputs."""
 
 from dataclasses import dataclass
 
@@ -46,7 +46,8 @@ class RecordingPlayerParameters:
 
     folder: str = parameter(
         '',
-        'Folder of a recording (plots.csv, own_ship.csv, truth.csv), or a file of spokes (.npz).',
+        'Folder of a recording (plots.csv, own_ship.csv, truth.csv), a file of spokes (.npz), or '
+        'a recording of topics (.mcap, or a folder of those).',
     )
     rate: float = parameter(
         1.0,
@@ -55,6 +56,60 @@ class RecordingPlayerParameters:
         high=1000.0,
     )
     loop: bool = parameter(False, 'Begin again when the recording has ended.')
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class RecorderParameters:
+    """The recorder node's parameters."""
+
+    folder: str = parameter(
+        '', 'Folder to record into, which must not have a recording. Empty: one named by the time.'
+    )
+    plots_topics: str = parameter(
+        'radar/plots', 'Topics of plots, several separated by blanks: those that the tracker hears.'
+    )
+    topics: str = parameter(
+        '',
+        'More topics to record, of whatever type is installed here, separated by blanks; beside '
+        'those of this package.',
+    )
+    without: str = parameter(
+        'radar/plots_readable extrapolations',
+        'Topics of this package that are not recorded, separated by blanks.',
+    )
+    tracker: str = parameter(
+        'tracker', "The tracker's node, whose parameters are recorded, so that a replay has them."
+    )
+    split_mb: int = parameter(
+        512, 'A new file begins when one has so many.', unit='MB', low=1, high=1_000_000
+    )
+    keep_free_mb: int = parameter(
+        500,
+        'The recording ends, whole, when less than so many would be left on the disk.',
+        unit='MB',
+        low=0,
+        high=100_000_000,
+    )
+    compression: str = parameter(
+        'zstd', 'How the files are packed.', choices=('zstd', 'lz4', 'none')
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class TrackerOutputParameters:
+    """How the tracker node publishes; nothing of it reaches the tracking."""
+
+    tracks_paced: bool = parameter(
+        False,
+        'Whether the messages of `tracks` are spread over the revolution. Else those of a scan '
+        'come at once, and a listener needs a depth of as many as there are tracks.',
+    )
 
     def __post_init__(self) -> None:
         check(self)

@@ -24,6 +24,7 @@
  * @property {(x: number, y: number) => void} selectAt  what lies at a pixel; the cursor goes there
  * @property {() => void} acquire                      at the cursor
  * @property {() => void} cancel                       the chosen target
+ * @property {() => void} silence                      what sounds, for 30 s
  * and the actions of actions.js
  */
 

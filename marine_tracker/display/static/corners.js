@@ -3,16 +3,16 @@
 import { rangeBearing, toMap } from './geometry.js';
 import * as format from './format.js';
 import { placeAt } from './geodesic.js';
-import { element, say } from './panel.js';
+import { STABILISED, element, say } from './panel.js';
 import { RANGES } from './settings.js';
 import { bearingText, readouts } from './tools.js';
 
 /**
  * @param {import('./state.js').State} state @param {import('./settings.js').Settings} settings
  * @param {import('./scope.js').Scope} scope @param {import('./surround.js').Marks} marks
- * @param {[number, number]|null} pointer px
+ * @param {[number, number]|null} pointer px @param {string} more  lines about dangers
  */
-export function showCorners(state, settings, scope, marks, pointer) {
+export function showCorners(state, settings, scope, marks, pointer, more) {
   const [range, rings] = RANGES[settings.range];
   element('no-heading').hidden = scope.north;
   say(
@@ -23,7 +23,8 @@ export function showCorners(state, settings, scope, marks, pointer) {
   const trails = settings.trails === 'off' ? '' : `, ${format.duration(settings.trailMinutes)}`;
   say(
     element('modes'),
-    `vectors ${settings.vectors}, ${settings.vectorMinutes} min\ntrails ${settings.trails}${trails}`,
+    `vectors ${settings.vectors}, ${settings.vectorMinutes} min\ntrails ${settings.trails}${trails}\n` +
+      `${STABILISED[state.own?.stabilised ?? 'none']}${more}`,
   );
   const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
   const lines = place && state.own ? cursorLines(place, state.own) : [];

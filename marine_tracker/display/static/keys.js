@@ -1,6 +1,5 @@
 // The keyboard: all that a mouse does, and the arrows for the cursor.
 
-import { seconds } from './app.js';
 import { toMap, toScreen } from './geometry.js';
 import { next } from './settings.js';
 import { edit, moveHandle, nextHandle } from './zones_panel.js';
@@ -21,6 +20,9 @@ const SETTINGS = {
   c: 'offCentre',
   r: 'rings',
   p: 'palette',
+  d: 'areas',
+  f: 'safeCourses',
+  u: 'ellipses',
   k: 'motion',
   T: 'trailMinutes',
   i: 'labels',
@@ -39,7 +41,7 @@ export function listen(/** @type {import('./app.js').App} */ app) {
     '=': () => app.zoom(-1),
     '-': () => app.zoom(1),
     n: () => chooseNext(app),
-    s: () => app.sound.silence(seconds()),
+    s: app.silence,
     e: app.mark,
     q: app.acquire,
     a: () => {

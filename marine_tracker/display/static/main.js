@@ -1,10 +1,12 @@
 // The page: puts link, state, picture, panel and controls together.
 
 import { actions } from './actions.js';
+import { showAlerts } from './alerts.js';
 import { alive } from './alive.js';
 import { seconds } from './app.js';
 import * as controls from './controls.js';
 import { showCorners } from './corners.js';
+import { dangersSay, keepWatch } from './dangers.js';
 import * as demo from './demo.js';
 import * as forms from './forms.js';
 import { rangeBearing, toMap, toScreen } from './geometry.js';
@@ -22,6 +24,7 @@ import { emptyState, receive, reconnected } from './state.js';
 import { makeHeads, showTargets } from './table.js';
 import { newTools, restoreLines } from './tools.js';
 import * as toolsPanel from './tools_panel.js';
+import { showTrial } from './trial.js';
 import * as zonesPanel from './zones_panel.js';
 
 const PANEL_MS = 200;
@@ -124,6 +127,11 @@ const app = {
     const target = app.chosen();
     if (target?.number) app.command('cancel', { number: target.number });
   },
+  /** For all viewers, by whoever may command; else on this device. */
+  silence() {
+    if (state.role.commands) app.command('silence');
+    else app.sound.silence(seconds());
+  },
 };
 Object.assign(app, actions(app));
 
@@ -135,7 +143,8 @@ function frame() {
   const pen = surface.ready();
   const scope = app.scopeNow();
   draw(pen, state, settings, scope, app.colors, marks, seconds());
-  showCorners(state, settings, scope, marks, app.pointer);
+  const more = dangersSay(state, settings, seconds());
+  showCorners(state, settings, scope, marks, app.pointer, more);
   if (now - panelShown > PANEL_MS) {
     panelShown = now;
     showPanel();
@@ -145,28 +154,32 @@ function frame() {
 function showPanel() {
   const mayCommand = state.role.commands;
   panel.showOwnShip(state);
-  panel.showAlarms(state, mayCommand, (number) => app.command('acknowledge', { number }));
+  showAlerts(app);
   panel.showSelected(app.chosen(), state.own);
   showTargets(state.targets, sorted, marks.id, app.choose);
   panel.showState(state);
-  demo.showDemo(state);
+  showTrial(state, seconds());
   toolsPanel.show();
   zonesPanel.show(app);
+  demo.showDemo(state);
   for (const id of ['acknowledge-all', 'acquire', 'cancel', 'trial-off']) {
     /** @type {HTMLButtonElement} */ (panel.element(id)).disabled = !mayCommand;
   }
   for (const button of document.querySelectorAll('form .submit')) button.disabled = !mayCommand;
 }
 
-const showAlive = () => alive(app, surface, seconds());
+const showAlive = () => {
+  alive(app, surface, seconds());
+  keepWatch(settings, link);
+};
 
 controls.listen(app);
 keys.listen(app);
 pointer.listen(app);
 forms.listen(app);
-demo.listen(app);
 toolsPanel.listen(app);
 zonesPanel.listen(app);
+demo.listen(app);
 makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;

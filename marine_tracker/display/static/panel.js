@@ -12,8 +12,11 @@ const STATUS = {
   [LOST]: 'lost',
 };
 const MOTION = ['steady', 'manoeuvring', 'at rest'];
-/** Of alerts, as they are listed. */
-const STATES = ['active unacknowledged', 'rectified unacknowledged', 'active acknowledged'];
+export const STABILISED = {
+  ground: 'courses over ground',
+  sea: 'courses through the water',
+  none: 'COURSES NOT KNOWN',
+};
 const CLOCK_S = 30; // a larger difference of the time of day is told
 /** @param {string} id @returns {HTMLElement} */
 export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
@@ -93,46 +96,6 @@ function angleSd(/** @type {number|null} */ sd) {
   return format.number(sd === null ? null : (sd * 180) / Math.PI, 1);
 }
 
-/** The alerts, those that nobody acknowledged first. */
-export function showAlarms(state, mayCommand, acknowledge) {
-  const list = element('alarms');
-  const priority = ['alarm', 'warning', 'caution'];
-  const waits = (alarm) => alarm.state.endsWith('unacknowledged');
-  const rank = (alarm) => STATES.indexOf(alarm.state) * 3 + priority.indexOf(alarm.priority);
-  const alarms = [...state.alarms].sort((a, b) => rank(a) - rank(b));
-  const old = new Map([...list.children].map((item) => [item.dataset.name, item]));
-  const items = alarms.map((alarm) => {
-    const item = old.get(alarm.name) ?? newAlarm(alarm.name);
-    item.className = `${alarm.priority} ${alarm.state}`;
-    const over = alarm.state.startsWith('rectified') ? 'Over: ' : '';
-    const [icon, text, button] = item.children;
-    const about = {
-      type: alarm.priority,
-      active: !over,
-      acknowledged: !waits(alarm),
-    };
-    Object.assign(icon, about);
-    say(text, over + (alarm.text || alarm.name));
-    button.hidden = !(waits(alarm) && alarm.number);
-    button.disabled = !mayCommand;
-    button.onclick = () => acknowledge(alarm.number);
-    return item;
-  });
-  if (items.length !== list.children.length || items.some((item, k) => item !== list.children[k])) {
-    list.replaceChildren(...items);
-  }
-}
-
-function newAlarm(/** @type {string} */ name) {
-  const item = document.createElement('li');
-  item.dataset.name = name;
-  const button = document.createElement('obc-button');
-  button.textContent = 'Ack';
-  button.title = `Acknowledge ${name}`;
-  item.append(document.createElement('obc-alert-icon'), document.createElement('span'), button);
-  return item;
-}
-
 /** Health, limits, trial, and what this viewer may do. */
 export function showState(state) {
   const parts = Object.entries(state.health).filter(([, part]) => part.level !== 'ok');
@@ -159,23 +122,4 @@ export function showState(state) {
     ? `This device's clock is ${Math.round(state.clockError)} s off; ages do not depend on it. `
     : '';
   say(element('role'), clock + (state.role.commands ? '' : state.role.why || 'Looking only.'));
-  say(element('trial-says'), trialSays(state.trial));
-}
-
-function trialSays(trial) {
-  if (!trial.on) return '';
-  if (!trial.safe_deg) return trial.text;
-  const safe = trial.safe_deg.map(
-    ([a, b]) => `${String(a).padStart(3, '0')}–${String(b).padStart(3, '0')}`,
-  );
-  const dangers = trial.targets.filter((target) => target.danger);
-  const told = dangers.map(
-    (t) => `${t.name} CPA ${format.number(t.cpa_nm, 2)} NM in ${format.number(t.tcpa_min, 1)} min`,
-  );
-  return (
-    `TRIAL ${format.number(trial.course_deg, 0)}°, ${format.number(trial.speed_kn, 1)} kn` +
-    `${trial.countdown_min ? `, begins in ${format.number(trial.countdown_min, 1)} min` : ''}. ` +
-    `Safe courses: ${safe.join(', ') || 'none'}. ` +
-    (told.length ? `Dangerous: ${told.join('; ')}.` : 'No target is dangerous.')
-  );
 }

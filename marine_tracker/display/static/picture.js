@@ -1,32 +1,23 @@
 // The radar picture on its canvas: scale, rings, echoes, targets, own ship.
 
-import { NAUTICAL_MILE, canvasAngle, edge, ellipse, toScreen, turned } from './geometry.js';
+import { NAUTICAL_MILE, toScreen } from './geometry.js';
+import { drawAreas, drawSafeCourses } from './dangers.js';
 import { echoKey, paintEchoes } from './echoes.js';
-import { placed } from './labels.js';
 import { Layer, Stamps } from './layers.js';
-import { bowOf, farthestSeen } from './scope.js';
+import { farthestSeen } from './scope.js';
 import { RANGES } from './settings.js';
-import { drawMarks, drawScale, drawTrial } from './surround.js';
-import {
-  ACQUIRING,
-  ACKNOWLEDGED,
-  COASTING,
-  LOST,
-  UNACKNOWLEDGED,
-  lostTargets,
-  nameOf,
-} from './state.js';
+import { drawOwnShip } from './own_ship.js';
+import { drawMarks, drawScale, drawSimulation, drawTrial } from './surround.js';
+import { LOST } from './state.js';
 import * as symbols from './symbols.js';
+import { drawTargets } from './targets.js';
 import { drawTools } from './tools_draw.js';
 import { drawZones } from './zones_draw.js';
 
-const ELLIPSE_SIGMA = 2;
-const FLASH_S = 0.5;
 const around = new Layer(); // sea, rings, bearing scale
 const glow = new Layer(); // echoes
 const past = new Layer(); // trails
 const stamps = new Stamps();
-const LIKELY_STEPS = 20; // of the shade that tells how likely a danger is
 
 /**
  * @typedef {import('./geometry.js').View} View
@@ -34,13 +25,6 @@ const LIKELY_STEPS = 20; // of the shade that tells how likely a danger is
  * @typedef {import('./settings.js').Settings} Settings
  * @typedef {import('./scope.js').Scope} Scope
  */
-
-/** The vector of a target or own ship, m. */
-export function vectorOf(/** @type {Settings} */ settings, own, vx, vy) {
-  const seconds = 60 * settings.vectorMinutes;
-  const relative = settings.vectors === 'relative';
-  return [(vx - (relative ? own.vx : 0)) * seconds, (vy - (relative ? own.vy : 0)) * seconds];
-}
 
 /**
  * Draw everything.
@@ -84,6 +68,7 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
           drawTrails(pen, state, settings, scope, colors),
         );
       }
+      drawAreas(canvas, state, settings, scope, colors, local);
       drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
       drawTargets(canvas, state, settings, scope, colors, marks.id, local, names);
     }
@@ -91,7 +76,10 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
     drawMarks(canvas, scope, colors, marks);
   }
   canvas.restore();
-  if (graphics && state.trial.on) drawTrial(canvas, state, scope, colors);
+  if (!graphics) return;
+  drawSafeCourses(canvas, state, settings, scope, colors, local);
+  if (state.ship?.source === 'simulation') drawSimulation(canvas, scope, colors);
+  if (state.trial.on) drawTrial(canvas, state, scope, colors);
 }
 
 function drawRings(canvas, settings, scope, colors) {
@@ -131,125 +119,6 @@ function drawTrails(canvas, state, settings, { view }, colors) {
       });
     }
   }
-}
-
-function drawOwnShip(canvas, state, settings, scope, colors, headingLine) {
-  const { view, middleX, middleY, radius } = scope;
-  const own = state.own;
-  if (headingLine && (scope.north || own.bow != null)) {
-    const [x, y] = edge(view, bowOf(own), middleX, middleY, radius);
-    canvas.strokeStyle = colors.own;
-    canvas.lineWidth = 1.4;
-    canvas.beginPath();
-    canvas.moveTo(view.centreX, view.centreY);
-    canvas.lineTo(x, y);
-    canvas.stroke();
-  }
-  if (settings.vectors === 'true') {
-    const [right, down] = turned(view, ...vectorOf(settings, own, own.vx, own.vy));
-    symbols.vector(canvas, view.centreX, view.centreY, right, down, colors.own, true);
-  }
-  symbols.ownShip(canvas, view.centreX, view.centreY, colors.own);
-}
-
-function drawTargets(canvas, state, settings, scope, colors, chosen, local, otherLabels) {
-  const { view, middleX, middleY, radius } = scope;
-  const shown = Math.floor(local / FLASH_S) % 2 === 0;
-  /** @type {import('./labels.js').Label[]} */
-  const labels = [];
-  const inOrder = [...state.targets].sort((a, b) => a.alarm - b.alarm); // the dangerous on top
-  for (const target of inOrder) {
-    if (target.x === null || target.status === LOST) continue;
-    const [x, y] = toScreen(view, target.x, target.y);
-    const danger = target.alarm >= ACKNOWLEDGED;
-    const color = danger
-      ? colors.danger
-      : target.status === COASTING
-        ? colors.coasting
-        : colors.target;
-    const [right, down] = turned(view, ...vectorOf(settings, state.own, target.vx, target.vy));
-    const beyond = Math.hypot(x - middleX, y - middleY) - radius;
-    if (danger && beyond > 0 && shown) drawBeyond(canvas, scope, target, colors);
-    if (beyond > Math.hypot(right, down)) continue;
-    if (target.id === chosen) {
-      symbols.selected(canvas, x, y, colors.selected);
-      drawEllipse(canvas, view, target, colors);
-    }
-    if (target.alarm !== UNACKNOWLEDGED || shown) {
-      if (target.status !== ACQUIRING) symbols.vector(canvas, x, y, right, down, color, danger);
-      drawSymbol(canvas, target, x, y, color, danger, colors);
-    }
-    if (target.number && (settings.labels === 'on' || danger || target.id === chosen)) {
-      const text = String(target.number).padStart(2, '0');
-      labels.push({ x, y, text, needed: danger || target.id === chosen });
-    }
-  }
-  for (const alarm of lostTargets(state)) {
-    if (!shown && alarm.state.endsWith('unacknowledged')) continue;
-    const [x, y] = toScreen(view, alarm.x, alarm.y);
-    symbols.lost(canvas, x, y, colors.lost);
-    if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: false });
-  }
-  labels.push(...otherLabels); // they take the room that is left
-  canvas.font = '600 13px system-ui, sans-serif';
-  canvas.textBaseline = 'middle';
-  canvas.textAlign = 'left';
-  canvas.fillStyle = colors.label;
-  canvas.strokeStyle = colors.label;
-  canvas.lineWidth = 1;
-  for (const { label, left, middle, far } of placed(labels, (text) => widthOf(canvas, text))) {
-    canvas.fillText(label.text, left, middle);
-    if (!far) continue;
-    canvas.beginPath();
-    canvas.moveTo(left > label.x ? left - 2 : left + widthOf(canvas, label.text) + 2, middle);
-    canvas.lineTo(label.x, label.y);
-    canvas.stroke();
-  }
-}
-
-function drawSymbol(canvas, target, x, y, color, danger, colors) {
-  const likely = Math.round((target.danger_probability ?? 0) * LIKELY_STEPS);
-  const key = `${color} ${danger} ${target.status} ${likely}`;
-  stamps.put(canvas, key, x, y, 12, (pen, middleX, middleY) => {
-    if (danger) symbols.dangerous(pen, middleX, middleY, color);
-    else if (target.status === ACQUIRING) symbols.acquiring(pen, middleX, middleY, color);
-    else if (target.status === COASTING) symbols.coasting(pen, middleX, middleY, color);
-    else symbols.tracked(pen, middleX, middleY, color, likely / LIKELY_STEPS, colors.danger);
-  });
-}
-
-/** @type {Map<string, number>} */
-const widths = new Map();
-
-/** The width of a label, px: measured once, there are few different ones. */
-function widthOf(canvas, /** @type {string} */ text) {
-  const known = widths.get(text) ?? canvas.measureText(text).width;
-  if (widths.size < 5000) widths.set(text, known);
-  return known;
-}
-
-/** A dangerous target beyond the edge: a triangle on its bearing. */
-function drawBeyond(canvas, { view, middleX, middleY, radius }, target, colors) {
-  const bearing = Math.atan2(target.x - view.originX, target.y - view.originY);
-  const [x, y] = edge(view, bearing, middleX, middleY, radius - 3);
-  const [right, down] = [(x - middleX) / radius, (y - middleY) / radius];
-  canvas.fillStyle = colors.danger;
-  canvas.beginPath();
-  canvas.moveTo(x, y);
-  canvas.lineTo(x - 16 * right - 8 * down, y - 16 * down + 8 * right);
-  canvas.lineTo(x - 16 * right + 8 * down, y - 16 * down - 8 * right);
-  canvas.fill();
-}
-
-function drawEllipse(canvas, view, target, colors) {
-  const { long, short, bearing } = ellipse(target.xx, target.xy, target.yy);
-  canvas.strokeStyle = colors.selected;
-  canvas.lineWidth = 1;
-  canvas.beginPath();
-  const [x, y] = toScreen(view, target.x, target.y);
-  const size = ELLIPSE_SIGMA * view.scale;
-  canvas.ellipse(x, y, long * size, short * size, canvasAngle(view, bearing), 0, 2 * Math.PI);
-  canvas.stroke();
 }
 
 /** The target under a pixel, or null. */

@@ -24,6 +24,9 @@ export const CHOICES = {
   labels: ['on', 'off'],
   rings: ['on', 'off'],
   offCentre: ['off', 'ahead', 'place'],
+  areas: ['off', 'on'],
+  safeCourses: ['off', 'on'],
+  ellipses: ['selected', 'all', 'off'],
   palette: ['day', 'dusk', 'night'],
   sound: ['off', 'on'],
 };
@@ -41,6 +44,9 @@ const KEY = 'marine_tracker ppi';
  * @property {string} labels
  * @property {string} rings
  * @property {string} offCentre
+ * @property {string} areas        predicted areas of danger
+ * @property {string} safeCourses  the ring of safe courses
+ * @property {string} ellipses     of uncertainty
  * @property {number} offRight  radii from the middle to own ship, where offCentre is `place`
  * @property {number} offDown
  * @property {string} palette
@@ -61,6 +67,9 @@ export function load(/** @type {string} */ search) {
     labels: 'on',
     rings: 'on',
     offCentre: 'off',
+    areas: 'off',
+    safeCourses: 'off',
+    ellipses: 'selected',
     offRight: 0,
     offDown: 0,
     palette: 'day',

@@ -21,13 +21,16 @@ export const UNACKNOWLEDGED = 2;
  * @property {Target[]} targets
  * @property {Message|null} scan     the message that the targets came with, without its columns
  * @property {Message[]} plots       of the last scans, newest last
- * @property {Message[]} alarms
+ * @property {Message[]} alarms      in the order in which they are listed
+ * @property {Message[]} settled     alerts that are over, the newest first
+ * @property {Message|null} areas    of danger, while they are asked for
+ * @property {Message|null} ship     own ship's size, and what the picture comes from
  * @property {Message|null} trails
  * @property {Message} trial
  * @property {Record<string, Message>} health
  * @property {Message|null} limits
- * @property {Record<string, any>} demo  what a demo shows and offers; empty where there is none
  * @property {Message} zones         of the tracker, in m and rad; `error` where they are not known
+ * @property {Record<string, any>} demo  what a demo shows and offers; empty where there is none
  * @property {{commands: boolean, why: string}} role
  * @property {number} heard          s of this browser's clock; -Infinity before the first message
  * @property {number} clockError     s, how far this browser's time of day is ahead of the server's
@@ -43,12 +46,15 @@ export function emptyState() {
     scan: null,
     plots: [],
     alarms: [],
+    settled: [],
+    areas: null,
+    ship: null,
     trails: null,
     trial: { on: false },
     health: {},
     limits: null,
-    demo: {},
     zones: { zones: [], error: '' },
+    demo: {},
     role: { commands: false, why: '' },
     heard: -Infinity,
     offset: -Infinity,
@@ -84,6 +90,9 @@ export function receive(state, message, local) {
     case 'alarms':
       state.alarms = message.alarms;
       break;
+    case 'alarms_past':
+      state.settled = message.alarms;
+      break;
     case 'demo':
       if (state.demo.run !== undefined && message.demo.run !== state.demo.run) {
         Object.assign(state, { targets: [], scan: null, plots: [], trails: null }); // another run
@@ -100,9 +109,13 @@ export function receive(state, message, local) {
       state.clockError = Date.now() / 1000 - message.utc || 0;
       break;
     case 'own':
+      state.own = { wx: message.vx, wy: message.vy, stabilised: 'ground', ...message };
+      break;
     case 'trails':
     case 'trial':
     case 'limits':
+    case 'ship':
+    case 'areas':
     case 'zones':
       state[message.kind] = message;
       break;
@@ -164,9 +177,19 @@ export function nameOf(target) {
   return target.number ? `TT${String(target.number).padStart(2, '0')}` : `Q${target.id}`;
 }
 
+/** Whether somebody has still to acknowledge an alert. @param {Message} alarm */
+export const waits = (alarm) =>
+  alarm.state.endsWith('unacknowledged') || alarm.state === 'active silenced';
+
 /** Alerts that somebody has still to acknowledge. @param {State} state */
 export function unacknowledged(state) {
-  return state.alarms.filter((alarm) => alarm.state.endsWith('unacknowledged'));
+  return state.alarms.filter(waits);
+}
+
+/** Numbers of the targets in guard zones that nobody has acknowledged. @param {State} state */
+export function newTargets(state) {
+  const found = state.alarms.filter((alarm) => alarm.kind === 'new target' && waits(alarm));
+  return new Set(found.map((alarm) => alarm.number));
 }
 
 /** Where targets were lost, until that is acknowledged. @param {State} state */

@@ -1,6 +1,7 @@
 // What is drawn around and over the picture: bearing scale, cursor, markers, a trial's courses.
 
-import { canvasAngle, edge, radians, toScreen } from './geometry.js';
+import { drawRing } from './dangers.js';
+import { edge, radians, toScreen } from './geometry.js';
 
 /**
  * What the viewer has marked.
@@ -70,26 +71,23 @@ export function drawScale(canvas, { view, middleX, middleY, radius, north }, col
   canvas.stroke();
 }
 
+/** The S of a picture that is simulated. */
+export function drawSimulation(canvas, { middleX, middleY, radius }, colors) {
+  canvas.fillStyle = colors.label;
+  canvas.font = '700 40px system-ui, sans-serif';
+  canvas.textAlign = 'center';
+  canvas.textBaseline = 'middle';
+  canvas.fillText('S', middleX - 44, middleY + radius - 34);
+}
+
 /** Safe and unsafe courses of a trial around the picture, and the T that says that it is one. */
 export function drawTrial(canvas, state, scope, colors) {
   const { view, middleX, middleY, radius } = scope;
-  const around = 5;
-  canvas.lineWidth = 6;
-  const safe = new Set();
-  for (const [first, last] of state.trial.safe_deg ?? []) {
-    for (let k = 0; k <= (last - first + 360) % 360; k++) safe.add((first + k) % 360);
-  }
-  for (let course = 0; course < 360; course++) {
-    canvas.strokeStyle = safe.has(course) ? colors.safe : colors.danger;
-    if (!safe.has(course) && course % 4 > 1) continue; // broken: not by colour alone
-    const angle = canvasAngle(view, radians(course));
-    canvas.beginPath();
-    canvas.arc(middleX, middleY, radius - around, angle, angle + radians(1.2));
-    canvas.stroke();
-  }
+  if (state.trial.safe_deg) drawRing(canvas, scope, colors, state.trial.safe_deg);
   canvas.fillStyle = colors.danger;
   canvas.font = '700 40px system-ui, sans-serif';
   canvas.textAlign = 'center';
+  canvas.textBaseline = 'middle';
   canvas.fillText('T', middleX, middleY + radius - 34);
   if (state.trial.course_deg !== null && state.own) {
     canvas.strokeStyle = colors.safe;

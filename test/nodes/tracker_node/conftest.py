@@ -157,7 +157,7 @@ class Bridge(Rig):
     def __init__(self, graph, node_helpers, sea, **parameters):
         super().__init__(graph, node_helpers, sea, **parameters)
         self._truth = sea[2]
-        self.alarms = self.listen(DiagnosticArray, topics.ALARMS, topics.latched(10))
+        self.alarms = self.listen(DiagnosticArray, topics.ALARMS, topics.latched(100))
         self._played = 0
         self._commands = {}
 
