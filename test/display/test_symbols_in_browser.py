@@ -160,9 +160,10 @@ def test_own_ships_outline_is_to_scale_about_her_reference_point(orientation):
         await scene.shows('own', (scene.middle[0] + 4, scene.middle[1]))  # the cross
         await scene.hides('own', aboard(-185, 0), aboard(-90, 45))
         # On a long range she is the double circle again.
+        nearer = await scene.page.evaluate('ppi.settings.range')
         for _ in range(4):
             await scene.page.evaluate('ppi.app.zoom(1)')
-        await scene.page.until('ppi.settings.range == 6')
+        await scene.page.until(f'ppi.settings.range == {nearer + 4}')
         await scene.shows('own', *around(scene.middle, 8, 130, 200, 240))
 
     on_scene(act, orientation, ship={'length': 190, 'beam': 44, 'bow': 40})
