@@ -308,7 +308,7 @@ def test_own_ships_outline_is_to_scale_about_her_reference_point(orientation):
         # On a long range she is the double circle again.
         for _ in range(4):
             await scene.page.evaluate('ppi.app.zoom(1)')
-        await scene.page.until('ppi.settings.range == 6')
+        await scene.page.until('ppi.settings.range == 7')
         await scene.shows('own', *around(scene.middle, 8, 130, 200, 240))
 
     on_scene(act, orientation, ship={'length': 190, 'beam': 44, 'bow': 40})
