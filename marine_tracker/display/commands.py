@@ -31,10 +31,10 @@ FIELDS: dict[str, dict[str, Field]] = {
     'acknowledge_alert': {'instance': (1, 2**32 - 1)},
     'silence': {},
     'limits': {'cpa_nm': (0.01, 20.0), 'tcpa_min': (0.1, 120.0)},
+    'watch': {'areas': (0, 1)},
     'explain': {'x': (-FAR_M, FAR_M), 'y': (-FAR_M, FAR_M)},
     'zone_put': {'zone': zone_fields.zone, 'was': zone_fields.name},
     'zone_delete': {'name': zone_fields.name},
-    'watch': {'areas': (0, 1)},
     'show': {'scenario': _word, 'recording': _word, 'rate': (0.01, 1000.0)},
 }
 LOGIN, WATCH = 'login', 'watch'

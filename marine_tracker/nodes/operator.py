@@ -81,13 +81,13 @@ class Operator:
             (UInt32, topics.ACKNOWLEDGE_ALERT, self._on_acknowledge_alert),
         ):
             node.subscription(kind, topic, callback, topics.reliable())
-        self._explanations = Explanations(
-            node, lambda: (self.service, self.memory), self._point, hardware_id
-        )
         for own in ('', '~/'):
             node.create_service(Trigger, own + topics.CANCEL_ALL, self._on_cancel_all)
             node.create_service(Trigger, own + topics.ACKNOWLEDGE, self._on_acknowledge)
             node.create_service(Trigger, own + topics.SILENCE, self._on_silence)
+        self._explanations = Explanations(
+            node, lambda: (self.service, self.memory), self._point, hardware_id
+        )
         node.create_service(SetBool, topics.TRIAL_MANOEUVRE, self._on_trial)
 
     # -- in ------------------------------------------------------------------------------------

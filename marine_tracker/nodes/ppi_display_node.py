@@ -99,7 +99,7 @@ class PpiDisplayNode(RunnableNode):
         elif wall - self._own_told >= OWN_EVERY_S:
             self._own_told = wall
             own = self._own.plain(wall)
-            self.server.publish('own', own | self._way.told(own['vx'], own['vy']))
+            self.server.publish('own', {**own, **self._way.told(own['vx'], own['vy'])})
 
     def _on_fix(self, message: NavSatFix) -> None:
         wall = time.monotonic()

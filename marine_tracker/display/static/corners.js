@@ -3,23 +3,16 @@
 import { rangeBearing, toMap } from './geometry.js';
 import * as format from './format.js';
 import { placeAt } from './geodesic.js';
-import { element, say } from './panel.js';
+import { STABILISED, element, say } from './panel.js';
 import { RANGES } from './settings.js';
 import { bearingText, readouts } from './tools.js';
-
-const STABILISED = {
-  ground: 'courses over ground',
-  sea: 'courses through the water',
-  none: 'COURSES NOT KNOWN',
-};
 
 /**
  * @param {import('./state.js').State} state @param {import('./settings.js').Settings} settings
  * @param {import('./scope.js').Scope} scope @param {import('./surround.js').Marks} marks
- * @param {[number, number]|null} pointer px
- * @param {string} more  below the modes
+ * @param {[number, number]|null} pointer px @param {string} more  lines about dangers
  */
-export function showCorners(state, settings, scope, marks, pointer, more = '') {
+export function showCorners(state, settings, scope, marks, pointer, more) {
   const [range, rings] = RANGES[settings.range];
   element('no-heading').hidden = scope.north;
   say(

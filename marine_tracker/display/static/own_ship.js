@@ -11,15 +11,14 @@ const ARROWS = { sea: 1, ground: 2 }; // heads of the vector, by what her way is
 /**
  * @param {CanvasRenderingContext2D} canvas
  * @param {import('./state.js').State} state @param {import('./settings.js').Settings} settings
- * @param {import('./picture.js').Scope} scope @param {Record<string, string>} colors
+ * @param {import('./scope.js').Scope} scope @param {Record<string, string>} colors
  * @param {boolean} headingLine  whether it is drawn
  */
 export function drawOwnShip(canvas, state, settings, scope, colors, headingLine) {
   const { view, middleX, middleY, radius } = scope;
   const { own, ship } = state;
-  // Without a heading the bow is where it was last, and the picture is head-up.
-  const bowKnown = scope.north || own.bow != null;
-  if (headingLine && bowKnown) {
+  const known = scope.north || own.bow != null;
+  if (headingLine && known) {
     const [x, y] = edge(view, bowOf(own), middleX, middleY, radius);
     canvas.strokeStyle = colors.own;
     canvas.lineWidth = 1.4;
@@ -36,7 +35,7 @@ export function drawOwnShip(canvas, state, settings, scope, colors, headingLine)
     symbols.arrowheads(canvas, view.centreX, view.centreY, right, down, colors.own, heads);
   }
   const sized = ship && ship.beam > 0 && ship.length * view.scale >= OUTLINE_PX;
-  if (sized && bowKnown) {
+  if (sized && known) {
     const { length, beam, bow } = ship;
     const outline = { length, beam, bow, heading: bowOf(own) };
     symbols.hull(canvas, view.centreX, view.centreY, outline, view, colors.own);

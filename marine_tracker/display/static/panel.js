@@ -12,6 +12,11 @@ const STATUS = {
   [LOST]: 'lost',
 };
 const MOTION = ['steady', 'manoeuvring', 'at rest'];
+export const STABILISED = {
+  ground: 'courses over ground',
+  sea: 'courses through the water',
+  none: 'COURSES NOT KNOWN',
+};
 const CLOCK_S = 30; // a larger difference of the time of day is told
 /** @param {string} id @returns {HTMLElement} */
 export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));

@@ -60,15 +60,15 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
     );
   }
   if (graphics) {
-    if (state.own && settings.trails !== 'off') {
-      const shown = [settings.trails, settings.trailMinutes, state.trails?.count];
-      past.onto(canvas, [...lies, ...shown, state.scan?.at], (pen) =>
-        drawTrails(pen, state, settings, scope, colors),
-      );
-    }
-    if (state.own) drawAreas(canvas, state, settings, scope, colors, local);
     const names = drawZones(canvas, state, scope, colors, marks);
     if (state.own) {
+      if (settings.trails !== 'off') {
+        const shown = [settings.trails, settings.trailMinutes, state.trails?.count];
+        past.onto(canvas, [...lies, ...shown, state.scan?.at], (pen) =>
+          drawTrails(pen, state, settings, scope, colors),
+        );
+      }
+      drawAreas(canvas, state, settings, scope, colors, local);
       drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
       drawTargets(canvas, state, settings, scope, colors, marks.id, local, names);
     }
@@ -76,9 +76,10 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
     drawMarks(canvas, scope, colors, marks);
   }
   canvas.restore();
-  if (graphics) drawSafeCourses(canvas, state, settings, scope, colors, local);
+  if (!graphics) return;
+  drawSafeCourses(canvas, state, settings, scope, colors, local);
   if (state.ship?.source === 'simulation') drawSimulation(canvas, scope, colors);
-  if (graphics && state.trial.on) drawTrial(canvas, state, scope, colors);
+  if (state.trial.on) drawTrial(canvas, state, scope, colors);
 }
 
 function drawRings(canvas, settings, scope, colors) {

@@ -44,11 +44,11 @@ const KEY = 'marine_tracker ppi';
  * @property {string} labels
  * @property {string} rings
  * @property {string} offCentre
- * @property {number} offRight  radii from the middle to own ship, where offCentre is `place`
- * @property {number} offDown
  * @property {string} areas        predicted areas of danger
  * @property {string} safeCourses  the ring of safe courses
  * @property {string} ellipses     of uncertainty
+ * @property {number} offRight  radii from the middle to own ship, where offCentre is `place`
+ * @property {number} offDown
  * @property {string} palette
  * @property {string} sound
  */
@@ -67,11 +67,11 @@ export function load(/** @type {string} */ search) {
     labels: 'on',
     rings: 'on',
     offCentre: 'off',
-    offRight: 0,
-    offDown: 0,
     areas: 'off',
     safeCourses: 'off',
     ellipses: 'selected',
+    offRight: 0,
+    offDown: 0,
     palette: 'day',
     sound: 'off',
   };

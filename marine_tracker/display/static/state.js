@@ -114,9 +114,9 @@ export function receive(state, message, local) {
     case 'trails':
     case 'trial':
     case 'limits':
-    case 'zones':
     case 'ship':
     case 'areas':
+    case 'zones':
       state[message.kind] = message;
       break;
   }

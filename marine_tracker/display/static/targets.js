@@ -38,11 +38,11 @@ export function vectorOf(settings, own, vx, vy) {
 /**
  * @param {CanvasRenderingContext2D} canvas
  * @param {import('./state.js').State} state @param {import('./settings.js').Settings} settings
- * @param {import('./picture.js').Scope} scope @param {Record<string, string>} colors
+ * @param {import('./scope.js').Scope} scope @param {Record<string, string>} colors
  * @param {number|null} chosen  track of the selected target @param {number} local s
- * @param {import('./labels.js').Label[]} otherLabels  that take the room which is left
+ * @param {import('./labels.js').Label[]} others  more labels: they take the room that is left
  */
-export function drawTargets(canvas, state, settings, scope, colors, chosen, local, otherLabels) {
+export function drawTargets(canvas, state, settings, scope, colors, chosen, local, others) {
   const { view, middleX, middleY, radius } = scope;
   const shown = Math.floor(local / FLASH_S) % 2 === 0;
   const fresh = newTargets(state);
@@ -90,7 +90,7 @@ export function drawTargets(canvas, state, settings, scope, colors, chosen, loca
     symbols.lost(canvas, x, y, colors.lost);
     if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: false });
   }
-  drawLabels(canvas, [...labels, ...otherLabels], colors.label);
+  drawLabels(canvas, [...labels, ...others], colors.label);
 }
 
 /** state: 'danger', 'caught' or the target's status; probability: of danger. */

@@ -131,7 +131,7 @@ def test_a_tracker_that_answers_late_or_never_harms_nothing(graph, node_helpers,
     monkeypatch.setattr(server, 'ANSWER_S', 0.5)
     display = graph.make(PpiDisplayNode, address='127.0.0.1:0', token='pass')
     mute = Node('mute', context=graph.context)  # serves, but is not spun yet
-    for name in (topics.CANCEL_ALL, topics.ACKNOWLEDGE):
+    for name in (topics.CANCEL_ALL, topics.ACKNOWLEDGE, topics.SILENCE):
         mute.create_service(Trigger, name, lambda request, response: response)
     mute.create_service(SetParameters, 'tracker/set_parameters', lambda request, response: response)
     wait(lambda: all(client.service_is_ready() for client in display._commands._triggers.values()))
