@@ -124,7 +124,7 @@ def test_a_trial_shows_its_letter_its_countdown_and_every_target_while_real_data
         assert (await given(scene, 1)).name == 'trial_off'
         scene.server.publish('trial', {'on': False})
         await scene.hides('danger', *letter)
-        assert await scene.page.evaluate("document.getElementById('trial-targets').hidden")
+        await scene.page.until("document.getElementById('trial-targets').hidden")
 
     on_scene(act, 'north-up', own={'wx': 2.0, 'wy': 1.0})
     assert OWN['wx'] == 0.0
