@@ -56,6 +56,8 @@ setup(
         ],
         # The PPI in a browser: node ppi_display.
         'display': ['aiohttp>=3.9'],
+        # The picture in a terminal: marine_tracker top.
+        'top': ['textual>=1.0'],
         # Recordings of topics: node recorder, replay and score of MCAP files.
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.6'],
         'parallel': ['pytest-xdist>=3.3'],

@@ -11,6 +11,8 @@ from .processes import one_thread, stop_on_sigterm
 
 COMMANDS = (
     'demo',
+    'top',
+    'screenshots',
     'record',
     'recording',
     'replay',
@@ -24,6 +26,7 @@ COMMANDS = (
     'imo',
     'soak',
     'doctor',
+    'explain',
 )
 
 DESCRIPTION = """\

@@ -7,7 +7,8 @@
 
 All runs in a thread of its own. Every message to a viewer is a JSON object with `kind` and `now`,
 the server's steady clock in s: a page reckons ages with it, whatever its own clock says. A new
-viewer gets the newest message of each kind, and of each of its parts, at once.
+viewer gets the newest message of each kind, and of each of its parts, at once; of a kind ON_DEMAND
+once it asks for it.
 """
 
 import asyncio
@@ -35,6 +36,8 @@ APART_S = 0.05  # least time between two messages to one viewer
 # network, not the megabytes that a system allows.
 SEND_BUFFER = 64 * 1024
 MOST_PARTS = 512  # of one kind
+AREAS = 'areas'
+ON_DEMAND = (AREAS,)
 START_S = 10.0
 ANSWER_S = 5.0
 TYPES = {
@@ -150,6 +153,14 @@ class DisplayServer:
         )
         self._in_loop(self._put, kind if part is None else f'{kind} {part}', text)
 
+    def wanted(self, kind: str) -> int:
+        """How many viewers have asked for a kind that comes on demand."""
+        return sum(kind in viewer.wants for viewer in tuple(self._viewers))
+
+    def forget(self, *kinds: str) -> None:
+        """The newest messages of these kinds: a viewer who comes later does not get them."""
+        self._in_loop(self._drop, kinds)
+
     def close(self) -> None:
         """All viewers are let go."""
         self._in_loop(self._stop.set)
@@ -166,7 +177,18 @@ class DisplayServer:
     def _put(self, kind: str, text: str) -> None:
         self._latest[kind] = text
         for viewer in self._viewers:
-            viewer.put(kind, text)
+            if kind not in ON_DEMAND or kind in viewer.wants:
+                viewer.put(kind, text)
+
+    def _watch(self, viewer: Mailbox, kinds: Mapping[str, Any]) -> None:
+        """What this viewer wants of the kinds on demand; nobody needs permission to look."""
+        viewer.wants = {kind for kind, on in kinds.items() if on}
+        for kind in viewer.wants & self._latest.keys():
+            viewer.put(kind, self._latest[kind])
+
+    def _drop(self, kinds: tuple[str, ...]) -> None:
+        for name in [name for name in self._latest if name.split(' ')[0] in kinds]:
+            del self._latest[name]
 
     def _run(self, started: threading.Event) -> None:
         asyncio.set_event_loop(self.loop)
@@ -236,7 +258,8 @@ class DisplayServer:
         viewer = Mailbox()
         viewer.answer(self._pulse())  # first: all that comes after it is as old as it is
         for kind, text in self._latest.items():
-            viewer.put(kind, text)
+            if kind not in ON_DEMAND:
+                viewer.put(kind, text)
         self._viewers.add(viewer)
         self._sockets.add(socket)
         sender = asyncio.ensure_future(_send(socket, viewer))
@@ -264,6 +287,10 @@ class DisplayServer:
                     viewer.answer(
                         _text('role', id=number, commands=may_command, why=_why(near, may_command))
                     )
+                    continue
+                if command.name == commands.WATCH:
+                    self._watch(viewer, command.values)
+                    viewer.answer(_text('answer', id=number, ok=True, text=''))
                     continue
             except ValueError as error:
                 self.counts[BAD] += 1

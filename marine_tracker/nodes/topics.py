@@ -25,16 +25,22 @@ TARGETS_CLOUD = 'targets_cloud'
 MARKERS = 'markers'
 NMEA = 'nmea'
 ALARMS = 'alarms'
+ALARMS_PAST = 'alarms_past'
 TRIAL = 'trial'
+DANGER_AREAS = 'danger_areas'
 ACQUIRE = 'acquire'
 CLICKED_POINT = 'clicked_point'
+EXPLAIN = 'explain'
+EXPLANATION = 'explanation'
 CANCEL = 'cancel'
 ACKNOWLEDGE_TARGET = 'acknowledge_target'
+ACKNOWLEDGE_ALERT = 'acknowledge_alert'
 DIAGNOSTICS = '/diagnostics'
 CLOCK = '/clock'
 
 CANCEL_ALL = 'cancel_all'  # services
 ACKNOWLEDGE = 'acknowledge'
+SILENCE = 'silence'
 TRIAL_MANOEUVRE = 'trial_manoeuvre'
 
 SECTORS = 64  # messages of plots that may wait: the sectors of a revolution

@@ -54,7 +54,7 @@ class TrackerNode(RunnableNode):
         self._own_log, self._own_frame = own_ship.empty_log(), topics.OWN_SHIP_FRAME
         self._fallback = own_ship.OWN_NEVER_HEARD
         self._samples = 0
-        self._status_count = np.zeros(4, int)
+        self._status_count = np.zeros(5, int)
         self._standing = Standing({}, 0, '', np.zeros(0, bool))
         self._left_out, self._left_out_lately = 0, 0  # pairs, in all scans and in the last
         self._processing, self._lateness = Durations(), Durations()
@@ -172,7 +172,7 @@ class TrackerNode(RunnableNode):
             status = self._own_ship_status(time.monotonic())
             self._to_state.publish(diagnostics.array(end_ns, [status]))
             self._output.publish_targets(service, output, stamps)
-            self._status_count = np.bincount(output.report.tracks.status, minlength=4)
+            self._status_count = np.bincount(output.report.tracks.status, minlength=5)
             self._standing = output.standing
             self._left_out_lately = output.report.left_out
             self._left_out += output.report.left_out

@@ -20,7 +20,7 @@ from ..parameters import TrackerOutputParameters
 from ..service import Output, Service, Tracking
 from ..tracking.lifecycle import LOST
 from ..types import Extrapolation, take
-from . import convert, messages_of_others, targets_cloud, topics
+from . import convert, danger_areas_cloud, messages_of_others, targets_cloud, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
 from .markers import MarkersWriter
@@ -41,6 +41,7 @@ class TrackerOutput:
             DiagnosticArray, topics.TARGETS, topics.latched()
         )
         self._to_markers = node.publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
+        self._to_areas = node.publisher(PointCloud2, topics.DANGER_AREAS, topics.latched())
         self._pool = OdometryPool()
         self._paced = Paced(node, self._to_tracks) if p.tracks_paced else None
         self._name, self._kinds = node.label, []
@@ -81,6 +82,8 @@ class TrackerOutput:
         seen = view(output.picture, output.report, service.tracker.estimator, output.shapes)
         self._to_numeric.publish(targets_cloud.message(seen, output.picture.alerts, end_ns))
         self._tell_targets(self._targets.message(seen, name, output.scan.end, end_ns))
+        if self._to_areas.get_subscription_count():
+            self._to_areas.publish(danger_areas_cloud.message(arpa, output.picture, end_ns))
         if self._to_markers.get_subscription_count():
             self._to_markers.publish(
                 self._markers.message(seen, output.picture, arpa.zones, arpa.parameters, end_ns)

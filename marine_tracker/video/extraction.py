@@ -93,14 +93,11 @@ class Extraction:
         begin, end = len(held.noise), len(held.mean) - (0 if final else ring)
         if end <= begin and not final:
             return memory, nothing()
-        lone = 0
-        if end > begin:
-            blind = int(parameters.blind_range_m / held.range_step)
-            held, known, lone = detection.decide(
-                held, end, memory.tail, memory.full, parameters.false_alarm_rate, blind
-            )
-            memory = memory._replace(tail=known)
-        limits = tail.thresholds(memory.tail, parameters.false_alarm_rate, memory.full)
+        blind = int(parameters.blind_range_m / held.range_step)
+        held, known, limits, lone = detection.decide(
+            held, max(end, begin), memory.tail, memory.full, parameters.false_alarm_rate, blind
+        )
+        memory = memory._replace(tail=known)
         held, found = self._close(held, limits, memory.full, final)
         if lone:
             found.counts[LONE] = lone
@@ -113,7 +110,7 @@ class Extraction:
         rows = held.grid.rows
         decided = min(len(held.noise) * rows, len(held.time))
         labels = pieces.label(held.hits[:decided], held.lobe)
-        row, sample = np.nonzero(held.hits[:decided])
+        row, sample = np.divmod(np.flatnonzero(held.hits[:decided]), held.hits.shape[1])
         component = labels[row, sample] - 1
         count = int(labels.max(initial=0))
         first, last = np.full(count, decided), np.full(count, -1)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..geometry import unit_vector, wrap_bearing
 from ..parameters import VideoParameters
-from ..types import Array, BoolArray, IntArray, PolarPlots, take
+from ..types import Array, BoolArray, IntArray, PolarPlots
 from . import detection, measure, pieces, tail
 from .found import LAND, Details, Found, nothing
 from .stack import Stack
@@ -15,6 +15,7 @@ CORE = 2 * math.log(2)  # nepers: an echo is measured across where it is 6 dB be
 POINT = np.array([1.0, math.sqrt(2.0)])  # beams and pulses that a point is wide there
 ROUND = 1.4  # times that: still a point
 SKIRTS = 2.0  # beams that the flanks of a strong echo may add to its width
+STANDS_OUT = 2.3  # nepers, 10 dB: what is so far above the land that it hangs on is no land
 LEAST_CELLS = 3  # of an echo, where beam and pulse spread it over more
 DECIBEL = 10 / math.log(10)  # of a neper
 
@@ -31,7 +32,7 @@ def measured(
     """The plots of the components [n] of cells at rows and samples [n]."""
     lobe, count = held.lobe, int(component.max()) + 1
     slope = np.ones(count)
-    slope[component] = limits.slope[tail.zone_of(sample)]
+    slope[component] = limits.slope[sample]
     found = pieces.split(row, sample, component, count, held.strength, lobe, slope)
     row, sample, piece, count = found.row, found.sample, found.piece, found.number
     power, value = detection.power_at(held, row, sample, limits)
@@ -53,6 +54,7 @@ def measured(
     size = np.stack([extent[:, 1] * held.range_step, extent[:, 0] * across], 1)
     flanks = SKIRTS * lobe.shape[0] * across
     land = (size - np.stack([0 * flanks, flanks], 1) > parameters.max_size_m).any(1)
+    land |= _on_land(held, row, sample, piece, found.origin, top, parameters.max_size_m)
     spread = lobe.shape[0] >= detection.LEAST_SPOKES
     enough = (cells >= LEAST_CELLS) & (spokes >= 2) if spread else cells >= 1
     keep = ~land & enough
@@ -73,12 +75,46 @@ def measured(
         doppler = np.bincount(piece, sign, count) / cells
     floor = (measure.FLOOR * lobe.shape) ** 2
     covariance[:, [0, 1], [0, 1]] += floor
+    order = np.flatnonzero(keep)
+    order = order[np.argsort(centre[order, 0], kind='stable')]  # in order of time
     return Found(
-        _polar(held, centre[keep], covariance[keep], snr[keep], parameters.range_offset_m),
-        Details(size[keep], cells[keep], doppler[keep]),
+        _polar(held, centre[order], covariance[order], snr[order], parameters.range_offset_m),
+        Details(size[order], cells[order], doppler[order]),
         {LAND: int(land.sum())} if land.any() else {},
         (np.nan, np.nan),
     )
+
+
+def _on_land(
+    held: Stack,
+    row: IntArray,
+    sample: IntArray,
+    piece: IntArray,
+    origin: IntArray,
+    top: Array,
+    longest: float,
+) -> BoolArray:
+    """[K] pieces of a component that is longer than any ship, unless they stand out of it.
+
+    origin  [K]  the component of each piece; top [K] its greatest power, in nepers
+    """
+    count = int(origin.max()) + 1
+    component = origin[piece]
+    span = np.empty((count, 2))
+    for axis, a in enumerate((row, sample)):
+        low, high = np.full(count, np.iinfo(np.int64).max), np.full(count, -1)
+        np.minimum.at(low, component, a)
+        np.maximum.at(high, component, a)
+        span[:, axis] = high - low
+    middle = np.bincount(component, sample, count) / np.bincount(component, minlength=count)
+    across = middle * held.range_step * held.spacing
+    flanks = (SKIRTS + 1.0) * held.lobe.shape[0]
+    long_ = (span[:, 0] - flanks) * across > longest
+    long_ |= span[:, 1] * held.range_step > longest
+    usual = np.full(count, np.inf)
+    for one in np.flatnonzero(long_).tolist():
+        usual[one] = np.median(top[origin == one])
+    return long_[origin] & (top < usual[origin] + STANDS_OUT)
 
 
 def _spokes(row: IntArray, piece: IntArray, count: int) -> IntArray:
@@ -101,7 +137,7 @@ def _fitted(
     owner[found.row * width + found.sample] = found.piece
     owners = owner[rows * width + samples]
     usable &= (owners < 0) | (owners == chosen[:, None, None])
-    step = 1.0 / limits.slope[tail.zone_of(peak[:, 1])]
+    step = 1.0 / limits.slope[peak[:, 1]]
     return measure.points(peak, power, usable, held.lobe, step)
 
 
@@ -114,11 +150,10 @@ def _polar(held: Stack, place: Array, covariance: Array, snr: Array, offset: flo
     along = unit_vector(bearing)
     across = np.stack([along[:, 1], -along[:, 0]], -1)
     to_metres = np.stack([across * (held.spacing * range_)[:, None], along * held.range_step], 2)
-    plots = PolarPlots(
+    return PolarPlots(
         time,
         range_,
         wrap_bearing(bearing),
         DECIBEL * snr,
         covariance=to_metres @ covariance @ to_metres.transpose(0, 2, 1),
     )
-    return take(plots, np.argsort(time, kind='stable'))

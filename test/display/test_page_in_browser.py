@@ -312,7 +312,13 @@ def test_alarms_sound_where_sound_is_on_until_silenced():
     async def act(page, stage):
         await page.until('ppi.sound.played > 0')
         await page.evaluate("document.getElementById('silence').click()")
+        while not stage.commands:
+            await asyncio.sleep(0.05)
+        assert [command.name for command in stage.commands] == ['silence']  # for all viewers
+        await page.evaluate('ppi.state.role.commands = false')
+        await page.evaluate("document.getElementById('silence').click()")  # here alone
         assert await page.evaluate('ppi.sound.until > performance.now() / 1000 + 25')
+        assert len(stage.commands) == 1
 
     on_stage(act, '?sound=on')
 

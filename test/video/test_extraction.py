@@ -152,7 +152,7 @@ def test_noise_alone_gives_cells_at_the_rate_asked_for(pictures):
     known, held = tail.start(1), None
     for seed in range(6):
         held = stack.measured(stack.begun(pictures.make(seed=seed)), np.radians(2.4), 30.0, True)
-        held, known, _ = detection.decide(held, len(held.mean), known, 255, asked, 0)
+        held, known, _, _ = detection.decide(held, len(held.mean), known, 255, asked, 0)
         if seed:
             hits += held.hits.sum()
             cells += held.hits.size

@@ -1,12 +1,12 @@
 // The buttons below and beside the picture: what they say, and what they do.
 
-import { seconds } from './app.js';
 import { element, say } from './panel.js';
+import { duration } from './format.js';
 import { next } from './settings.js';
 
 /** Names in colours.css that the picture is drawn with. */
 const COLORS =
-  'sea ring scale echo trail target coasting danger lost label own selected cursor marker safe';
+  'sea ring scale echo trail target coasting danger lost label own selected cursor marker safe area';
 
 /** The palette's colours, and the words on the buttons, as the settings are. */
 export function applySettings(/** @type {import('./app.js').App} */ app) {
@@ -18,12 +18,16 @@ export function applySettings(/** @type {import('./app.js').App} */ app) {
   );
   const words = {
     orientation: settings.orientation,
+    motion: `${settings.motion} motion`,
     vectors: `Vectors ${settings.vectors}`,
     vectorMinutes: `${settings.vectorMinutes} min`,
     trails: `Trails ${settings.trails}`,
-    trailMinutes: `${settings.trailMinutes} min`,
+    trailMinutes: duration(settings.trailMinutes),
     offCentre: `Off centre ${settings.offCentre}`,
     rings: `Rings ${settings.rings}`,
+    areas: `Danger areas ${settings.areas}`,
+    safeCourses: `Safe courses ${settings.safeCourses}`,
+    ellipses: `Ellipses ${settings.ellipses}`,
     labels: `Numbers ${settings.labels}`,
     palette: settings.palette,
     sound: `Sound ${settings.sound}`,
@@ -43,8 +47,13 @@ export function listen(/** @type {import('./app.js').App} */ app) {
   for (const [id, act] of Object.entries({
     nearer: () => app.zoom(-1),
     farther: () => app.zoom(1),
-    silence: () => app.sound.silence(seconds()),
+    silence: app.silence,
     mark: app.mark,
+    measure: app.measure,
+    why: app.why,
+    'reset-view': app.resetView,
+    'no-heading-line': () => app.hide('heading'),
+    'no-graphics': () => app.hide('graphics'),
     acquire: app.acquire,
     cancel: app.cancel,
     'acknowledge-all': () => app.command('acknowledge_all'),

@@ -1,6 +1,7 @@
 // Echoes with their afterglow, written pixel by pixel: a dozen scans of a thousand plots cost no more
 // than the copy of one image.
 
+import { turned } from './geometry.js';
 import { serverNow } from './state.js';
 
 const GLOW_S = 30; // an echo has faded after so long
@@ -11,7 +12,9 @@ const OLD_PX = 3;
 /** What the echoes' picture depends on. @param {import('./state.js').State} state */
 export function echoKey(state, /** @type {number} */ local) {
   const newest = state.plots[state.plots.length - 1];
-  return newest ? [newest.stamp, state.plots.length, Math.floor(local / FADE_STEP_S)] : [];
+  return newest
+    ? [newest.stamp, newest.radar, state.plots.length, Math.floor(local / FADE_STEP_S)]
+    : [];
 }
 
 /**
@@ -28,11 +31,13 @@ export function paintEchoes(pen, state, view, color, local) {
   const pixels = new Uint32Array(image.data.buffer);
   const [red, green, blue] = [1, 3, 5].map((k) => parseInt(color.slice(k, k + 2), 16));
   const now = serverNow(state, local);
-  const cos = Math.cos(view.up) * view.scale * ratio;
-  const sin = Math.sin(view.up) * view.scale * ratio;
+  // A metre to the east and one to the north, on the screen: turned as everything else is.
+  const east = turned(view, ratio, 0);
+  const north = turned(view, 0, ratio);
   const [middleX, middleY] = [view.centreX * ratio, view.centreY * ratio];
-  state.plots.forEach((scan, place) => {
-    const newest = place === state.plots.length - 1;
+  const last = new Map(state.plots.map((scan) => [scan.radar ?? 0, scan])); // of each radar
+  state.plots.forEach((scan) => {
+    const newest = last.get(scan.radar ?? 0) === scan;
     const fade = 1 - Math.max(now - scan.at, 0) / GLOW_S;
     if (fade <= 0 && !newest) return;
     const alpha = Math.round(255 * (newest ? 0.9 : 0.4 * fade ** 2));
@@ -41,8 +46,8 @@ export function paintEchoes(pen, state, view, color, local) {
     for (let k = 0; k < scan.x.length; k++) {
       const dx = scan.x[k] - view.originX;
       const dy = scan.y[k] - view.originY;
-      const left = Math.round(middleX + dx * cos - dy * sin - size / 2);
-      const top = Math.round(middleY - dx * sin - dy * cos - size / 2);
+      const left = Math.round(middleX + dx * east[0] + dy * north[0] - size / 2);
+      const top = Math.round(middleY + dx * east[1] + dy * north[1] - size / 2);
       if (left < 0 || top < 0 || left + size > width || top + size > height) continue;
       for (let row = top; row < top + size; row++) {
         pixels.fill(value, row * width + left, row * width + left + size);

@@ -38,8 +38,8 @@ export function fillLimits(/** @type {Record<string, number>} */ limits) {
 /** A trial begins from what own ship does now. */
 function fillTrial(/** @type {import('./state.js').State} */ state) {
   if (!state.own || state.trial.on) return;
-  const { vx, vy, heading } = state.own;
-  setTrial(degrees(heading ?? wrap(Math.atan2(vx, vy))), Math.hypot(vx, vy) / KNOT);
+  const [speed, course] = wayOf(state.own);
+  setTrial(degrees(wrap(course)), speed / KNOT);
 }
 
 function setTrial(/** @type {number} */ course, /** @type {number} */ speed) {
@@ -52,7 +52,14 @@ function motionOf(state) {
   const { own, trial } = state;
   return trial.on && trial.course_deg !== null
     ? [trial.speed_kn * KNOT, radians(trial.course_deg)]
-    : [Math.hypot(own.vx, own.vy), own.heading ?? Math.atan2(own.vx, own.vy)];
+    : wayOf(own);
+}
+
+/** m/s and course of own ship, as the targets' courses are measured; her heading where she is at rest. */
+function wayOf(own) {
+  const [wx, wy] = [own.wx ?? own.vx, own.wy ?? own.vy];
+  const speed = Math.hypot(wx, wy);
+  return [speed, speed > 0.25 ? Math.atan2(wx, wy) : (own.heading ?? 0)];
 }
 
 /**

@@ -1,8 +1,8 @@
 // The keyboard: all that a mouse does, and the arrows for the cursor.
 
-import { seconds } from './app.js';
 import { toMap, toScreen } from './geometry.js';
 import { next } from './settings.js';
+import { edit, moveHandle, nextHandle } from './zones_panel.js';
 
 const STEP_PX = 8; // of the cursor
 const ARROWS = {
@@ -20,6 +20,12 @@ const SETTINGS = {
   c: 'offCentre',
   r: 'rings',
   p: 'palette',
+  k: 'motion',
+  T: 'trailMinutes',
+  i: 'labels',
+  d: 'areas',
+  w: 'safeCourses',
+  u: 'ellipses',
 };
 
 /** Whether a key is meant for a field that somebody types in. */
@@ -35,7 +41,7 @@ export function listen(/** @type {import('./app.js').App} */ app) {
     '=': () => app.zoom(-1),
     '-': () => app.zoom(1),
     n: () => chooseNext(app),
-    s: () => app.sound.silence(seconds()),
+    s: app.silence,
     e: app.mark,
     q: app.acquire,
     a: () => {
@@ -44,8 +50,16 @@ export function listen(/** @type {import('./app.js').App} */ app) {
         ? app.command('acknowledge', { number: target.number })
         : app.command('acknowledge_all');
     },
+    b: app.ownShipHere,
+    x: app.resetView,
+    m: app.measure,
+    y: () => (app.marks.cursor ? app.whyAt(app.marks.cursor) : app.why()),
+    h: () => app.hide('heading'),
+    g: () => app.hide('graphics'),
+    '[': () => nextHandle(app, -1),
+    ']': () => nextHandle(app, 1),
     Delete: app.cancel,
-    Escape: () => app.choose(null),
+    Escape: () => escape(app),
   };
   for (const [key, name] of Object.entries(SETTINGS)) {
     keys[key] = () => app.change(name, next(app.settings, name));
@@ -57,15 +71,24 @@ export function listen(/** @type {import('./app.js').App} */ app) {
   });
 }
 
+/** Ends what is going on: a question, a zone that is being changed, at last the selection. */
+function escape(app) {
+  if (app.asking) app.stopAsking();
+  else if (app.marks.draft) edit(app, null);
+  else app.choose(null);
+}
+
 function onPicture(app, /** @type {KeyboardEvent} */ event) {
   const step = ARROWS[event.key];
   if (step) {
-    moveCursor(app, STEP_PX * step[0], STEP_PX * step[1]);
+    const move = event.shiftKey ? moveHandle : moveCursor;
+    move(app, STEP_PX * step[0], STEP_PX * step[1]);
     event.preventDefault();
   }
   if (event.key === 'Enter' && app.marks.cursor) {
+    const asked = app.asking !== null;
     app.selectAt(...toScreen(app.scopeNow().view, ...app.marks.cursor));
-    if (app.marks.id === null) app.acquire();
+    if (!asked && app.marks.id === null) app.acquire();
   }
 }
 

@@ -1,8 +1,13 @@
 // The page: puts link, state, picture, panel and controls together.
 
+import { actions } from './actions.js';
+import { showAlerts } from './alerts.js';
 import { alive } from './alive.js';
 import { seconds } from './app.js';
 import * as controls from './controls.js';
+import { showCorners } from './corners.js';
+import { dangersSay, keepWatch } from './dangers.js';
+import * as demo from './demo.js';
 import * as forms from './forms.js';
 import { rangeBearing, toMap, toScreen } from './geometry.js';
 import * as keys from './keys.js';
@@ -10,26 +15,39 @@ import { Surface } from './layers.js';
 import { Link } from './link.js';
 import * as panel from './panel.js';
 import { Pace } from './pace.js';
-import { draw, scopeOf, targetAt } from './picture.js';
+import { draw, targetAt } from './picture.js';
 import * as pointer from './pointer.js';
+import { keepInSight, newHeld, scopeOf } from './scope.js';
 import { Sound } from './sound.js';
-import { CHOICES, RANGES, keep, load } from './settings.js';
+import { CHOICES, RANGES, keep, kept, load } from './settings.js';
 import { emptyState, receive, reconnected } from './state.js';
 import { makeHeads, showTargets } from './table.js';
+import { newTools, restoreLines } from './tools.js';
+import * as toolsPanel from './tools_panel.js';
+import { showTrial } from './trial.js';
+import * as zonesPanel from './zones_panel.js';
 
 const PANEL_MS = 200;
 const ALIVE_MS = 100;
 const SAID_MS = 6000;
-const MOST_LINES = 2;
 
 const state = emptyState();
 const settings = load(location.search);
 const canvas = /** @type {HTMLCanvasElement} */ (panel.element('picture'));
 const surface = new Surface(canvas);
 /** @type {import('./surround.js').Marks} */
-const marks = { id: null, cursor: null, lines: [], drag: null };
+const marks = {
+  id: null,
+  cursor: null,
+  drag: null,
+  tools: newTools(),
+  draft: null,
+  asked: null,
+  hidden: { heading: -Infinity, graphics: -Infinity },
+};
 const sorted = { column: 6, sign: 1, danger: true };
-let courseUp = 0; // rad, when course-up was chosen
+restoreLines(marks.tools, kept('lines'));
+const held = newHeld();
 const pace = new Pace();
 let saidUntil = 0;
 let frames = 0; // drawn so far
@@ -48,7 +66,7 @@ const link = new Link(
   () => state.late,
 );
 
-/** @type {import('./app.js').App} */
+/** @type {any} */
 const app = {
   state,
   settings,
@@ -57,11 +75,19 @@ const app = {
   canvas,
   pointer: null,
   colors: {},
-  scopeNow: () => scopeOf(state, settings, canvas.clientWidth, canvas.clientHeight, courseUp),
+  held,
+  asking: null,
+  scopeNow() {
+    keepInSight(held, state, settings);
+    return scopeOf(state, settings, canvas.clientWidth, canvas.clientHeight, held);
+  },
   redraw: () => pace.ask(),
   change(name, value) {
-    settings[name] = value;
-    if (name === 'orientation') courseUp = state.own?.heading ?? 0;
+    app.choices({ [name]: value });
+    if (name === 'orientation') held.courseUp = state.own?.heading ?? 0;
+  },
+  choices(some) {
+    Object.assign(settings, some);
     keep(settings);
     controls.applySettings(app);
   },
@@ -69,14 +95,14 @@ const app = {
     app.change('range', Math.min(Math.max(settings.range + step, 0), RANGES.length - 1));
   },
   async command(name, values = {}) {
-    const { ok, text } = await link.send(name, values);
-    app.tell(`${ok ? '' : 'Not done: '}${text.split(';')[0]}`);
-    return ok;
+    const answer = await link.send(name, values);
+    app.tell(`${answer.ok ? '' : 'Not done: '}${answer.text.split(/[;\n]/)[0]}`);
+    return answer;
   },
-  tell(text) {
+  tell(text, ms = SAID_MS) {
     panel.say(panel.element('said'), text);
     clearTimeout(saidUntil);
-    saidUntil = setTimeout(() => panel.say(panel.element('said'), ''), SAID_MS);
+    if (ms < Infinity) saidUntil = setTimeout(() => app.tell('', Infinity), ms);
   },
   chosen: () => state.targets.find((target) => target.id === marks.id),
   choose(id) {
@@ -87,7 +113,11 @@ const app = {
   selectAt(x, y) {
     const { view } = app.scopeNow();
     marks.cursor = toMap(view, x, y);
-    app.choose(targetAt(state, view, x, y)?.id ?? null);
+    const { asking } = app;
+    if (asking) {
+      app.stopAsking();
+      asking(marks.cursor);
+    } else app.choose(targetAt(state, view, x, y)?.id ?? null);
   },
   acquire() {
     if (marks.cursor) app.command('acquire', { x: marks.cursor[0], y: marks.cursor[1] });
@@ -97,16 +127,13 @@ const app = {
     const target = app.chosen();
     if (target?.number) app.command('cancel', { number: target.number });
   },
-  /** A bearing line with a range marker at the cursor; after two of them, none. */
-  mark() {
-    const place = marks.cursor ?? (app.pointer && toMap(app.scopeNow().view, ...app.pointer));
-    if (marks.lines.length === MOST_LINES) marks.lines = [];
-    else if (place && state.own) {
-      marks.lines.push(rangeBearing(state.own.x, state.own.y, place[0], place[1]));
-    }
-    pace.ask();
+  /** For all viewers, by whoever may command; else on this device. */
+  silence() {
+    if (state.role.commands) app.command('silence');
+    else app.sound.silence(seconds());
   },
 };
+Object.assign(app, actions(app));
 
 function frame() {
   requestAnimationFrame(frame);
@@ -116,7 +143,8 @@ function frame() {
   const pen = surface.ready();
   const scope = app.scopeNow();
   draw(pen, state, settings, scope, app.colors, marks, seconds());
-  panel.showCorners(state, settings, scope, marks, app.pointer);
+  const more = dangersSay(state, settings, seconds());
+  showCorners(state, settings, scope, marks, app.pointer, more);
   if (now - panelShown > PANEL_MS) {
     panelShown = now;
     showPanel();
@@ -126,22 +154,32 @@ function frame() {
 function showPanel() {
   const mayCommand = state.role.commands;
   panel.showOwnShip(state);
-  panel.showAlarms(state, mayCommand, (number) => app.command('acknowledge', { number }));
-  panel.showSelected(app.chosen());
+  showAlerts(app);
+  panel.showSelected(app.chosen(), state.own);
   showTargets(state.targets, sorted, marks.id, app.choose);
   panel.showState(state);
+  showTrial(state, seconds());
+  toolsPanel.show();
+  zonesPanel.show(app);
+  demo.showDemo(state);
   for (const id of ['acknowledge-all', 'acquire', 'cancel', 'trial-off']) {
     /** @type {HTMLButtonElement} */ (panel.element(id)).disabled = !mayCommand;
   }
   for (const button of document.querySelectorAll('form .submit')) button.disabled = !mayCommand;
 }
 
-const showAlive = () => alive(app, surface, seconds());
+const showAlive = () => {
+  alive(app, surface, seconds());
+  keepWatch(settings, link);
+};
 
 controls.listen(app);
 keys.listen(app);
 pointer.listen(app);
 forms.listen(app);
+toolsPanel.listen(app);
+zonesPanel.listen(app);
+demo.listen(app);
 makeHeads((column) => {
   sorted.sign = sorted.column === column ? -sorted.sign : 1;
   sorted.column = column;
