@@ -62,6 +62,8 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
         other = f'TT{third:02.0f}' if third else 'a track that is not confirmed'
         return f'{name} may be swapped with {other}, at {where}'
     if kind == alarms.STATIONARY_DANGER:
+        if not first:
+            return 'no stationary object in the way'
         when = f'in {fifth / 60:.1f} min' if math.isfinite(fifth) else 'at an unknown time'
         at = f'{second / NAUTICAL_MILE:.2f} NM'
         if math.isfinite(third):
