@@ -5,7 +5,7 @@ import pytest
 
 from marine_tracker.service import service_for
 from marine_tracker.simulation import radar, scenario
-from marine_tracker.tracking import at_rest, places
+from marine_tracker.tracking import at_rest, places, steady
 from marine_tracker.tracking.lifecycle import COASTING, CONFIRMED, LOST, STATIONARY
 
 SIGMA = 5.0  # m
@@ -238,7 +238,14 @@ def test_shown_places_are_those_without_a_target():
     named, following = at_rest.name(known, 7)
     assert following == 8 and named.number[named.established].tolist() == [7]
     anchors = at_rest.Anchors(
-        ids, np.zeros((3, 2)), np.ones(3), ids, ids > 0, np.array([7, 2, 3]), ids > 5
+        ids,
+        np.zeros((3, 2)),
+        np.ones(3),
+        ids,
+        ids > 0,
+        np.array([7, 2, 3]),
+        ids > 5,
+        steady.begin(np.zeros((3, 2)), np.zeros(3)),
     )
     ground = at_rest.Ground(named, anchors, 60)
     assert at_rest.shown(ground).number.tolist() == [7]
