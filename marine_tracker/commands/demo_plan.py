@@ -93,7 +93,12 @@ def plan(args: Namespace, offered: Offers, shown: Shown) -> Plan:
         source, name = 'radar_simulator', offered.scenarios[shown.scenario]
         given = {'scenario': name, 'rate': shown.rate, 'seed': args.seed}
         from_mapping(RadarSimulatorParameters, given)
-        for_tracker = dict(scenarios.load(name).tracker_parameters())
+        chosen = scenarios.load(name)
+        for_tracker = dict(chosen.tracker_parameters())
+        if chosen.radar.video is not None:
+            of_radar = video_source.for_scenario(chosen, tracker_options.video(args).parameters)
+            for_tracker = video_source.scenario_tracker_parameters(chosen, of_radar)
+            nodes['plot_extractor'] = dataclasses.asdict(of_radar)
     if args.estimator:
         for_tracker['estimator'] = args.estimator
     if args.extent:

@@ -62,6 +62,8 @@ def open_source(name: str, seed: int = 1, video: VideoOptions = DEFAULT_VIDEO) -
             zip(numbers, recording.scans), len(numbers), recording.tracker_parameters, remarks
         )
     chosen = scenario.load(name)
+    if chosen.radar.video is not None:
+        return video_source.open_scenario(chosen, seed, video)
     simulated = enumerate(scan for scan, _ in radar.simulate(chosen, seed))
     return Source(simulated, None, chosen.tracker_parameters(), chosen.fleet.remarks)
 

@@ -21,6 +21,7 @@ from .gwnn_paper import gwnn_paper
 from .hulls import hulls
 from .rough_nn import rough_nn
 from .two_radars import two_radars
+from .video import video
 from .wavelet import wavelet
 
 EXPERIMENTS: dict[str, ModuleType] = {
@@ -37,6 +38,7 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'compare': compare,
     'dense': dense,
     'alarms': alarms,
+    'video': video,
     'danger_areas': danger_areas,
     'clutter': clutter,
     'crossings': crossings,

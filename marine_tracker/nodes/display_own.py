@@ -90,6 +90,13 @@ class OwnShipHeard:
             self._fix = Fixed(*place, position[0], wall)
         return True
 
+    def relative_to(self, time_ns: int) -> OwnShip:
+        """Her last samples, their times in s after a stamp; at rest where none was heard."""
+        if not self._samples:
+            return OwnShip(np.zeros(1), np.zeros((1, 2)), np.zeros((1, 2)))
+        own = self._own_ship()
+        return own._replace(time=own.time + (self._samples[-1].time_ns - time_ns) * 1e-9)
+
     @property
     def bow(self) -> float | None:
         """rad: the heading, or the last one that was told; without any it is 0 where a radar counts

@@ -26,7 +26,7 @@ from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
 
 from ..geodesy import LocalFrame
 from ..service import heading_of
-from ..types import OwnShip, Scan, Sweep, Truth, take
+from ..types import OwnShip, PolarPlots, Scan, Sweep, Truth, take
 from . import convert, topics
 from .base_node import RunnableNode, State
 from .convert import OdometryPool
@@ -41,6 +41,7 @@ LAG_S = 0.5  # further behind than this, time runs slower
 LISTENER_S = 3.0  # longest wait for the first listener ...
 SETTLE_S = 0.5  # ... and for it to know us, too, on every topic
 OWN_SHIP_PERIOD_S = 0.1  # of simulated time, and at most
+NO_PLOTS = PolarPlots(np.empty(0), np.empty(0), np.empty(0), np.empty(0))
 OWN_SHIP_PER_S = 25.0  # samples in a second of the wall
 
 

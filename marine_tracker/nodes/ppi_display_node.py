@@ -33,6 +33,7 @@ from .display_danger_areas import DangerAreas
 from .display_demo import SHOW, DemoLink
 from .display_own import OwnShipHeard
 from .display_own_ship import OwnWay, ship
+from .display_spokes import DisplaySpokes
 from .display_tracker import radars_told, zones_told
 
 OWN_EVERY_S = 0.1  # between two positions of own ship sent to the page
@@ -67,6 +68,7 @@ class PpiDisplayNode(RunnableNode):
         self._ship: dict[str, Any] = {}
         self._way = OwnWay()
         self._areas = DangerAreas(self, self.server)
+        DisplaySpokes(self, self.server, self._own, self._bad)
         for kind, topic, callback, quality in (
             (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort(1)),
@@ -83,6 +85,8 @@ class PpiDisplayNode(RunnableNode):
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        if p.managed:
+            self.manage()
         # Printed, not logged: the log is kept on disk and published, and this holds the token.
         print(f'ppi_display: {self.server.url}', flush=True)
 
@@ -265,7 +269,7 @@ class PpiDisplayNode(RunnableNode):
             self._own.begin_anew()
             self._scanned.clear()
             plots = (_kind_of(radar) for radar in range(len(self._plots)))
-            self.server.forget('targets', 'trails', *plots)
+            self.server.forget('targets', 'trails', 'spokes', *plots)
         self._shown = shown
         self.server.publish('demo', {'demo': shown})
 

@@ -20,13 +20,12 @@ from ..geodesy import LocalFrame
 from ..parameters import RecordingPlayerParameters
 from ..recording import csv_folder, spokes_file
 from ..recording.mcap_name import is_mcap
-from ..types import OwnShip, PolarPlots, Scan, Truth, take
+from ..types import OwnShip, Scan, Truth, take
 from .base_node import RunnableNode
 from .declare import declare
 from .diagnostics import one_line
-from .playback import Playback, Revolution
+from .playback import NO_PLOTS, Playback, Revolution
 
-NO_PLOTS = PolarPlots(*(np.empty(0) for _ in range(4)))
 NO_TRUTH = Truth(np.empty(0), np.empty(0, np.int64), np.empty((0, 2)), np.empty((0, 2)))
 
 

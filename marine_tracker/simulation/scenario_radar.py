@@ -4,7 +4,9 @@ import math
 from typing import NamedTuple
 
 from ..geometry import NAUTICAL_MILE
+from . import video_settings
 from .fields import Section
+from .video_settings import VideoSettings
 
 MAX_RANGE = 200_000.0  # m
 MAX_SECTORS = 64  # messages a revolution
@@ -14,7 +16,7 @@ RADAR_KEYS = (
     'range_sigma_m|range_sigma_nm bearing_sigma_deg range_bias_m|range_bias_nm '
     'bearing_bias_deg range_resolution_m|range_resolution_nm beam_width_deg '
     'pd_near pd_far sensor_errors radial_speed_sigma_mps|radial_speed_sigma_kn '
-    'max_radial_speed_mps|max_radial_speed_kn sectors'
+    'max_radial_speed_mps|max_radial_speed_kn sectors video'
 )
 CLUTTER_KEYS = 'uniform sea sea_scale_m|sea_scale_nm'
 
@@ -34,6 +36,7 @@ class ScenarioRadar(NamedTuple):
     radial_speed_sigma  m/s, Gaussian noise of a plot's radial speed over ground; None: no Doppler
     max_radial_speed    m/s; noise plots have radial speeds evenly between it and its negative
     sectors             number of messages in which the plots of a revolution are sent
+    video               the picture of a radar that gives spokes (video_settings.py); None: plots
     """
 
     rotation: float
@@ -51,6 +54,7 @@ class ScenarioRadar(NamedTuple):
     radial_speed_sigma: float | None = None
     max_radial_speed: float = 25.0
     sectors: int = 1
+    video: VideoSettings | None = None
 
     @property
     def scan_period(self) -> float:
@@ -103,7 +107,10 @@ def read_radar(section: Section) -> ScenarioRadar:
         ),
         section.speed('max_radial_speed', 1.0, 100.0, 25.0),
         section.whole('sectors', 1, MAX_SECTORS, 1),
+        video_settings.read(section),
     )
+    if radar.video is not None and min(radar.range_resolution, radar.beam_width) <= 0:
+        raise ValueError('radar.video needs a range_resolution and a beam_width above 0')
     if radar.blind_range >= radar.max_range:
         raise ValueError(
             f'radar.blind_range is {radar.blind_range:g} m; it must be below '

@@ -7,17 +7,29 @@ from . import level, tail
 from .stack import Stack
 
 LONE = 2.8  # nepers, 12 dB: a sample so far above both its neighbours in bearing is no echo ...
+FAR = 2.6  # nepers above the level: noise hardly ever is
 LEAST_SPOKES = 3.0  # ... where the beam spreads an echo over that many spokes
 
 
 def decide(
     held: Stack, end: int, known: tail.Tail, full: int, rate: float, blind: int
-) -> tuple[Stack, tail.Tail, int]:
-    """Decides on the blocks up to `end`: the stack with their hits, the tail with their noise, and
-    how many samples were taken for another radar's.
+) -> tuple[Stack, tail.Tail, tail.Thresholds, int]:
+    """Decides on the blocks up to `end`: the stack with their hits, the tail with their noise, the
+    thresholds, and how many samples were taken for another radar's.
 
     blind  samples; nearer ones are no echoes
     """
+    first = len(held.noise) * held.grid.rows
+    held, known, limits = over_threshold(held, end, known, full, rate, blind)
+    if held.lobe.shape[0] < LEAST_SPOKES:
+        return held, known, limits, 0
+    return held, known, limits, _leave_out_lone(held, first, limits.slope)
+
+
+def over_threshold(
+    held: Stack, end: int, known: tail.Tail, full: int, rate: float, blind: int
+) -> tuple[Stack, tail.Tail, tail.Thresholds]:
+    """The first half of `decide`: the cells over the threshold."""
     ring = level.GUARD_BLOCKS + level.RING_BLOCKS
     begin, rows, samples = len(held.noise), held.grid.rows, held.strength.shape[1]
     around = max(begin - ring, 0)
@@ -36,15 +48,24 @@ def decide(
 
     # One spoke of each block is enough to tell the noise by.
     blocks = np.arange(end - begin)
-    drawn = strength[blocks * rows + (begin + blocks) % rows]
+    row = begin * rows + blocks * rows + (begin + blocks) % rows
+    drawn = held.strength[row]
     busy = np.repeat(_near(occupied), np.diff(held.grid.edge), axis=1)
     busy[:, :blind] = True
     free = ~busy
+    if held.lobe.shape[0] >= LEAST_SPOKES:  # the pulses of other radars are no noise
+        beside = np.maximum(
+            held.strength[np.maximum(row - 1, 0)],
+            held.strength[np.minimum(row + 1, len(held.strength) - 1)],
+        )
+        step = level.scale(full)
+        lone = drawn > beside + np.float32(LONE * step)
+        free &= ~(lone & (drawn > level_ + np.float32(FAR * step)))
     above = drawn[free] - level_[free]
     known = tail.count(known, above, np.broadcast_to(zone, free.shape)[free], full)
 
-    over = tail.thresholds(known, rate, full).over
-    threshold = np.ceil(level_ + _between_zones(over, samples))
+    limits = tail.thresholds(known, rate, full, samples)
+    threshold = np.ceil(level_ + limits.over.astype(np.float32))
     threshold[:, :blind] = full + 1
     beyond = threshold > full
     limit = np.clip(threshold, 1, full).astype(strength.dtype)
@@ -52,12 +73,7 @@ def decide(
     hits &= ~beyond[:, None]
     hits = hits.reshape(-1, samples)
     held.hits[begin * rows : end * rows] = hits[: len(held.hits) - begin * rows]
-    held = held._replace(noise=np.concatenate([held.noise, noise]))
-    lone = 0
-    if held.lobe.shape[0] >= LEAST_SPOKES:
-        slope = tail.thresholds(known, rate, full).slope
-        lone = _leave_out_lone(held, begin * rows, slope)
-    return held, known, lone
+    return held._replace(noise=np.concatenate([held.noise, noise])), known, limits
 
 
 def _near(occupied: BoolArray) -> BoolArray:
@@ -69,12 +85,6 @@ def _near(occupied: BoolArray) -> BoolArray:
     near[:, 1:] |= across[:, :-1]
     near[:, :-1] |= across[:, 1:]
     return near
-
-
-def _between_zones(values: Array, samples: int) -> Array:
-    """[samples]: values of zones, straight between the middles of the octaves."""
-    octave = np.log2(np.arange(samples) + 1.0) - 3.5
-    return np.interp(octave, np.arange(len(values)), values).astype(np.float32)
 
 
 def _leave_out_lone(held: Stack, first: int, slope: Array) -> int:
@@ -91,7 +101,7 @@ def _leave_out_lone(held: Stack, first: int, slope: Array) -> int:
     beside = np.maximum(
         strength[np.maximum(row - 1, 0), sample], strength[np.minimum(row + 1, last), sample]
     )
-    lone = (value - beside > LONE * slope[tail.zone_of(sample)]) & (row > 0) & (row < last)
+    lone = (value - beside > LONE * slope[sample]) & (row > 0) & (row < last)
     row, sample = row[lone], sample[lone]
     held.hits[row, sample] = False
     strength[row, sample] = beside[lone]
@@ -110,7 +120,6 @@ def power_at(
     held: Stack, row: IntArray, sample: IntArray, limits: tail.Thresholds
 ) -> tuple[Array, StrengthArray]:
     """ln of power over noise, and strength, of cells."""
-    zone = tail.zone_of(sample)
     value = held.strength[row, sample]
-    noise = noise_at(held, row, sample) + limits.origin[zone]
-    return (value + 0.5 - noise) / limits.slope[zone], value
+    noise = noise_at(held, row, sample) + limits.origin[sample]
+    return (value + 0.5 - noise) / limits.slope[sample], value

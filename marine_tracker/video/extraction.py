@@ -23,7 +23,7 @@ from . import detection, level, measure, pieces, plots, stack, tail
 from .found import LONE, NO_BEARING, Found, nothing, together
 from .stack import Stack
 
-LONGEST_OPEN = math.radians(20.0)  # what is wider comes out in parts
+LONGEST_OPEN = math.radians(12.0)  # what is wider comes out in parts
 
 
 class Memory(NamedTuple):
@@ -93,14 +93,11 @@ class Extraction:
         begin, end = len(held.noise), len(held.mean) - (0 if final else ring)
         if end <= begin and not final:
             return memory, nothing()
-        lone = 0
-        if end > begin:
-            blind = int(parameters.blind_range_m / held.range_step)
-            held, known, lone = detection.decide(
-                held, end, memory.tail, memory.full, parameters.false_alarm_rate, blind
-            )
-            memory = memory._replace(tail=known)
-        limits = tail.thresholds(memory.tail, parameters.false_alarm_rate, memory.full)
+        blind = int(parameters.blind_range_m / held.range_step)
+        held, known, limits, lone = detection.decide(
+            held, max(end, begin), memory.tail, memory.full, parameters.false_alarm_rate, blind
+        )
+        memory = memory._replace(tail=known)
         held, found = self._close(held, limits, memory.full, final)
         if lone:
             found.counts[LONE] = lone
@@ -113,7 +110,7 @@ class Extraction:
         rows = held.grid.rows
         decided = min(len(held.noise) * rows, len(held.time))
         labels = pieces.label(held.hits[:decided], held.lobe)
-        row, sample = np.nonzero(held.hits[:decided])
+        row, sample = np.divmod(np.flatnonzero(held.hits[:decided]), held.hits.shape[1])
         component = labels[row, sample] - 1
         count = int(labels.max(initial=0))
         first, last = np.full(count, decided), np.full(count, -1)
@@ -121,7 +118,8 @@ class Extraction:
         np.maximum.at(last, component, row)
         limit = max(round(LONGEST_OPEN / held.spacing), 4 * rows)
         # A ship near by may fill a wide angle, but not more than its size allows.
-        over = last < decided - held.lobe.gap - 1
+        hold = max(held.lobe.gap + 1, round(plots.LOBES / held.spacing))
+        over = last < decided - hold
         over |= first < decided - limit
         over |= final
         going = ~over
@@ -140,4 +138,4 @@ class Extraction:
                 until=(float(held.time[passed]), float(wrap_bearing(held.bearing[passed])))
             )
         margin = math.ceil(measure.AROUND[0] * held.lobe.shape[0]) + 1
-        return stack.trimmed(held, until - margin), found
+        return stack.trimmed(held, until - max(margin, hold)), found

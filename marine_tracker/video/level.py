@@ -89,55 +89,61 @@ def levels(
     """
     reach = GUARD_BLOCKS + RING_BLOCKS
     cells = np.broadcast_to(of.cells, mean.shape)
-    first = _around(mean * cells, cells, reach)
+    total, every = _integral(mean * cells), _integral(cells)
+    first = _around(total, every)
     residual = mean - first
     noise = np.float32(1.28 * step) / np.sqrt(of.cells)
     occupied = residual > OCCUPIED * texture * noise
     free = np.where(occupied, np.float32(0), cells)
-    level = _around(mean * free, free, reach)
+    total, left = _integral(mean * free), _integral(free)
+    level = _around(total, left)
     # Where hardly anything is free, as on land, its own level counts.
-    few = _box(free, reach, reach) < 0.25 * _box(cells, reach, reach)
+    in_box = [_columns(_rows(a, reach), -reach, reach) for a in (left, every)]
+    few = in_box[0] < 0.25 * in_box[1]
     level = np.where(few, np.maximum(level, first), level)
     spread = 1.48 * np.median(np.abs(residual), axis=0) / noise
     return location(level / step) * np.float32(step), occupied, spread
 
 
-def _around(total: FloatArray, cells: FloatArray, reach: int) -> FloatArray:
-    """Mean in the ring around each block, on the nearer or farther side: the greater one."""
-    guard = GUARD_BLOCKS
+def _around(total: Array, cells: Array) -> FloatArray:
+    """Mean in the ring around each block, on the nearer or farther side: the greater one.
+
+    total, cells  [blocks + 1, C + 1]  integrals (_integral) of the sums and numbers of cells
+    """
+    guard, reach = GUARD_BLOCKS, GUARD_BLOCKS + RING_BLOCKS
     sides = []
-    values = np.stack([total, cells])
-    beside = _columns(_rows(values, reach) - _rows(values, guard), -guard, guard)
-    wide = _rows(values, reach)
     for low, high in ((-reach, -guard - 1), (guard + 1, reach)):
-        sums, counts = beside + _columns(wide, low, high)
+        sums, counts = (
+            _columns(_rows(a, reach) - _rows(a, guard), -guard, guard)
+            + _columns(_rows(a, reach), low, high)
+            for a in (total, cells)
+        )
         sides.append(sums / np.maximum(counts, 1))
-    return np.maximum(*sides)
+    return np.maximum(*sides).astype(np.float32)
 
 
-def _rows(a: FloatArray, half: int) -> FloatArray:
-    """Sum over the rows within `half` of each row; axis -2."""
-    total = np.cumsum(a, axis=-2, dtype=np.float64)
-    total = np.concatenate([np.zeros_like(total[..., :1, :]), total], -2)
-    count = a.shape[-2]
+def _integral(a: FloatArray) -> Array:
+    """[R + 1, C + 1] sums of all rows and columns before each."""
+    found = np.zeros((a.shape[0] + 1, a.shape[1] + 1))
+    np.cumsum(a, axis=0, out=found[1:, 1:])
+    np.cumsum(found[1:, 1:], axis=1, out=found[1:, 1:])
+    return found
+
+
+def _rows(integral: Array, half: int) -> Array:
+    """[R, C + 1] what the rows within `half` of each row add to an integral."""
+    count = len(integral) - 1
     at = np.arange(count)
-    return (
-        total[..., np.minimum(at + half + 1, count), :] - total[..., np.maximum(at - half, 0), :]
-    ).astype(np.float32)
+    last, first = np.minimum(at + half + 1, count), np.maximum(at - half, 0)
+    return integral.take(last, 0) - integral.take(first, 0)
 
 
-def _columns(a: FloatArray, low: int, high: int) -> FloatArray:
-    """Sum over the columns from `low` to `high` beside each column; axis -1."""
-    total = np.cumsum(a, axis=-1, dtype=np.float64)
-    total = np.concatenate([np.zeros_like(total[..., :1]), total], -1)
-    count = a.shape[-1]
+def _columns(rows: Array, low: int, high: int) -> Array:
+    """[R, C] sums over the columns from `low` to `high` beside each column."""
+    count = rows.shape[1] - 1
     at = np.arange(count)
     first, last = np.clip(at + low, 0, count), np.clip(at + high + 1, 0, count)
-    return (total[..., last] - total[..., first]).astype(np.float32)
-
-
-def _box(a: FloatArray, rows: int, columns: int) -> FloatArray:
-    return _columns(_rows(a, rows), -columns, columns)
+    return rows.take(last, 1) - rows.take(first, 1)
 
 
 def _clipped_means() -> tuple[Array, Array]:

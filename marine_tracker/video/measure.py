@@ -17,9 +17,9 @@ from scipy.special import i0e, i1e
 from ..types import Array, BoolArray, IntArray, StrengthArray
 from .lobes import BEAM_FALL, PULSE_FALL, Lobe
 
-ITERATIONS = 5
+BY_LOGARITHM, ITERATIONS = 3, 6
 AROUND = (0.8, 1.0)  # of beam and pulse: the cells that are fitted
-FLOOR = 0.01  # of beam and pulse: no place is known better
+FLOOR = np.array([0.002, 0.004])  # of beam and pulse: no place is known better
 LONG = 0.1  # of its extent: how well the middle of something long is known
 
 
@@ -81,11 +81,15 @@ def points(
         if iteration == ITERATIONS:
             covariance = np.asarray(inverse[:, 1:, 1:], np.float64)
             break
-        root = 2 * np.sqrt(z * r)
-        score = r * (np.sqrt(z / r) * (i1e(root) / i0e(root)) - 1) * weight
+        if iteration < BY_LOGARITHM:  # far off, the logarithms are more nearly linear
+            score = own * np.clip(power - log_r, -3.0, 3.0) * weight
+        else:
+            root = 2 * np.sqrt(z * r)
+            score = r * (np.sqrt(z / r) * (i1e(root) / i0e(root)) - 1) * weight
         slopes = np.stack([(score * one).sum((1, 2)) for one in gradient], 1)
         change = np.einsum('kij,kj->ki', inverse, slopes)
-        change = np.clip(change, -1.0, 1.0) * [1.0, 0.3 * beam, 0.3 * pulse]
+        longest = np.array([1.0, 0.3 * beam, 0.3 * pulse])
+        change = np.clip(change, -longest, longest)
         height = np.clip(height + change[:, 0], 0.0, 38.0)
         place += change[:, 1:]
     held = (np.abs(place) < 0.75 * lobe.shape).all(1) & (usable.sum((1, 2)) >= 4)

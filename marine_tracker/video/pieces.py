@@ -24,6 +24,7 @@ class Pieces(NamedTuple):
     piece        [n]  0 to number - 1
     number       how many pieces
     peak         [number, 2]  row and sample of the strongest place of each, smoothed
+    origin       [number]     the component that each was a part of
     """
 
     row: IntArray
@@ -31,6 +32,7 @@ class Pieces(NamedTuple):
     piece: IntArray
     number: int
     peak: IntArray
+    origin: IntArray
 
 
 def label(hits: BoolArray, lobe: Lobe) -> NDArray[np.int32]:
@@ -69,7 +71,7 @@ def split(
     top = np.lexsort((value, component))[edge[1:] - 1]
     peak = np.stack([row[top], sample[top]], 1)
     piece = component.copy()
-    peaks, total = [peak], count
+    peaks, origins, total = [peak], [np.arange(count)], count
     for k in np.flatnonzero(wide & (cells > 3)).tolist():
         its = slice(edge[k], edge[k + 1])
         found, which = _maxima(row[its], sample[its], low[k], high[k], strength, lobe, slope[k])
@@ -77,8 +79,9 @@ def split(
         if len(found) > 1:
             piece[its] = np.where(which == 0, k, total + which - 1)
             peaks.append(found[1:])
+            origins.append(np.full(len(found) - 1, k))
             total += len(found) - 1
-    return Pieces(row, sample, piece, total, np.concatenate(peaks))
+    return Pieces(row, sample, piece, total, np.concatenate(peaks), np.concatenate(origins))
 
 
 def _maxima(row, sample, low, high, strength, lobe: Lobe, slope):
@@ -89,8 +92,15 @@ def _maxima(row, sample, low, high, strength, lobe: Lobe, slope):
     inside = np.zeros(patch.shape, bool)
     inside[at] = True
     peaked = inside & (smooth >= ndimage.maximum_filter(smooth, lobe.apart) - 1e-4)
+    if not peaked.any():  # its maxima belong to a neighbour that is stronger: it has one piece
+        return np.array([low + np.argwhere(inside)[smooth[inside].argmax()]]), np.zeros(
+            len(row), np.int64
+        )
     plateau, count = ndimage.label(peaked, TOUCH)
     places = np.argwhere(peaked)
+    if count == 1:
+        middle = np.rint(places.mean(0)).astype(np.int64)
+        return (middle + low)[None], np.zeros(len(row), np.int64)
     owner = plateau[peaked] - 1
     sums = np.stack([np.bincount(owner, column, count) for column in places.T], 1)
     centre = sums / np.bincount(owner, minlength=count)[:, None]

@@ -40,7 +40,7 @@ class Tail(NamedTuple):
 
 
 class Thresholds(NamedTuple):
-    """By zone [Z], all in steps of strength above the level.
+    """By sample [B], all in steps of strength above the level.
 
     over    what a cell must reach
     origin  the location, and
@@ -90,8 +90,8 @@ def varied(tail: Tail, spread: FloatArray, zone: IntArray, blocks: int) -> Tail:
     return tail._replace(texture=texture)
 
 
-def thresholds(tail: Tail, rate: float, full: int) -> Thresholds:
-    """What to reach for the false-alarm rate `rate`."""
+def thresholds(tail: Tail, rate: float, full: int, samples: int) -> Thresholds:
+    """What to reach for the false-alarm rate `rate`; straight between the middles of zones."""
     zones, width = len(tail.cells), (full + 1) / BINS
     edge = np.arange(BINS, dtype=np.float64) * width
     prior = np.exp(-np.exp(edge / scale(full)))
@@ -101,7 +101,9 @@ def thresholds(tail: Tail, rate: float, full: int) -> Thresholds:
         survival = _survival(tail.above[zone], tail.cells[zone], pooled, POOLED)
         cells = tail.cells[zone] + POOLED
         over[zone], origin[zone], slope[zone] = _line(edge, survival, cells, rate, full)
-    return Thresholds(over, origin, slope)
+    octave = np.log2(np.arange(samples) + 1.0) - 3.5
+    at = [np.interp(octave, np.arange(zones), values) for values in (over, origin, slope)]
+    return Thresholds(*at)
 
 
 def _survival(above: Array, cells: float, prior: FloatArray, weight: float) -> FloatArray:

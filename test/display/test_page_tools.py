@@ -350,7 +350,7 @@ def test_a_zone_by_keys_alone_and_why_by_key(visit):
         assert put.values['zone']['range_m'] == pytest.approx([before[0], far], abs=20)
         assert put.values['zone']['kind'] == 'guard'
         await key(page, 'ArrowDown')
-        await key(page, 'w')
+        await key(page, 'y')
         await page.until(CORNER % 'why-says' + ".includes('explain done')")
         asked = sea.commands.given[-1].values
         assert asked == pytest.approx(

@@ -20,12 +20,12 @@ const SETTINGS = {
   c: 'offCentre',
   r: 'rings',
   p: 'palette',
-  d: 'areas',
-  f: 'safeCourses',
-  u: 'ellipses',
   k: 'motion',
   T: 'trailMinutes',
   i: 'labels',
+  d: 'areas',
+  w: 'safeCourses',
+  u: 'ellipses',
 };
 
 /** Whether a key is meant for a field that somebody types in. */
@@ -53,7 +53,7 @@ export function listen(/** @type {import('./app.js').App} */ app) {
     b: app.ownShipHere,
     x: app.resetView,
     m: app.measure,
-    w: () => (app.marks.cursor ? app.whyAt(app.marks.cursor) : app.why()),
+    y: () => (app.marks.cursor ? app.whyAt(app.marks.cursor) : app.why()),
     h: () => app.hide('heading'),
     g: () => app.hide('graphics'),
     '[': () => nextHandle(app, -1),

@@ -9,7 +9,8 @@ import { RANGES } from './settings.js';
 import { drawOwnShip } from './own_ship.js';
 import { drawStationary } from './stationary.js';
 import { drawMarks, drawScale, drawSimulation, drawTrial } from './surround.js';
-import { LOST } from './state.js';
+import { LOST, serverNow } from './state.js';
+import { paintSpokes, spokesKey } from './spokes.js';
 import * as symbols from './symbols.js';
 import { drawTargets } from './targets.js';
 import { drawTools } from './tools_draw.js';
@@ -17,6 +18,7 @@ import { drawZones } from './zones_draw.js';
 
 const around = new Layer(); // sea, rings, bearing scale
 const glow = new Layer(); // echoes
+const video = new Layer(); // spokes, where they come
 const past = new Layer(); // trails
 const stamps = new Stamps();
 
@@ -55,7 +57,11 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
   canvas.beginPath();
   canvas.arc(middleX, middleY, radius, 0, 2 * Math.PI);
   canvas.clip();
-  if (state.own) {
+  if (state.spokes) {
+    video.onto(canvas, [...lies, ...spokesKey(state, local)], (pen) =>
+      paintSpokes(pen, state, scope.view, colors.echo, serverNow(state, local)),
+    );
+  } else if (state.own) {
     glow.onto(canvas, [...lies, ...echoKey(state, local)], (pen) =>
       paintEchoes(pen, state, scope.view, colors.echo, local),
     );

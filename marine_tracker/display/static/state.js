@@ -3,6 +3,8 @@
 // Receiving does not draw. Ages come from the server's steady clock, which stands in every
 // message, and this browser's own steady clock: what time of day either has does not matter.
 
+import { takeSpokes } from './spokes.js';
+
 export const SILENT_S = 3; // without fresh data for so long: the red cross
 const GLOW_SCANS = 12; // of plots that are kept for the afterglow
 const DRIFT = 1e-4; // of two steady clocks against each other, at most
@@ -22,6 +24,7 @@ export const UNACKNOWLEDGED = 2;
  * @property {[number, number, number][]} fixed  stationary objects: number, x, y
  * @property {Message|null} scan     the message that the targets came with, without its columns
  * @property {Message[]} plots       of the last scans, newest last
+ * @property {any} spokes           radar video of the last turn (spokes.js)
  * @property {Message[]} alarms      in the order in which they are listed
  * @property {Message[]} settled     alerts that are over, the newest first
  * @property {Message|null} areas    of danger, while they are asked for
@@ -47,6 +50,7 @@ export function emptyState() {
     fixed: [],
     scan: null,
     plots: [],
+    spokes: null,
     alarms: [],
     settled: [],
     areas: null,
@@ -90,6 +94,9 @@ export function receive(state, message, local) {
     case 'plots':
       takePlots(state, message);
       break;
+    case 'spokes':
+      takeSpokes(state, message);
+      break;
     case 'alarms':
       state.alarms = message.alarms;
       break;
@@ -98,7 +105,7 @@ export function receive(state, message, local) {
       break;
     case 'demo':
       if (state.demo.run !== undefined && message.demo.run !== state.demo.run) {
-        Object.assign(state, { targets: [], scan: null, plots: [], trails: null }); // another run
+        Object.assign(state, { targets: [], scan: null, plots: [], spokes: null, trails: null }); // another run
       }
       state.demo = message.demo;
       break;
