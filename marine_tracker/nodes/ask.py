@@ -19,6 +19,7 @@ from . import convert, log_folder, topics
 from .diagnostics import OK, one_line
 
 NODE = 'marine_tracker_explain'
+VIDEO_S = 1.0  # longest wait for the extractor's word, after the tracker's
 
 
 class Question(NamedTuple):
@@ -60,6 +61,10 @@ def _asked(
     heard: list[Any] = []
     own: list[Odometry] = []
     node.create_subscription(DiagnosticArray, topics.EXPLANATION, heard.append, topics.reliable())
+    of_video: list[Any] = []
+    node.create_subscription(
+        DiagnosticArray, topics.VIDEO_EXPLANATION, of_video.append, topics.reliable()
+    )
     questions = node.create_publisher(PointStamped, topics.EXPLAIN, topics.reliable())
     north = question.polar and not question.bow
     if north:
@@ -84,8 +89,18 @@ def _asked(
         lambda: any(answer.header.stamp == point.header.stamp for answer in heard),
         'the tracker did not answer in time',
     )
-    answer = next(answer for answer in heard if answer.header.stamp == point.header.stamp)
-    return [(entry.level != OK, one_line(entry.message)) for entry in answer.status]
+    # Where plots come out of radar video, the extractor has its word as well.
+    soon = min(time.monotonic() + VIDEO_S, until)
+    while node.count_publishers(topics.VIDEO_EXPLANATION) and time.monotonic() < soon:
+        if any(answer.header.stamp == point.header.stamp for answer in of_video):
+            break
+        executor.spin_once(timeout_sec=0.05)
+    return [
+        (entry.level != OK, one_line(entry.message))
+        for answer in (*heard, *of_video)
+        if answer.header.stamp == point.header.stamp
+        for entry in answer.status
+    ]
 
 
 def _point(question: Question, own: list[Odometry]) -> PointStamped:

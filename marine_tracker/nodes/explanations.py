@@ -13,6 +13,7 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PointStamped
+from rclpy.clock import Clock, ClockType
 
 from ..arpa.explain import explain
 from ..arpa.explain_plots import SCANS, Reason, Seen, seen
@@ -24,6 +25,7 @@ from .diagnostics import OK, WARN, one_line, status
 
 MOST = 20  # questions of one asker that wait for their answers
 REASONS = 40  # of one answer
+VIDEO_S = 0.5  # longest wait for the extractor's word, after the tracker's
 
 
 class Explanations:
@@ -47,7 +49,7 @@ class Explanations:
 
     def take(self, output: Output) -> None:
         """A scan was taken: only looked at when somebody asks."""
-        self._recent.append(seen(output.scan, output.report, output.estimate, output.picture))
+        self._recent.append(seen(output.report, output.estimate, output.picture))
 
     def _on_question(self, message: PointStamped) -> None:
         try:
@@ -88,6 +90,13 @@ class Asker:
         self._to_questions = node.publisher(PointStamped, topics.EXPLAIN, topics.reliable())
         self._waiting: dict[tuple[int, int], Callable[[str], None]] = {}
         node.subscription(DiagnosticArray, topics.EXPLANATION, self._on_answer, topics.reliable())
+        # Of radar video the extractor has its word as well: the tracker's waits for it a moment.
+        self._node, self._of_video = node, dict[tuple[int, int], str]()
+        self._held: dict[tuple[int, int], str] = {}
+        node.subscription(
+            DiagnosticArray, topics.VIDEO_EXPLANATION, self._on_video, topics.reliable()
+        )
+        node.create_timer(VIDEO_S, self._flush, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def ask(
         self, x: float, y: float, hear: Callable[[str], None], frame: str = topics.FRAME
@@ -103,9 +112,31 @@ class Asker:
         self._to_questions.publish(point)
 
     def _on_answer(self, message: DiagnosticArray) -> None:
-        hear = self._waiting.pop(_key(message.header.stamp), None)
+        key, text = _key(message.header.stamp), _lines(message)
+        if key not in self._waiting:
+            return
+        if key in self._of_video or not self._node.count_publishers(topics.VIDEO_EXPLANATION):
+            self._tell(key, text)
+        else:
+            self._held[key] = text
+
+    def _on_video(self, message: DiagnosticArray) -> None:
+        key = _key(message.header.stamp)
+        if key in self._waiting:
+            self._of_video[key] = _lines(message)
+            if key in self._held:
+                self._tell(key, self._held[key])
+
+    def _flush(self) -> None:
+        for key, text in tuple(self._held.items()):
+            self._tell(key, text)
+
+    def _tell(self, key: tuple[int, int], text: str) -> None:
+        more = self._of_video.pop(key, '')
+        self._held.pop(key, None)
+        hear = self._waiting.pop(key, None)
         if hear:
-            hear('\n'.join(map(_line, message.status[:REASONS])))
+            hear(f'{text}\n{more}' if more else text)
 
 
 def _line(entry: DiagnosticStatus) -> str:
@@ -114,3 +145,8 @@ def _line(entry: DiagnosticStatus) -> str:
 
 def _key(stamp: Time) -> tuple[int, int]:
     return stamp.sec, stamp.nanosec
+
+
+def _lines(message: DiagnosticArray) -> str:
+    """The reasons, one a line."""
+    return '\n'.join(map(_line, message.status[:REASONS]))

@@ -19,16 +19,19 @@ from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import Image, PointCloud2
 
+from ..geometry import on_deck, to_range_bearing
 from ..parameters import PlotExtractorParameters, VideoParameters
-from ..types import OwnShip, Scan, Sweep
-from ..video import found, picture, placing
+from ..types import Array, OwnShip, Scan, Sweep
+from ..video import found, headings, picture, placing
 from ..video.chain import Chain
+from ..video.explain import Why, explain
 from . import convert, diagnostics, topics
 from .base_node import RunnableNode
 from .declare import declare, follow
 from .diagnostics import ERROR, FAILED, OK, WARN, Durations, Tally
 from .faults import HEADER_REASONS, NO_STAMP, ConversionError, check_frame
 from .spokes import FRAMES, cloud_to_sweep, sector_to_sweep
+from .video_explanations import VideoExplanations
 
 OWN_SAMPLES = 600  # of own ship that are kept
 SILENT_S = 5.0
@@ -63,6 +66,7 @@ class PlotExtractorNode(RunnableNode):
                 *placing.REASONS,
                 found.LAND,
                 found.LONE,
+                found.LOBE,
                 NO_PLACE,
             ),
             self.tell,
@@ -79,6 +83,7 @@ class PlotExtractorNode(RunnableNode):
         sector = _radar_sector()
         if sector is not None:
             self.subscription(sector, topics.SECTOR, self._on_sector, quality)
+        VideoExplanations(self, self._why)
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(
             f'waiting for {topics.SPOKES}' + (f' or {topics.SECTOR}' if sector is not None else '')
@@ -168,12 +173,33 @@ class PlotExtractorNode(RunnableNode):
             self._scans += 1
             self._plots = len(scan.plots.time)
 
+    def _why(self, point: Array | None, frame: Array | None) -> list[Why]:
+        """Reasons for a point [2] m in the map, or [2] m ahead and to port of own ship."""
+        own = self._own_ship()
+        heading = headings.of_own_ship(own, own.time[-1:])[0]
+        told = self._memory.placing.headings.heading
+        if not math.isfinite(heading) and len(told):
+            heading = float(told[-1])
+        if point is None and frame is not None:
+            point = own.position[-1] + on_deck(float(frame[0]), -float(frame[1]), heading)
+        assert point is not None
+        range_, bearing = to_range_bearing(np.asarray(point) - own.position[-1])
+        return explain(
+            self._polar,
+            self._memory.extraction,
+            self._chain.extraction,
+            float(range_),
+            float(bearing),
+            float(heading),
+            float(self._polar.time.max()),
+        )
+
     def _draw(self, placed) -> None:
-        """Keeps the picture, and publishes it, while somebody listens."""
-        if not self._to_image.get_subscription_count():
-            return
+        """Keeps the picture, and publishes it once a revolution while somebody listens."""
         for spokes in placed:
             self._polar = picture.painted(self._polar, spokes)
+        if not self._to_image.get_subscription_count():
+            return
         now, first = float(self._polar.time.max()), float(self._polar.time.min())
         if not math.isfinite(now):
             return
@@ -208,7 +234,7 @@ class PlotExtractorNode(RunnableNode):
             level, message = WARN, f'no spokes for {silent:.0f} s'
         elif came and not usable:
             level, message = ERROR, 'spokes come, none is usable: ' + ', '.join(fresh)
-        elif any(reason not in (found.LAND, found.LONE) for reason in fresh):
+        elif any(reason not in (found.LAND, found.LONE, found.LOBE) for reason in fresh):
             level, message = WARN, 'lately: ' + ', '.join(fresh)
         if self.failures.fresh(wall):
             level, message = ERROR, 'callbacks fail'

@@ -98,6 +98,7 @@ def step(
     learnt = ground.revolutions >= LEARNT
     anchors = moving(follow(ground.anchors, tracks, seen), at, seen, learnt)
     others = take(ground.anchors, ~np.isin(ground.anchors.id, tracks.id))
+    at = np.where(seen.fast & ~was, -1, at)  # what surely moves does not become a place
     tracks, places = settle(tracks, was, anchors, at, ground.places, others.number)
     target = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
     anchors = anchors._replace(number=tracks.number, target=target)

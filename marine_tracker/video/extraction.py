@@ -23,7 +23,7 @@ from . import detection, level, measure, pieces, plots, stack, tail
 from .found import LONE, NO_BEARING, Found, nothing, together
 from .stack import Stack
 
-LONGEST_OPEN = math.radians(20.0)  # what is wider comes out in parts
+LONGEST_OPEN = math.radians(12.0)  # what is wider comes out in parts
 
 
 class Memory(NamedTuple):
@@ -118,7 +118,8 @@ class Extraction:
         np.maximum.at(last, component, row)
         limit = max(round(LONGEST_OPEN / held.spacing), 4 * rows)
         # A ship near by may fill a wide angle, but not more than its size allows.
-        over = last < decided - held.lobe.gap - 1
+        hold = max(held.lobe.gap + 1, round(plots.LOBES / held.spacing))
+        over = last < decided - hold
         over |= first < decided - limit
         over |= final
         going = ~over
@@ -137,4 +138,4 @@ class Extraction:
                 until=(float(held.time[passed]), float(wrap_bearing(held.bearing[passed])))
             )
         margin = math.ceil(measure.AROUND[0] * held.lobe.shape[0]) + 1
-        return stack.trimmed(held, until - margin), found
+        return stack.trimmed(held, until - max(margin, hold)), found

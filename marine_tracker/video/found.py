@@ -7,6 +7,7 @@ import numpy as np
 from ..types import Array, IntArray, PolarPlots, append, take
 
 LAND, LONE = 'echoes too long for a ship', 'samples of interference'
+LOBE = 'side lobes of strong echoes'
 NO_BEARING = 'spokes without a bearing'
 
 

@@ -8,14 +8,16 @@ from ..geometry import unit_vector, wrap_bearing
 from ..parameters import VideoParameters
 from ..types import Array, BoolArray, IntArray, PolarPlots
 from . import detection, measure, pieces, tail
-from .found import LAND, Details, Found, nothing
+from .found import LAND, LOBE, Details, Found, nothing
 from .stack import Stack
 
 CORE = 2 * math.log(2)  # nepers: an echo is measured across where it is 6 dB below its peak
 POINT = np.array([1.0, math.sqrt(2.0)])  # beams and pulses that a point is wide there
 ROUND = 1.4  # times that: still a point
 SKIRTS = 2.0  # beams that the flanks of a strong echo may add to its width
-STANDS_OUT = 2.3  # nepers, 10 dB: what is so far above the land that it hangs on is no land
+STANDS_OUT = 3.5  # nepers, 15 dB: what is so far above most of the land it hangs on is no land
+LOBES = math.radians(8.0)  # side lobes show so far beside a strong echo ...
+LOBE_DOWN = 7.4  # nepers, 32 dB: ... and are at least so much weaker
 LEAST_CELLS = 3  # of an echo, where beam and pulse spread it over more
 DECIBEL = 10 / math.log(10)  # of a neper
 
@@ -54,12 +56,18 @@ def measured(
     size = np.stack([extent[:, 1] * held.range_step, extent[:, 0] * across], 1)
     flanks = SKIRTS * lobe.shape[0] * across
     land = (size - np.stack([0 * flanks, flanks], 1) > parameters.max_size_m).any(1)
-    land |= _on_land(held, row, sample, piece, found.origin, top, parameters.max_size_m)
+    height = value / limits.slope[sample]  # nepers
+    land |= _on_land(held, found, height, parameters.max_size_m)
     spread = lobe.shape[0] >= detection.LEAST_SPOKES
     enough = (cells >= LEAST_CELLS) & (spokes >= 2) if spread else cells >= 1
     keep = ~land & enough
+    lobes = keep & _side_lobe(held, found.peak, top, limits)
+    keep &= ~lobes
+    left_out = {
+        reason: int(mask.sum()) for reason, mask in ((LAND, land), (LOBE, lobes)) if mask.any()
+    }
     if not keep.any():
-        return nothing()._replace(counts={LAND: int(land.sum())} if land.any() else {})
+        return nothing()._replace(counts=left_out)
 
     point = keep & (extent <= (ROUND - 1) * POINT * lobe.shape + 1).all(1)
     snr = top.copy()
@@ -80,26 +88,19 @@ def measured(
     return Found(
         _polar(held, centre[order], covariance[order], snr[order], parameters.range_offset_m),
         Details(size[order], cells[order], doppler[order]),
-        {LAND: int(land.sum())} if land.any() else {},
+        left_out,
         (np.nan, np.nan),
     )
 
 
-def _on_land(
-    held: Stack,
-    row: IntArray,
-    sample: IntArray,
-    piece: IntArray,
-    origin: IntArray,
-    top: Array,
-    longest: float,
-) -> BoolArray:
+def _on_land(held: Stack, found: pieces.Pieces, height: Array, longest: float) -> BoolArray:
     """[K] pieces of a component that is longer than any ship, unless they stand out of it.
 
-    origin  [K]  the component of each piece; top [K] its greatest power, in nepers
+    height  [n]  strength of the cells, in nepers
     """
+    row, sample, origin = found.row, found.sample, found.origin
     count = int(origin.max()) + 1
-    component = origin[piece]
+    component = origin[found.piece]
     span = np.empty((count, 2))
     for axis, a in enumerate((row, sample)):
         low, high = np.full(count, np.iinfo(np.int64).max), np.full(count, -1)
@@ -111,10 +112,26 @@ def _on_land(
     flanks = (SKIRTS + 1.0) * held.lobe.shape[0]
     long_ = (span[:, 0] - flanks) * across > longest
     long_ |= span[:, 1] * held.range_step > longest
-    usual = np.full(count, np.inf)
+    usual, top = np.full(count, np.inf), np.zeros(found.number)
+    np.maximum.at(top, found.piece, height)
     for one in np.flatnonzero(long_).tolist():
-        usual[one] = np.median(top[origin == one])
+        usual[one] = np.median(height[component == one])
     return long_[origin] & (top < usual[origin] + STANDS_OUT)
+
+
+def _side_lobe(held: Stack, peak: IntArray, top: Array, limits: tail.Thresholds) -> BoolArray:
+    """[K] pieces at the range of a far stronger echo not far away in bearing."""
+    half = max(round(LOBES / held.spacing), 1)
+    rows = peak[:, :1] + np.arange(-half, half + 1)
+    inside = (rows >= 0) & (rows < len(held.strength))
+    rows = np.clip(rows, 0, len(held.strength) - 1)
+    strongest = np.zeros(len(peak))
+    for beside in (-1, 0, 1):
+        sample = np.clip(peak[:, 1] + beside, 0, held.strength.shape[1] - 1)
+        strength = np.where(inside, held.strength[rows, sample[:, None]], 0)
+        strongest = np.maximum(strongest, strength.max(1))
+    value = held.strength[peak[:, 0], peak[:, 1]]
+    return (strongest - value) / limits.slope[peak[:, 1]] > LOBE_DOWN
 
 
 def _spokes(row: IntArray, piece: IntArray, count: int) -> IntArray:

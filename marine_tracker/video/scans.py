@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry import wrap_bearing
-from ..types import OwnShip, PolarPlots, Scan, append, take
+from ..types import OwnShip, PolarPlots, Scan, Sector, append, take
 from .found import Found, nothing
 
 LOST_S = 30.0  # without a spoke for so long the antenna was off: the scan ends there
@@ -55,12 +55,17 @@ def gather(
         turn = width
     scans = []
     turned, began = known.turned, known.time
-    start_ = known.start
+    start_, known_bearing = known.start, known.bearing
     while turned + turn >= width - 1e-6:
         share = min(max((width - turned) / turn, 0.0), 1.0) if turn > 0 else 1.0
         end = began + share * (time - began)
         inside = plots.time <= end
-        scans.append(Scan(start_, end, take(plots, inside), own_ship))
+        sector = None
+        if width < 2 * math.pi:
+            last = known_bearing + share * turn
+            sector = Sector(float(wrap_bearing(np.float64(last - width))), width)
+        scans.append(Scan(start_, end, take(plots, inside), own_ship, sector=sector))
+        known_bearing += share * turn
         plots, start_, began = take(plots, ~inside), end, end
         turn, turned = turn - (width - turned), 0.0
     return Gathering(plots, start_, time, bearing, turned + max(turn, 0.0)), scans

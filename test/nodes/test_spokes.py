@@ -185,3 +185,29 @@ def test_spokes_of_which_none_is_usable_are_an_error(graph, node_helpers):
         ]
 
     assert wait(an_error)[0].level == b'\x02'
+
+
+def test_explain_tells_what_the_video_holds(graph, node_helpers, recorded):
+    """The extractor answers beside the tracker, and both come as one."""
+    from marine_tracker.nodes.base_node import RunnableNode
+    from marine_tracker.nodes.explanations import Asker
+    from marine_tracker.nodes.tracker_node import TrackerNode
+
+    wait, listener = node_helpers
+    node = graph.bystander()
+    plots = listener(node, PointCloud2, topics.PLOTS, topics.reliable(50))
+    graph.make(TrackerNode)
+    extractor = graph.make(PlotExtractorNode, beam_width_deg=2.4, pulse_length_m=30.0)
+    asker = Asker(graph.add(RunnableNode('asker', context=graph.context)))
+    player = graph.make(RecordingPlayerNode, folder=recorded, rate=1.0)
+    wait(lambda: len(plots) >= 2 and player.done)
+    del extractor
+    answers = []
+    east = 1500.0 * np.sin(np.radians(40.0)), 1500.0 * np.cos(np.radians(40.0))
+
+    def both():
+        asker.ask(*map(float, east), answers.append)
+        time.sleep(0.3)
+        return [text for text in answers if 'video: the strongest sample' in text]
+
+    assert 'a plot comes from there' in wait(both)[0]

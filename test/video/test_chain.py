@@ -46,6 +46,10 @@ def test_scans_may_be_sectors(pictures):
     scans = scans_of(pictures, 45, width=2 * np.pi / 8)
     assert len(scans) > 24 and sum(len(scan.plots.time) for scan in scans) == 8
     assert all(a.end == b.start for a, b in zip(scans, scans[1:-1]))
+    for scan in scans[3:20]:
+        assert scan.sector.angle == pytest.approx(2 * np.pi / 8)
+        inside = np.mod(scan.plots.bearing - scan.sector.bearing, 2 * np.pi)
+        assert (inside < scan.sector.angle + 0.02).all()
 
 
 def test_own_ship_has_the_heading_that_the_radar_told(pictures):

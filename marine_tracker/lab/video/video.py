@@ -12,6 +12,8 @@ A run is a revolution of the false alarms; the other parts take shares of it.
 
 import math
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +22,7 @@ from ...evaluation import parallel, report
 from ...evaluation.report import Figure
 from ...evaluation.result import Picture, Progress, Result, silent
 from ...types import Array
-from . import false_alarms, pictures, points, whole
+from . import false_alarms, pictures, points, recorded, whole
 
 HELP = 'plots from radar video: false alarms, detection, accuracy, resolution, whole chain'
 RUNS = 40
@@ -30,7 +32,11 @@ OPTIONS = {
         'default': 30.0,
         'metavar': 'M',
         'help': 'length of the scene of the whole chain (default 30); 0: without it',
-    }
+    },
+    'data': {
+        'metavar': 'FOLDER',
+        'help': 'folder with files of spokes (.npz), which are drawn with plots and tracks',
+    },
 }
 EXPECTED = 12.0  # false alarms; an octave with fewer is not judged
 SNR = np.arange(0.0, 31.0, 2.0)
@@ -56,6 +62,7 @@ def run(
     seed: int,
     progress: Progress = silent,
     minutes: float = 30.0,
+    data: str | None = None,
     workers: parallel.Workers = None,
 ) -> Result:
     """All parts."""
@@ -83,7 +90,15 @@ def run(
     if minutes:
         ours, theirs = take(1)[0]
         figures += _whole(ours, theirs)
-    return Result(figures, pictures=_pictures(alarms, curves, errors))
+    drawn = _pictures(alarms, curves, errors)
+    for path in sorted(Path(data).glob('*.npz')) if data else ():
+        one = recorded.follow(path)
+        figures += [
+            Figure(f'{one.name}: plots a revolution', one.mean_plots, ''),
+            Figure(f'{one.name}: moving targets alive', one.mean_moving, ''),
+        ]
+        drawn.append(Picture(f'video_{one.name}', (8.0, 8.0), partial(recorded.paint, of=one)))
+    return Result(figures, pictures=drawn)
 
 
 class _Taker:
