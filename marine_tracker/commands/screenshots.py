@@ -92,6 +92,11 @@ SCENES: dict[str, tuple[float, list[Shot]]] = {
             Shot('trial', 'range=6&orientation=head-up', SETTLED, _try),
             Shot('viewer_that_commands', 'range=6', SETTLED, _end_trial, size=(1024, 700)),
             Shot('viewer_that_looks', 'range=12', SETTLED, looks=True, size=(480, 900)),
+            Shot(
+                'danger_areas',
+                'range=6&areas=on&safeCourses=on&offCentre=ahead',
+                f'{SETTLED} && ppi.state.areas?.areas.length > 2',
+            ),
             Shot('no_data', 'range=3', SETTLED, _silence),
         ],
     ),
