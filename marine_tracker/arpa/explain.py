@@ -10,7 +10,8 @@ import numpy as np
 
 from ..extent.land_map import LandMap, on_land
 from ..geometry import NAUTICAL_MILE
-from ..tracking.lifecycle import LOST, REASONS, TENTATIVE, hits
+from ..tracking import land_mask
+from ..tracking.lifecycle import LOST, REASONS, STATIONARY, TENTATIVE, hits
 from ..tracking.tracker import Tracker, TrackerMemory
 from ..types import Array
 from . import zones
@@ -53,7 +54,7 @@ def explain(
     reasons = [
         *_ranges(there, tracker, arpa, newest),
         *_zones(there, arpa, newest[-1].own),
-        *_land(there, land),
+        *_land(there, land, tracker),
         *_tracks(there, tracker, arpa, memory, known, newest[-1]),
         *_lost(there, recent),
         *plots_seen(there, tracker, arpa, memory, recent),
@@ -100,7 +101,9 @@ def _zones(there: Place, arpa: Arpa, own: OwnMotion) -> Iterator[Reason]:
         yield Reason('acquisition', 'outside of all guard zones (acquisition: zones)', True)
 
 
-def _land(there: Place, land: LandMap | None) -> Iterator[Reason]:
+def _land(there: Place, land: LandMap | None, tracker: Tracker) -> Iterator[Reason]:
+    if land_mask.on_land(tracker.land, there.position[None])[0]:
+        yield Reason('land', 'on land by the file land_mask: no track begins here', True)
     if land is not None and on_land(land, there.position[None])[0]:
         yield Reason(
             'land', 'on the map of land: a piece of echo longer than any ship, and it stays', True
@@ -130,6 +133,9 @@ def _tracks(
         where = f'{name}, {away[row]:.0f} m from here'
         if tracks.id[row] in targets:
             yield Reason('target', f'there is a target: {where}', True)
+        elif tracks.status[row] == STATIONARY:
+            text = f'plots always come from here: shown as a place, {where} (stationary_places)'
+            yield Reason('place', text, True)
         elif tracks.status[row] == TENTATIVE:
             yield _tentative(where, tracker, memory, int(row))
         elif tracks.id[row] in barred.id:

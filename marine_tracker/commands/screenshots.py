@@ -93,8 +93,8 @@ SCENES: dict[str, tuple[float, list[Shot]]] = {
             Shot('ppi_night', 'range=3&palette=night&orientation=head-up', SETTLED, _choose_danger),
             Shot(
                 'ppi_danger_areas',
-                'range=6&areas=on&safeCourses=on',
-                f'{SETTLED} && ppi.state.areas?.areas.length',
+                'range=6&areas=on&safeCourses=on&offCentre=ahead',
+                f'{SETTLED} && ppi.state.areas?.areas.length > 2',
             ),
             Shot('ppi_zones', 'range=6', SETTLED, _draw_zone),
             Shot('ppi_trial', 'range=6&orientation=head-up', SETTLED, _try),

@@ -49,7 +49,7 @@ class Explanations:
 
     def take(self, output: Output) -> None:
         """A scan was taken: only looked at when somebody asks."""
-        self._recent.append(seen(output.scan, output.report, output.estimate, output.picture))
+        self._recent.append(seen(output.report, output.estimate, output.picture))
 
     def _on_question(self, message: PointStamped) -> None:
         try:

@@ -205,14 +205,17 @@ class OpenCpn:
             '2',
         )
 
-    def targets(self):
-        """The list: {target number: {column: figure}}; nan for what it does not show."""
+    def rows(self):
+        """The list as rows of cells, each a picture; nothing while it is still being drawn."""
         grey = self.picture(self.list).mean(2)
         lines = np.flatnonzero((grey[45:, 150:180] < 200).all(1)) + 45  # in an empty column
         lines = lines[np.diff(lines, append=9999) > 1]  # a selected row is dark all over
+        if len(lines) < 2:
+            return []
         columns = np.flatnonzero((grey[lines[0] : lines[-1], :900] < 200).all(0))
         columns = columns[np.diff(columns, prepend=-9) > 1]
-        names = ('bearing', 'range', 'course', 'speed', 'cpa', 'tcpa')
+        if len(columns) < 11:
+            return []
         rows = []
         for top, bottom in zip(np.append(44, lines[:-1]), lines):
             cells = [
@@ -220,6 +223,12 @@ class OpenCpn:
                 for left, right in zip(columns[:-1], columns[1:])
             ]
             rows.append([cells[-10], *cells[-6:]])
+        return rows
+
+    def targets(self):
+        """The list: {target number: {column: figure}}; nan for what it does not show."""
+        names = ('bearing', 'range', 'course', 'speed', 'cpa', 'tcpa')
+        rows = until(self.rows)
         figures = np.reshape(self.read([cell for row in rows for cell in row]), (-1, 7))
         return {
             int(row[0]) - FIRST_MMSI: dict(zip(names, row[1:]))

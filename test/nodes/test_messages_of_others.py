@@ -117,3 +117,41 @@ def test_a_radar_track_has_the_covariance_of_its_own_and_one_uuid_for_life():
     assert len(set(ids)) == len(ids)
     assert ids[0] in [bytes(one.uuid.uuid) for one in seen[-2].tracks]
     assert uuid.UUID(bytes=ids[0]).version == 5
+
+
+def test_radar_scans_come_in_and_radar_tracks_go_out_over_dds(graph, node_helpers):
+    msg = pytest.importorskip('radar_msgs.msg', reason='radar_msgs is not installed')
+    from marine_tracker.nodes import topics
+    from marine_tracker.simulation import radar, scenario
+
+    wait, listener = node_helpers
+    chosen = scenario.load('clean')
+    given = {
+        name: float(value)
+        for name, value in chosen.tracker_parameters().items()
+        if name in ('range_sigma_m', 'bearing_sigma_deg', 'max_range_m')
+    }
+    tracker = graph.make(TrackerNode, radar_tracks=True, plots_type='RadarScan', **given)
+    other = graph.bystander()
+    scans = other.create_publisher(msg.RadarScan, topics.PLOTS, topics.reliable(50))
+    own_ship = other.create_publisher(Odometry, topics.ODOMETRY, topics.reliable(50))
+    tracks = listener(other, msg.RadarTracks, topics.RADAR_TRACKS)
+    wait(lambda: scans.get_subscription_count() and own_ship.get_subscription_count())
+    wait(lambda: tracks.connected and tracker.count_subscribers(topics.RADAR_TRACKS))
+    played = [pair for pair, _ in zip(radar.simulate(chosen, 4), range(12))]
+    for k, (scan, _) in enumerate(played):
+        stamp = 1_700_000_000_000_000_000 + round(scan.start * 1e9)
+        at = scan.own_ship.position[-1], scan.own_ship.velocity[-1]
+        own_ship.publish(convert.own_ship_to_odometry(stamp, *at))
+        wait(lambda k=k: tracker._samples == k + 1)
+        message = msg.RadarScan(header=convert.header(stamp))
+        for range_, bearing in zip(scan.plots.range.tolist(), scan.plots.bearing.tolist()):
+            message.returns.append(msg.RadarReturn(range=range_, azimuth=math.pi / 2 - bearing))
+        scans.publish(message)
+        wait(lambda k=k: len(tracks) == k + 1)
+    last, truth = tracks[-1], played[-1][1]
+    assert last.header.frame_id == 'map' and len(last.tracks) >= 5
+    for one in last.tracks:
+        away = np.hypot(*(truth.position - (one.position.x, one.position.y)).T).min()
+        assert away < 250.0
+        assert one.position_covariance[0] > 0 and one.velocity_covariance[3] > 0

@@ -334,14 +334,18 @@ def test_a_split_on_a_slow_disk_delays_nothing(graph, sender, node_helpers, tmp_
     assert len(files.paths) > 1 and np.diff(times).max() < 0.5 + passed / 400
 
 
-def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(launch, tmp_path, capsys):
+def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(
+    launch, graph, node_helpers, tmp_path, capsys
+):
+    wait, listener = node_helpers
     folder = tmp_path / 'live'
+    seen = listener(graph.bystander('audience'), PointCloud2, topics.TRACKS_CLOUD)
     sim = {'use_sim_time': 'true'}
     tracker = launch('nodes.run tracker', *p(**sim, estimator='imm', cpa_limit_nm=0.7))
     recorder = launch(RECORDER, *p(**sim, folder=folder))
     assert tracker.says('waiting for') and recorder.says('records into')
     simulator = launch('nodes.run radar_simulator', *p(scenario='busy_strait', rate=20.0))
-    time.sleep(9)
+    wait(lambda: len(seen) >= 60)
     simulator.stop()
     time.sleep(0.5)
     recorder.stop()

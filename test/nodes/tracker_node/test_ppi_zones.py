@@ -118,11 +118,16 @@ def test_a_zone_that_is_drawn_is_the_parameter_of_the_tracker(bridge, sea, displ
                 'import("./zones.js").then(z => { const h = z.handles(ppi.marks.draft.zone,'
                 'ppi.state.own)[%d]; return ppi.toScreen(ppi.scopeNow().view, h.x, h.y) })'
             )
+            under_way.clear()  # while it is dragged own ship lies still
+            own = None
+            while own != (own := await page.evaluate('ppi.state.own')):
+                await asyncio.sleep(1.0)
             x, y = await page.evaluate(handle % 2)
             await drag(page, [box[0] + x, box[1] + y], [box[0] + x + 60, box[1] + y - 45])
             corner = await page.evaluate(f'ppi.toMap(ppi.scopeNow().view, {x} + 60, {y} - 45)')
             drawn = await page.evaluate('ppi.marks.draft.zone')
-            assert drawn['corners'][2] == pytest.approx(corner, abs=12)
+            assert drawn['corners'][2] == pytest.approx(corner, abs=12)  # half a pixel
+            under_way.set()
             await page.evaluate(
                 "document.querySelector('#zone [name=name]').value = 'fairway';"
                 "document.querySelector('#zone [name=kind]').value = 'exclusion';"
@@ -149,8 +154,12 @@ def test_a_zone_that_is_drawn_is_the_parameter_of_the_tracker(bridge, sea, displ
             assert await page.evaluate('ppi.marks.draft !== null')
             assert page.errors == []
 
+    under_way = asyncio.Event()
+    under_way.set()
+
     async def keep_alive():
         while True:
+            await under_way.wait()
             await asyncio.to_thread(here.sail, 1)
             await asyncio.sleep(0.5)
 
