@@ -61,6 +61,8 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
     if kind == alarms.SWAP_RISK:
         other = f'TT{third:02.0f}' if third else 'a track that is not confirmed'
         return f'{name} may be swapped with {other}, at {where}'
+    if kind == alarms.STATIONARY_DANGER and not first:  # over: of what is gone nothing is known
+        return 'nothing stationary in the way'
     if kind == alarms.STATIONARY_DANGER:
         if not first:
             return 'no stationary object in the way'
