@@ -7,7 +7,7 @@ from . import level, tail
 from .stack import Stack
 
 LONE = 2.8  # nepers, 12 dB: a sample so far above both its neighbours in bearing is no echo ...
-FAR = 2.6  # nepers above the level: noise hardly ever is
+FAR = 3.6  # nepers above the level: noise never is, and the spikes of the sea hardly ever
 LEAST_SPOKES = 3.0  # ... where the beam spreads an echo over that many spokes
 
 

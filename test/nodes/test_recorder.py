@@ -5,6 +5,7 @@ import os
 import random
 import signal
 import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -359,7 +360,9 @@ def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(
     inside = contents(folder)
     assert inside.parameters['estimator'] == 'imm' and inside.parameters['cpa_limit_nm'] == 0.7
     compared = 0
-    for k, event in enumerate(inside.events('tracks_cloud')):
+    starts = [str(event.message.header.stamp) for event in inside.events('radar/plots')]
+    for event in inside.events('tracks_cloud'):
+        k = starts.index(str(event.message.header.stamp))
         cloud = np.frombuffer(event.message.data, TRACK_TYPE)
         mine = rows.scan == k
         assert sorted(rows.track[mine].astype(int)) == sorted(cloud['id'].tolist())
@@ -458,3 +461,17 @@ def test_an_hour_of_a_busy_strait_is_read_back_by_rosbags_and_mcap_ros2_support(
                 assert decoded is not None
     assert sorted(other) == sorted(mine)
     print(json.dumps({name: files.topics[name].messages for name in files.topics}))
+
+
+def test_the_command_records_for_a_while_and_shows_what_there_is(domain, tmp_path):
+    words = ['record', str(tmp_path / '2026'), '--duration', '4', '--set', 'keep_free_mb=1']
+    done = subprocess.run(
+        [sys.executable, '-m', 'marine_tracker', *words],
+        capture_output=True,
+        text=True,
+        timeout=100,
+        cwd=Path(__file__).parents[2],
+    )
+    assert done.returncode == 0, done.stderr
+    assert '/diagnostics' in done.stdout and 'diagnostic_msgs/msg/DiagnosticArray' in done.stdout
+    assert not McapFiles(tmp_path / '2026').remarks
