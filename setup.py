@@ -28,6 +28,8 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
         *tree('config'),
+        *tree('launch'),
+        *tree('layouts'),
     ],
     zip_safe=False,
     python_requires='>=3.11',

@@ -190,7 +190,7 @@ class Tracks(NamedTuple):
 
     id          [N]  unique from initiation on, never used again
     number      [N]  the ARPA's target number, given at confirmation; 0 while tentative
-    status      [N]  one of tracking.lifecycle.TENTATIVE, CONFIRMED, COASTING, LOST
+    status      [N]  one of tracking.lifecycle.TENTATIVE, CONFIRMED, COASTING, LOST, STATIONARY
     history     [N]  bits: bit k tells whether the track had a plot k scans ago
     score       [N]  log-odds that the plots come from a target and not from clutter
     age         [N]  scans since its first plot in which the track could be seen

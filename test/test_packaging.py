@@ -162,7 +162,12 @@ def test_every_rosdep_key_of_our_own_has_a_rule_for_debian_and_ubuntu():
 
 
 def test_all_configuration_is_installed(installed):
-    shipped = {file.relative_to(ROOT) for file in (ROOT / 'config').rglob('*') if file.is_file()}
+    shipped = {
+        file.relative_to(ROOT)
+        for folder in ('config', 'launch', 'layouts')
+        for file in (ROOT / folder).rglob('*')
+        if file.is_file()
+    }
     share = installed / 'share' / 'marine_tracker'
     assert shipped
     assert {file.relative_to(share) for file in share.rglob('*') if file.is_file()} == (

@@ -18,13 +18,15 @@ alerts.py has the states of an alert. These are the kinds and their causes:
     fallback         at least a share of the confirmed targets have fallen back from their filter
     swap risk        the gate of a target overlaps that of another track
     own speed        what is told of own ship's velocity is not the way that her positions make
+    stationary danger    own ship will pass stationary objects (stationary.py) within the limits;
+                     one alert for all of them
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..tracking.lifecycle import CONFIRMED, LOST
+from ..tracking.lifecycle import CONFIRMED, LOST, STATIONARY
 from ..types import Array, CodeArray, IntArray, row_of, take
 from . import alerts as machine
 from . import encounters, sounding
@@ -47,6 +49,7 @@ NAMES = (
     'swap risk',
     'own speed doubtful',
     'log missing',
+    'stationary danger',
 )
 (
     DANGER,
@@ -61,6 +64,7 @@ NAMES = (
     SWAP_RISK,
     OWN_SPEED,
     LOG_MISSING,
+    STATIONARY_DANGER,
 ) = range(len(NAMES))
 PRIORITY = (
     'alarm',
@@ -73,6 +77,7 @@ PRIORITY = (
     'warning',
     'caution',
     'caution',
+    'warning',
     'warning',
     'warning',
 )
@@ -118,12 +123,16 @@ class Tracking(NamedTuple):
     fallen    confirmed targets that have fallen back from their filter
     overlap   [N]  of the gates and
     other     [N]  row of the track they overlap with, as swap_risk gives them
+    in_the_way  of stationary objects, as Stationary.way tells it
+    nearly    stationary objects are nearly dangerous
     """
 
     capacity: int
     fallen: int
     overlap: Array
     other: IntArray
+    in_the_way: tuple[float, ...] = (0.0, np.nan, np.nan, np.nan, np.nan)
+    nearly: bool = False
 
 
 class Silence(NamedTuple):
@@ -160,7 +169,8 @@ def step(
     numbered = (target & (situation.number > 0)).nonzero()[0]
     confirmed = int((target & (situation.status == CONFIRMED)).sum())
     alerts = encounters.marked(alerts, alerts.kind == DANGER, situation, settings.limits, now)
-    danger = np.minimum(situation.danger, np.where(situation.status == CONFIRMED, ON, KEEP))
+    plotted = np.isin(situation.status, (CONFIRMED, STATIONARY))
+    danger = np.minimum(situation.danger, np.where(plotted, ON, KEEP))
     danger = encounters.level(
         danger, alerts, alerts.kind == DANGER, situation, settings.limits, now
     )
@@ -185,6 +195,11 @@ def step(
             _single(fallen, max(settings.fallback_share * confirmed, 1), fallen, confirmed),
         ),
         (SWAP_RISK, 0, _of_tracks(situation, numbered, swap, partner)),
+        (
+            STATIONARY_DANGER,
+            0,
+            _causes(tracking.in_the_way[0] > 0, *tracking.in_the_way, keep=tracking.nearly),
+        ),
         *_in_guard_zones(alerts, situation, acquisition, zones),
     ]
     return _advance(alerts, causes, settings, now)
@@ -270,7 +285,7 @@ def _in_guard_zones(
     cancelled = acquisition.barred.id[acquisition.barred.cancelled]
     rows = (
         (situation.number > 0)
-        & (situation.status != LOST)
+        & ~np.isin(situation.status, (LOST, STATIONARY))
         & ~situation.excluded
         & ~np.isin(situation.id, cancelled)
     ).nonzero()[0]

@@ -10,7 +10,8 @@ import numpy as np
 
 from ..extent.land_map import LandMap, on_land
 from ..geometry import NAUTICAL_MILE
-from ..tracking.lifecycle import LOST, REASONS, TENTATIVE, hits
+from ..tracking import land_mask
+from ..tracking.lifecycle import LOST, REASONS, STATIONARY, TENTATIVE, hits
 from ..tracking.tracker import Tracker, TrackerMemory
 from ..types import Array
 from . import zones
@@ -40,20 +41,23 @@ def explain(
     known: ArpaMemory,
     land: LandMap | None,
     recent: Sequence[Seen],
+    silent: float = 0.0,
 ) -> list[Reason]:
     """The reasons why there is no target at a position [2] m in `map`, the deciding ones first.
 
     land    where land lies, with extents; else None
     recent  the last scans, the newest last; of each radar the last SCANS are used
+    silent  s that no scan has come for, once the next of every radar is overdue
     """
     if not recent:
         return [Reason('scans', 'no scan has come yet: nothing is known', True)]
     newest = newest_of(recent)
     there = Place(position, reach_of(position, tracker, newest))
     reasons = [
+        *_silence(silent),
         *_ranges(there, tracker, arpa, newest),
         *_zones(there, arpa, newest[-1].own),
-        *_land(there, land),
+        *_land(there, land, tracker),
         *_tracks(there, tracker, arpa, memory, known, newest[-1]),
         *_lost(there, recent),
         *plots_seen(there, tracker, arpa, memory, recent),
@@ -61,6 +65,11 @@ def explain(
         *_capacity(tracker, arpa, memory, known),
     ]
     return sorted(reasons, key=lambda reason: not reason.decides)
+
+
+def _silence(silent: float) -> Iterator[Reason]:
+    if silent:
+        yield Reason('scans', f'no scan has come for {silent:.0f} s: this is as it was then', True)
 
 
 # -- where the radar sees ------------------------------------------------------------------------
@@ -100,7 +109,9 @@ def _zones(there: Place, arpa: Arpa, own: OwnMotion) -> Iterator[Reason]:
         yield Reason('acquisition', 'outside of all guard zones (acquisition: zones)', True)
 
 
-def _land(there: Place, land: LandMap | None) -> Iterator[Reason]:
+def _land(there: Place, land: LandMap | None, tracker: Tracker) -> Iterator[Reason]:
+    if land_mask.on_land(tracker.land, there.position[None])[0]:
+        yield Reason('land', 'on land by the file land_mask: no track begins here', True)
     if land is not None and on_land(land, there.position[None])[0]:
         yield Reason(
             'land', 'on the map of land: a piece of echo longer than any ship, and it stays', True
@@ -130,6 +141,9 @@ def _tracks(
         where = f'{name}, {away[row]:.0f} m from here'
         if tracks.id[row] in targets:
             yield Reason('target', f'there is a target: {where}', True)
+        elif tracks.status[row] == STATIONARY:
+            text = f'plots always come from here: shown as a place, {where} (stationary_places)'
+            yield Reason('place', text, True)
         elif tracks.status[row] == TENTATIVE:
             yield _tentative(where, tracker, memory, int(row))
         elif tracks.id[row] in barred.id:

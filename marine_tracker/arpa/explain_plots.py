@@ -8,15 +8,16 @@ import numpy as np
 from ..geometry import KNOT, NAUTICAL_MILE, to_range_bearing
 from ..tracking import clutter_map, score
 from ..tracking.initiate import PAIRING_GATE
+from ..tracking.land_mask import on_land
 from ..tracking.lifecycle import TENTATIVE
-from ..tracking.noise import noise_of
+from ..tracking.noise import Noise, noise_of
 from ..tracking.tracker import Report, Tracker, TrackerMemory
-from ..types import Array, BoolArray, Extrapolation, Plots, Scan, take
+from ..types import Array, BoolArray, CodeArray, Extrapolation, IntArray, Plots, Scan, take
 from .arpa import Arpa, Picture
 from .cpa import OwnMotion
 from .targets import label
 
-SCANS = 10  # that are looked back on, of each radar
+SCANS = 10  # revolutions that are looked back on, of each radar
 SIGMAS = 3.0  # of a plot: what lies so near is "here"
 LEAST_REACH = 60.0  # m
 
@@ -30,9 +31,9 @@ class Reason(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What one scan came to, as far as it is looked back on; see `seen`.
+    """What one revolution came to, as far as it is looked back on; see `seen`.
 
-    scan      as the tracker took it
+    scan      whose plots the report tells of; of a radar that sends sectors all of them
     report    without the states of the tracks, which are large
     position  [N, 2]  m, of the report's tracks
     own       own ship at its end
@@ -51,10 +52,10 @@ class Place(NamedTuple):
     reach: float
 
 
-def seen(scan: Scan, report: Report, estimate: Extrapolation, picture: Picture) -> Seen:
+def seen(report: Report, estimate: Extrapolation, picture: Picture) -> Seen:
     """Of the fields of a service.Output what is worth keeping."""
     tracks = report.tracks._replace(state=(), past=())
-    return Seen(scan, report._replace(tracks=tracks), estimate.position, picture.own)
+    return Seen(report.scan, report._replace(tracks=tracks), estimate.position, picture.own)
 
 
 def newest_of(recent: Sequence[Seen]) -> list[Seen]:
@@ -63,9 +64,34 @@ def newest_of(recent: Sequence[Seen]) -> list[Seen]:
     return sorted(last.values(), key=lambda seen: seen.scan.end)
 
 
-def scans_of(recent: Sequence[Seen], radar: int) -> list[Seen]:
-    """The last SCANS of a radar."""
-    return [seen for seen in recent if seen.scan.radar == radar][-SCANS:]
+class Turn(NamedTuple):
+    """M plots of a revolution, and the track that took each: its id (0: none), number, status."""
+
+    plots: Plots
+    id: IntArray
+    number: IntArray
+    status: CodeArray
+
+    @property
+    def free(self) -> BoolArray:
+        """Mask of the plots that no track took."""
+        found: BoolArray = self.id == 0
+        return found
+
+
+def turns_of(recent: Sequence[Seen], tracker: Tracker, radar: int) -> list[Turn]:
+    """The last SCANS revolutions of a radar."""
+    scans = [seen for seen in recent if seen.scan.radar == radar][-SCANS:]
+    return [_turn(seen, noise_of(tracker.radars[radar], seen.scan)) for seen in scans]
+
+
+def _turn(seen: Seen, noise: Noise) -> Turn:
+    report, plots = seen.report, noise.locate(seen.scan)
+    rows = (report.plot >= 0).nonzero()[0]
+    of_plot = np.zeros((3, len(plots.time)), np.int64)
+    tracks = report.tracks
+    of_plot[:, report.plot[rows]] = tracks.id[rows], tracks.number[rows], tracks.status[rows]
+    return Turn(plots, of_plot[0], of_plot[1], of_plot[2].astype(np.int8))
 
 
 def antenna(scan: Scan) -> Array:
@@ -96,30 +122,30 @@ def plots_seen(
     there: Place, tracker: Tracker, arpa: Arpa, memory: TrackerMemory, recent: Sequence[Seen]
 ) -> Iterator[Reason]:
     """What each radar saw there in its last scans, and what became of the newest plots."""
-    for radar in range(len(arpa.radars)):
-        scans = scans_of(recent, radar)
-        if not scans:
-            yield Reason('plots', f'no scan{of_radar(arpa, radar)} has come yet')
-            continue
-        located = [noise_of(tracker.radars[radar], seen.scan).locate(seen.scan) for seen in scans]
-        here = [_near(plots, there) for plots in located]
-        count = sum(bool(near.any()) for near in here)
+    of_each = [turns_of(recent, tracker, radar) for radar in range(len(arpa.radars))]
+    nearby = [[_near(turn.plots, there) for turn in turns] for turns in of_each]
+    unseen = not any(near.any() for here in nearby for near in here)
+    for radar, (turns, here) in enumerate(zip(of_each, nearby, strict=True)):
         name = of_radar(arpa, radar)
+        if not turns:
+            yield Reason('plots', f'no scan{name} has come yet')
+            continue
+        count = sum(bool(near.any()) for near in here)
         if not count:
-            text = f'no plot{name} within {there.reach:.0f} m in the last {len(scans)} scans'
-            yield Reason('plots', text, len(arpa.radars) == 1)
+            text = f'no plot{name} within {there.reach:.0f} m in the last {len(turns)} scans'
+            yield Reason('plots', text, unseen)
             continue
         back = next(k for k in range(len(here)) if here[-1 - k].any())
         when = 'the last one too' if not back else f'not in the last {back}'
         yield Reason(
             'plots',
-            f'plots{name} within {there.reach:.0f} m in {count} of the last {len(scans)} scans, '
+            f'plots{name} within {there.reach:.0f} m in {count} of the last {len(turns)} scans, '
             f'{when}',
         )
         if not back:
-            yield from _taken(there, tracker, memory, scans[-1], located[-1], here[-1])
-            if len(scans) > 1:
-                yield from _speed(there, tracker, radar, scans[-2:], located[-2:], here[-1])
+            yield from _taken(tracker, memory, radar, turns[-1], here[-1])
+            if len(turns) > 1:
+                yield from _speed(tracker, radar, turns[-2], turns[-1], here[-1])
 
 
 def _near(plots: Plots, there: Place) -> BoolArray:
@@ -127,30 +153,21 @@ def _near(plots: Plots, there: Place) -> BoolArray:
     return found
 
 
-def _free(seen: Seen, count: int) -> BoolArray:
-    """Mask of the plots that no track took."""
-    free = np.ones(count, bool)
-    free[seen.report.plot[seen.report.plot >= 0]] = False
-    return free
-
-
 def _taken(
-    there: Place, tracker: Tracker, memory: TrackerMemory, seen: Seen, plots: Plots, here: BoolArray
+    tracker: Tracker, memory: TrackerMemory, radar: int, turn: Turn, here: BoolArray
 ) -> Iterator[Reason]:
-    """What became of the plots of the newest scan here."""
-    report, lone = seen.report, memory.radars[seen.scan.radar].leftover
+    """What became of the newest plots here."""
+    plots, lone = turn.plots, memory.radars[radar].leftover
     for plot in here.nonzero()[0]:
-        row = (report.plot == plot).nonzero()[0]
-        if len(row):
-            tracks = take(report.tracks, row)
-            if tracks.status[0] == TENTATIVE:
-                continue  # told as the track that is being built
-            (name,) = label(tracks.id, tracks.number)
+        if turn.id[plot] and turn.status[plot] != TENTATIVE:
+            (name,) = label(turn.id[plot : plot + 1], turn.number[plot : plot + 1])
             yield Reason('gate', f'the newest plot here was taken by the track {name}')
+        elif turn.id[plot]:
+            continue  # told as the track that is being built
         elif ((lone.time == plots.time[plot]) & (lone.range == plots.range[plot])).any():
             text = 'the newest plot here is alone: a track begins when the next scan has one nearby'
             yield Reason('lone plot', text, True)
-        else:
+        elif not on_land(tracker.land, plots.position[plot][None])[0]:
             yield Reason('gate', _explained_by(tracker, memory, plots, int(plot)), True)
 
 
@@ -170,32 +187,24 @@ def _explained_by(tracker: Tracker, memory: TrackerMemory, plots: Plots, plot: i
 
 
 def _speed(
-    there: Place,
-    tracker: Tracker,
-    radar: int,
-    scans: Sequence[Seen],
-    located: Sequence[Plots],
-    here: BoolArray,
+    tracker: Tracker, radar: int, before: Turn, now: Turn, here: BoolArray
 ) -> Iterator[Reason]:
     """A lone plot here whose nearest lone plot of the scan before is too far away for its time."""
-    limit = tracker.radars[radar].max_target_speed_mps
-    noise = noise_of(tracker.radars[radar], scans[-1].scan)
-    before, now = (noise.with_glint(plots) for plots in located)
-    first = _free(scans[0], len(before.time)).nonzero()[0]
-    for plot in (here & _free(scans[-1], len(now.time))).nonzero()[0]:
-        step = now.time[plot] - before.time[first]
-        way = np.hypot(*(before.position[first] - now.position[plot]).T)
-        spread = np.sqrt(
-            0.5 * np.trace(before.covariance[first] + now.covariance[plot], axis1=1, axis2=2)
-        )
-        excess = (way - limit * step) / spread
-        if len(first) and (excess**2 > PAIRING_GATE)[excess > 0].all() and (excess > 0).all():
+    p = tracker.radars[radar]
+    limit, glint = p.max_target_speed_mps, 2 * p.glint_sigma_m**2
+    plots, old = now.plots, take(before.plots, before.free)
+    for plot in (here & now.free).nonzero()[0]:
+        step = plots.time[plot] - old.time
+        way = np.hypot(*(old.position - plots.position[plot]).T)
+        spread = old.covariance + plots.covariance[plot]
+        sigma = np.sqrt(0.5 * np.trace(spread, axis1=1, axis2=2) + glint)
+        if len(way) and (way - limit * step > np.sqrt(PAIRING_GATE) * sigma).all():
             near = int(np.argmin(way))
-            needs = way[near] / step[near] / KNOT
             yield Reason(
                 'speed',
                 f'the nearest free plot of the scan before lies {way[near]:.0f} m away: that is '
-                f'{needs:.0f} kn, {limit / KNOT:.0f} kn is the limit (max_target_speed_mps)',
+                f'{way[near] / step[near] / KNOT:.0f} kn, {limit / KNOT:.0f} kn is the limit '
+                '(max_target_speed_mps)',
                 True,
             )
 

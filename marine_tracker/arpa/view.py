@@ -18,6 +18,7 @@ from .arpa import Picture
 from .cpa import Approach
 from .motion import Motion
 from .stabilisation import NONE
+from .stationary import Stationary
 from .targets import label
 
 
@@ -50,6 +51,7 @@ class View(NamedTuple):
     age         [N]  s since the first plot
     account     state of the estimator for them, N rows; without words if it gives none
     hulls       their sizes, N rows; None with extent none
+    fixed       stationary objects, which are no targets
     """
 
     name: list[str]
@@ -71,6 +73,7 @@ class View(NamedTuple):
     age: Array
     account: Account
     hulls: HullView | None = None
+    fixed: Stationary | None = None
 
 
 def view(
@@ -103,6 +106,7 @@ def view(
         picture.time - tracks.first_time,
         estimator.account(tracks.state) if estimator.account else no_account(len(tracks.id)),
         None if shapes is None else _hulls(picture, take(shapes, picture.row)),
+        picture.fixed,
     )
 
 

@@ -6,6 +6,7 @@ recording_player. What was recorded is on disk within a second.
 Ends with Ctrl-C, or after --duration.
 """
 
+import json
 import os
 import signal
 import sys
@@ -34,7 +35,7 @@ def run(args: Namespace) -> int:
     from ..nodes.run import recorder
     from . import recording
 
-    given = [f'folder:={args.folder}', f'topics:="{args.topics}"']
+    given = [f'folder:={json.dumps(args.folder)}', f'topics:={json.dumps(args.topics)}']
     for text in args.set:
         name, equals, value = text.partition('=')
         if not equals:

@@ -61,9 +61,10 @@ def run(args: Namespace) -> int:
     for remark in source.told():
         print(remark, file=sys.stderr)
     left_out = f', {summary.left_out} pairs left out' if summary.left_out else ''
+    at_rest = f', {summary.stationary} stationary objects' if summary.stationary else ''
     print(
         f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '
-        f'{summary.cpu_ms:.2f} ms CPU a scan{left_out}',
+        f'{summary.moving} of them moving{at_rest}, {summary.cpu_ms:.2f} ms CPU a scan{left_out}',
         file=sys.stderr if args.out == '-' else sys.stdout,
     )
     if parameters.estimator in WANT_DOPPLER and not summary.doppler:

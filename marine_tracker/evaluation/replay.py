@@ -33,7 +33,8 @@ ALARM_COLUMNS = ('time_s', 'alarm', 'target', 'where', 'priority', 'state', 'tex
 
 class Summary(NamedTuple):
     """Number of scans; number of tracks ever confirmed; the service's mean CPU time a scan in ms;
-    whether any plots had radial speeds; pairs left out in crowds (tracking/pair_budget.py).
+    whether any plots had radial speeds; pairs left out in crowds (tracking/pair_budget.py); tracks
+    ever confirmed that surely moved; stationary objects ever shown (tracking/at_rest.py).
     """
 
     scans: int
@@ -41,6 +42,8 @@ class Summary(NamedTuple):
     cpu_ms: float
     doppler: bool
     left_out: int
+    moving: int
+    stationary: int
 
 
 def open_source(name: str, seed: int = 1, video: VideoOptions = DEFAULT_VIDEO) -> Source:
@@ -104,6 +107,8 @@ def write_tracks(
     One row a track; in `alarm_file` one row for each alert that changes.
     """
     confirmed: set[int] = set()
+    moved: set[int] = set()
+    stationary: set[int] = set()
     count, cpu, doppler, left_out = 0, 0.0, False, 0
     memory = service.start()
     track_file.write_header(file)
@@ -130,9 +135,13 @@ def write_tracks(
         if alarm_file:
             _write_alarms(alarm_file, service, output)
         confirmed.update(tracks.id[tracks.status == CONFIRMED].tolist())
+        moved.update(memory.tracker.ground.moving.tolist())
+        stationary.update(output.picture.fixed.shown.number.tolist())
         count += 1
         doppler |= scan.plots.radial_speed is not None
-    return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1), doppler, left_out)
+    cpu_ms = 1e3 * cpu / max(count, 1)
+    moving = len(confirmed & moved)
+    return Summary(count, len(confirmed), cpu_ms, doppler, left_out, moving, len(stationary))
 
 
 def target_columns(output: Output) -> TargetColumns:

@@ -9,6 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.lifecycle import LifecycleNodeMixin, LifecycleState, TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
@@ -23,7 +24,7 @@ from .diagnostics import FAILED, Tally, one_line
 State = tuple[bytes, str, Mapping[str, Any]]  # level, message and values on /diagnostics
 
 
-class RunnableNode(Node):
+class RunnableNode(LifecycleNodeMixin, Node):
     """A node as run.py expects it. Its constructor raises ValueError if it cannot start.
 
     An exception never leaves a callback of its subscriptions, timers, services and parameters,
@@ -31,11 +32,14 @@ class RunnableNode(Node):
     counted.
 
     failures  the counted exceptions, for /diagnostics
+    idle      managed, and not active: nothing is heard, nothing is done
     """
 
     def __init__(self, name: str, **node_arguments: Any) -> None:
         self.failures = Tally((), self.tell)
-        super().__init__(name, **node_arguments)
+        self.idle = self._begun = False
+        Node.__init__(self, name, **node_arguments)
+        self._begun = True  # what rclpy makes for itself never rests
 
     @property
     def done(self) -> bool:
@@ -44,6 +48,26 @@ class RunnableNode(Node):
 
     def close(self) -> None:
         """Sends the last messages. Called before the executor stops."""
+
+    # -- managed ---------------------------------------------------------------------------------
+
+    def manage(self) -> None:
+        """From now on a lifecycle node: it waits until somebody configures and activates it."""
+        self.idle = True
+        LifecycleNodeMixin.__init__(self)
+        # rclpy lets a transition that is not possible end the executor.
+        change = self._service_change_state
+        change.callback = self._guarded(change.callback, _not_done, busy=False)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """It works."""
+        self.idle = False
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """It waits, with all that it knows."""
+        self.idle = True
+        return super().on_deactivate(state)
 
     # -- callbacks, guarded ----------------------------------------------------------------------
 
@@ -76,18 +100,26 @@ class RunnableNode(Node):
 
     def add_on_set_parameters_callback(self, callback: Callable[..., SetParametersResult]) -> None:
         """As in rclpy. If the callback fails, the change is refused."""
-        super().add_on_set_parameters_callback(self._guarded(callback, _refused))
+        super().add_on_set_parameters_callback(self._guarded(callback, _refused, busy=False))
 
     def add_post_set_parameters_callback(self, callback: Callable[..., None]) -> None:
         """As in rclpy."""
-        super().add_post_set_parameters_callback(self._guarded(callback))
+        super().add_post_set_parameters_callback(self._guarded(callback, busy=False))
 
-    def _guarded(self, callback: Callable, otherwise: Callable = lambda error, *_: None):
-        """The callback; if it raises, otherwise(error, *its arguments) is returned."""
+    def _guarded(
+        self, callback: Callable, otherwise: Callable = lambda error, *_: None, busy: bool = True
+    ):
+        """The callback; if it raises, otherwise(error, *its arguments) is returned.
+
+        busy  whether it rests while the node is idle
+        """
         name = getattr(getattr(callback, 'func', callback), '__name__', 'a callback')
+        busy = busy and self._begun
 
         @functools.wraps(callback)
         def run_guarded(*arguments):
+            if self.idle and busy:
+                return otherwise(ValueError('the node is not active'), *arguments)
             try:
                 return callback(*arguments)
             except Exception as error:
@@ -195,6 +227,8 @@ def _refused(error: Exception, changed: list) -> SetParametersResult:
 
 def _not_done(error: Exception, request, response: Any) -> Any:
     """Every request gets a response. If the response has a field for a reason, it is filled."""
-    if hasattr(response, 'success') and hasattr(response, 'message'):
-        response.success, response.message = False, _why(error)
+    if hasattr(response, 'success'):
+        response.success = False
+    if hasattr(response, 'message'):
+        response.message = _why(error)
     return response

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
+from ..tracking.lifecycle import STATIONARY
 from .diagnostics import one_line
 
 LEVELS = {
@@ -62,10 +63,23 @@ def plain(values: np.ndarray, digits: int) -> list[float | None]:
 
 
 def targets(rows: np.ndarray) -> dict[str, list]:
-    """The columns of `targets_cloud` that the page shows."""
+    """The columns of `targets_cloud` that the page shows, without stationary objects."""
+    rows = rows[~_fixed(rows)]
     return {name: rows[name].tolist() for name in WHOLE} | {
         name: plain(rows[name], digits) for name, digits in COLUMNS.items()
     }
+
+
+def stationary(rows: np.ndarray) -> list[list[float | None]]:
+    """[number, x, y] of each stationary object in `targets_cloud`."""
+    fixed = rows[_fixed(rows)]
+    places = zip(plain(fixed['x'], 1), plain(fixed['y'], 1))
+    return [[number, x, y] for number, (x, y) in zip(fixed['number'].tolist(), places)]
+
+
+def _fixed(rows: np.ndarray) -> np.ndarray:
+    """Mask [T] of the rows that are no target, but a stationary object."""
+    return (rows['status'] == STATIONARY) & (rows['id'] == 0)
 
 
 def alarms(message: DiagnosticArray) -> list[dict[str, Any]]:

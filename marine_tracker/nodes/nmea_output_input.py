@@ -23,6 +23,7 @@ from ..arpa.nmea import (
     Targets,
     as_acquired,
 )
+from ..arpa.signalk import Alert
 from ..arpa.stabilisation import CURRENT, HAND, LOG, POSITIONS
 from ..arpa.targets import MANUAL as MANUALLY
 from ..arpa.targets import label
@@ -33,6 +34,7 @@ from ..tracking import lifecycle, own_ship
 from ..types import Array
 from . import targets_cloud
 from .convert import heading_of_odometry, nanoseconds, odometry_to_own_ship
+from .diagnostics import one_line
 from .faults import NO_STAMP, ConversionError, check_frame
 from .topics import FRAME
 
@@ -77,6 +79,22 @@ def read_targets(message: PointCloud2) -> Heard:
     )
     fixed = number[rows['reference'] > 0]
     return Heard(as_acquired(targets), bool(from_bow.any()), int(fixed[-1]) if len(fixed) else 0)
+
+
+def read_alerts(message: DiagnosticArray) -> list[Alert]:
+    """The alerts of a message on `alarms`."""
+    found = []
+    for entry in message.status:
+        values = {pair.key: pair.value for pair in entry.values}
+        found.append(
+            Alert(
+                one_line(entry.name),
+                one_line(entry.message),
+                values.get('priority', ''),
+                values.get('state', ''),
+            )
+        )
+    return found
 
 
 def own_ship_told(message: DiagnosticArray, own: OwnShipData) -> OwnShipData:

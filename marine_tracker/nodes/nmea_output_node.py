@@ -36,6 +36,7 @@ from .nmea_output_input import (
     OwnShipInput,
     named,
     own_ship_told,
+    read_alerts,
     read_origin,
     read_targets,
 )
@@ -103,6 +104,7 @@ class NmeaOutputNode(RunnableNode):
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort()),
             (DiagnosticArray, topics.OWN_SHIP_STATE, self._on_state, topics.best_effort(1)),
             (PointCloud2, topics.TARGETS_CLOUD, self._on_targets, topics.latched(10)),
+            (DiagnosticArray, topics.ALARMS, self._on_alarms, topics.latched(10)),
         ):
             self.create_subscription(kind, topic, callback, quality)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -187,6 +189,14 @@ class NmeaOutputNode(RunnableNode):
                     )
                 ],
             )
+
+    def _on_alarms(self, message: DiagnosticArray) -> None:
+        if not self._signalk.destinations:
+            return
+        alerts = read_alerts(message)
+        seconds = self._arrival()[1] * 1e-9
+        told = signalk.notifications(alerts, self.get_name(), seconds)
+        self._send_datagrams(self._signalk, [delta.encode() for delta in told])
 
     # -- out -----------------------------------------------------------------------------------
 

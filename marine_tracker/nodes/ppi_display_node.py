@@ -85,6 +85,8 @@ class PpiDisplayNode(RunnableNode):
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        if p.managed:
+            self.manage()
         # Printed, not logged: the log is kept on disk and published, and this holds the token.
         print(f'ppi_display: {self.server.url}', flush=True)
 
@@ -164,8 +166,10 @@ class PpiDisplayNode(RunnableNode):
                 'time': seconds,
                 'period': median(gaps) if gaps else None,
                 'columns': display_messages.targets(rows),
+                'fixed': display_messages.stationary(rows),
             },
         )
+        rows = rows[rows['id'] > 0]
         own = self._own.position
         position = np.stack([rows['x'], rows['y']], 1).astype(float)
         if own is not None and self._trails.add(seconds, own, rows['id'], position):

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sensor_msgs.msg import PointCloud2
 
@@ -14,6 +14,7 @@ from ..types import Array, Scan
 from . import convert
 from .diagnostics import OK, WARN, Tally
 from .faults import HEADER_REASONS, ConversionError, check_frame
+from .messages_of_others import scan_to_plots
 from .topics import FRAME, OWN_SHIP_FRAME
 
 NO_DOPPLER = 'scans without the radial speeds that the estimator wants'
@@ -60,19 +61,22 @@ class RadarInput(ScanInput):
 
     def read(
         self,
-        message: PointCloud2,
+        message: Any,
         came: Arrival,
         own_log: own_ship.OwnShipLog,
         others: Sequence[intake.TimeOrder],
         way: Array,
         heading: float,
     ) -> tuple[Scan, str, own_ship.OwnShipLog] | None:
-        """The scan of a message, as `scan_of` makes it; None where the message is rejected."""
+        """The scan of a PointCloud2 or RadarScan, as by `scan_of`; None where it is rejected."""
         self._heard = wall = time.monotonic()
         try:
             check_frame(message.header.frame_id, (FRAME, OWN_SHIP_FRAME, came.own_frame))
             start_ns = convert.nanoseconds(message.header.stamp)
-            plots = convert.cloud_to_plots(message)
+            if isinstance(message, PointCloud2):
+                plots = convert.cloud_to_plots(message)
+            else:
+                plots = scan_to_plots(message, self.radar.parameters.bearings)
         except ConversionError as error:
             self.bad.add(error.reason, wall, detail=str(error))
             return None

@@ -8,7 +8,9 @@ from sensor_msgs.msg import PointCloud2
 
 from ..arpa import alarms
 from ..arpa.alerts import ACTIVE_ACKNOWLEDGED, WAITING, Alerts
+from ..arpa.stationary import Stationary
 from ..arpa.view import View
+from ..tracking.lifecycle import STATIONARY
 from . import cloud_layout, convert
 from .faults import BAD_LAYOUT, MISSING_FIELD, MISTYPED_FIELD, TRUNCATED, ConversionError
 
@@ -80,7 +82,25 @@ def message(seen: View, alerts: Alerts, time_ns: int) -> PointCloud2:
     for states, value in (((ACTIVE_ACKNOWLEDGED,), ACKNOWLEDGED), (WAITING, UNACKNOWLEDGED)):
         of = alerts.id[(alerts.kind == alarms.DANGER) & np.isin(alerts.state, states)]
         rows['alarm'][np.isin(seen.id, of)] = value
+    if seen.fixed is not None:
+        rows = np.append(rows, _stationary(seen.fixed))
     return convert.cloud_message(rows, time_ns)
+
+
+def _stationary(fixed: Stationary) -> np.ndarray:
+    """Rows of objects that are stationary: status STATIONARY and no id; nan for what targets only
+    have."""
+    rows = np.zeros(len(fixed.shown.number), TARGET_TYPE)
+    for name in TARGET_TYPE.names or ():
+        if TARGET_TYPE[name].kind == 'f' and name not in ('z', 'vx', 'vy', 'speed'):
+            rows[name] = np.nan
+    rows['number'], rows['status'], rows['motion'] = fixed.shown.number, STATIONARY, AT_REST
+    rows['x'], rows['y'] = fixed.shown.position.T
+    rows['xx'] = rows['yy'] = fixed.shown.variance
+    rows['xy'] = 0.0
+    for name in ('range', 'bearing', 'cpa', 'tcpa', 'danger_probability'):
+        rows[name] = getattr(fixed.approach, name)
+    return rows
 
 
 def read(cloud: PointCloud2, kind: np.dtype = TARGET_TYPE) -> np.ndarray:

@@ -19,6 +19,7 @@ TRUTH = 'truth'
 TRACKS = 'tracks'
 EXTRAPOLATIONS = 'extrapolations'
 TRACKS_CLOUD = 'tracks_cloud'
+RADAR_TRACKS = 'radar_tracks'  # radar_msgs/RadarTracks
 TARGETS = 'targets'
 TARGETS_CLOUD = 'targets_cloud'
 MARKERS = 'markers'

@@ -29,7 +29,7 @@ from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
 from ..tracking.mounting import needs_heading
 from ..tracking.own_velocity import AUTO, POSITIONS
 from ..tracking.radars import radars_of
-from . import convert, diagnostics, topics
+from . import convert, diagnostics, messages_of_others, topics
 from .base_node import RunnableNode
 from .declare import declare, follow
 from .diagnostics import FAILED, OK, WARN, Durations, Tally
@@ -54,7 +54,7 @@ class TrackerNode(RunnableNode):
         self._own_log, self._own_frame = own_ship.empty_log(), topics.OWN_SHIP_FRAME
         self._fallback = own_ship.OWN_NEVER_HEARD
         self._samples = 0
-        self._status_count = np.zeros(4, int)
+        self._status_count = np.zeros(5, int)
         self._standing = Standing({}, 0, '', np.zeros(0, bool))
         self._left_out, self._left_out_lately = 0, 0  # pairs, in all scans and in the last
         self._processing, self._lateness = Durations(), Durations()
@@ -70,7 +70,12 @@ class TrackerNode(RunnableNode):
 
         self._operator = Operator(self, service, self._sensors, self.hardware_id)
         follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
-        self._output = TrackerOutput(self, self.hardware_id, output_parameters.tracks_paced)
+        self._output = TrackerOutput(self, self.hardware_id, output_parameters)
+        p = output_parameters
+        self._send_transform = messages_of_others.transforms(self) if p.broadcast_tf else None
+        plots_kind: Any = PointCloud2
+        if p.plots_type != 'PointCloud2':
+            (plots_kind,) = messages_of_others.kinds('plots_type', 'radar_msgs.msg', p.plots_type)
         self._to_diagnostics = self.publisher(
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
@@ -82,13 +87,15 @@ class TrackerNode(RunnableNode):
         self._listen(Odometry, topics.ODOMETRY, self._on_odometry, topics.best_available())
         for heard in self.inputs:
             self._listen(
-                PointCloud2,
+                plots_kind,
                 heard.radar.topic,
                 partial(self._on_plots, heard),
                 topics.best_available(topics.SECTORS),
             )
         # The wall's second, whatever the node's clock does.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        if output_parameters.managed:
+            self.manage()
         self.get_logger().info(
             f'estimator {parameters.estimator}, waiting for '
             + ', '.join(heard.radar.topic for heard in self.inputs)
@@ -132,6 +139,8 @@ class TrackerNode(RunnableNode):
         if placed and bare(message.child_frame_id) not in ('', topics.FRAME):
             self._own_frame = bare(message.child_frame_id)
         self._sensors.hear_own_ship(placed, heading)
+        if placed and self._send_transform is not None:
+            self._send_transform(message)
 
     def _arrival(self) -> Arrival:
         """How a message comes that comes now: in simulated time where there is one."""
@@ -163,7 +172,7 @@ class TrackerNode(RunnableNode):
             status = self._own_ship_status(time.monotonic())
             self._to_state.publish(diagnostics.array(end_ns, [status]))
             self._output.publish_targets(service, output, stamps)
-            self._status_count = np.bincount(output.report.tracks.status, minlength=4)
+            self._status_count = np.bincount(output.report.tracks.status, minlength=5)
             self._standing = output.standing
             self._left_out_lately = output.report.left_out
             self._left_out += output.report.left_out

@@ -16,10 +16,11 @@ from visualization_msgs.msg import MarkerArray
 
 from ..arpa.view import view
 from ..geometry import wrap_bearing
+from ..parameters import TrackerOutputParameters
 from ..service import Output, Service, Tracking
 from ..tracking.lifecycle import LOST
 from ..types import Extrapolation, take
-from . import convert, danger_areas_cloud, targets_cloud, topics
+from . import convert, danger_areas_cloud, messages_of_others, targets_cloud, topics
 from .base_node import RunnableNode
 from .convert import OdometryPool
 from .markers import MarkersWriter
@@ -30,7 +31,7 @@ from .targets_message import TargetsWriter
 class TrackerOutput:
     """The publishers of one tracker node."""
 
-    def __init__(self, node: RunnableNode, hardware_id: str, paced: bool) -> None:
+    def __init__(self, node: RunnableNode, hardware_id: str, p: TrackerOutputParameters) -> None:
         burst = topics.reliable(topics.BURST)
         self._to_tracks = node.publisher(Odometry, topics.TRACKS, burst)
         self._to_extrapolations = node.publisher(Odometry, topics.EXTRAPOLATIONS, burst)
@@ -42,7 +43,15 @@ class TrackerOutput:
         self._to_markers = node.publisher(MarkerArray, topics.MARKERS, topics.reliable(1))
         self._to_areas = node.publisher(PointCloud2, topics.DANGER_AREAS, topics.latched())
         self._pool = OdometryPool()
-        self._paced = Paced(node, self._to_tracks) if paced else None
+        self._paced = Paced(node, self._to_tracks) if p.tracks_paced else None
+        self._name, self._kinds = node.label, []
+        if p.radar_tracks:
+            self._kinds = messages_of_others.kinds(
+                'radar_tracks', 'radar_msgs.msg', 'RadarTracks', 'RadarTrack'
+            )
+            self._to_radar_tracks = node.publisher(
+                self._kinds[0], topics.RADAR_TRACKS, topics.reliable()
+            )
         self._targets = TargetsWriter(hardware_id)
         self._markers = MarkersWriter()
 
@@ -56,6 +65,11 @@ class TrackerOutput:
         """
         if self._to_cloud.get_subscription_count():  # one message, so first
             self._to_cloud.publish(_cloud(done, int(stamps(done.scan.start))))
+        if self._kinds:
+            end_ns = int(stamps(done.scan.end))
+            self._to_radar_tracks.publish(
+                messages_of_others.radar_tracks(self._kinds, done, self._name, end_ns)
+            )
         self._publish_tracks(service, done, period, stamps)
 
     def publish_targets(

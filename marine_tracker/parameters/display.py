@@ -51,5 +51,10 @@ class PpiDisplayParameters:
         high=600.0,
     )
 
+    managed: bool = parameter(
+        False,
+        'Whether the node is a lifecycle node: it waits to be configured and activated by ROS.',
+    )
+
     def __post_init__(self) -> None:
         check(self)

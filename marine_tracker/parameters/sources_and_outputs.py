@@ -110,6 +110,25 @@ class TrackerOutputParameters:
         'Whether the messages of `tracks` are spread over the revolution. Else those of a scan '
         'come at once, and a listener needs a depth of as many as there are tracks.',
     )
+    managed: bool = parameter(
+        False,
+        'Whether the node is a lifecycle node: it waits to be configured and activated by ROS.',
+    )
+    plots_type: str = parameter(
+        'PointCloud2',
+        'Type of the topics of plots; RadarScan is that of radar_msgs, which must be installed.',
+        choices=('PointCloud2', 'RadarScan'),
+    )
+    radar_tracks: bool = parameter(
+        False,
+        'Whether the tracks are also published on `radar_tracks`, as radar_msgs/RadarTracks, which '
+        'must be installed.',
+    )
+    broadcast_tf: bool = parameter(
+        False,
+        "Whether own ship's odometry is also sent as the transform `map` -> `base_link`; tf2_ros "
+        'must be installed.',
+    )
 
     def __post_init__(self) -> None:
         check(self)

@@ -6,8 +6,8 @@ from ..parameters import TrackerParameters
 from ..types import HISTORY, Array, BoolArray, CodeArray, IntArray, Tracks
 from .look import Look
 
-TENTATIVE, CONFIRMED, COASTING, LOST = range(4)
-STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost')
+TENTATIVE, CONFIRMED, COASTING, LOST, STATIONARY = range(5)
+STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost', 'stationary')
 MISSED, OUT_OF_RANGE, MERGED = range(1, 4)
 REASONS = ('', 'missed', 'out of range', 'merged')
 TEN = 10  # scans in which the standards count a target's plots

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import BoolArray, Plots, Scan, Tracks, append, take
+from ..types import BoolArray, Scan, Tracks, append, take
 from .lifecycle import LOST
 from .sectors import HAIR, joined, rest_of, together, turned_since
 from .sweep import TURN
@@ -76,7 +76,8 @@ def report_of(turn: Turn, tracks: Tracks) -> tuple[Report, Turn]:
         if (twice & ~gone).any():
             later.append(_rows(report, twice & ~gone)._replace(begun=take(report.begun, slice(0))))
         known = np.append(known, ids)
-    now.append(_idle(take(tracks, ~np.isin(tracks.id, known)), scan, turn.reports[-1].begun))
+    last = turn.reports[-1]._replace(scan=scan)
+    now.append(_idle(take(tracks, ~np.isin(tracks.id, known)), last))
     return _joined(now, scan), turn.next(*later)
 
 
@@ -91,19 +92,18 @@ def _rows(report: Report, chosen: BoolArray) -> Report:
     )
 
 
-def _idle(tracks: Tracks, scan: Scan, begun: Plots) -> Report:
-    """Of tracks that were not looked at."""
+def _idle(tracks: Tracks, last: Report) -> Report:
+    """Of tracks that were not looked at; the rest as in the last report."""
     count = len(tracks.id)
-    nothing = np.full(count, -1)
-    return Report(
-        tracks.last_time,
-        tracks,
-        np.full((count, 2), np.nan),
-        nothing,
-        np.zeros(count, np.int8),
-        take(begun, slice(0)),
-        0,
-        scan._replace(plots=take(scan.plots, slice(0))),
+    return last._replace(
+        time=tracks.last_time,
+        tracks=tracks,
+        predicted=np.full((count, 2), np.nan),
+        plot=np.full(count, -1),
+        reason=np.zeros(count, np.int8),
+        begun=take(last.begun, slice(0)),
+        left_out=0,
+        scan=last.scan._replace(plots=take(last.scan.plots, slice(0))),
     )
 
 
@@ -128,4 +128,5 @@ def _joined(reports: Sequence[Report], scan: Scan) -> Report:
         begun,
         sum(one.left_out for one in reports),
         scan._replace(plots=plots),
+        reports[-1].places,
     )

@@ -1,98 +1,40 @@
 """One scan in, tracks out: all steps of the tracker on one page."""
 
 from dataclasses import replace
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..estimators import ESTIMATORS, Estimator, Velocity
 from ..geometry import to_range_bearing
 from ..parameters import TrackerParameters
-from ..types import (
-    Array,
-    BoolArray,
-    CodeArray,
-    Extrapolation,
-    IntArray,
-    Plots,
-    Scan,
-    Tracks,
-    append,
-    take,
+from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
+from . import (
+    at_rest,
+    clutter_map,
+    doppler,
+    land_mask,
+    late_plots,
+    lifecycle,
+    parts,
+    places,
+    score,
+    sectors,
 )
-from . import clutter_map, doppler, late_plots, lifecycle, score, sectors
 from .associate import associate, gain
 from .expected import expect
-from .gate import gate, gate_size, split, windows
+from .gate import gate, gate_size, split
 from .initiate import pair_up, unexplained
-from .lifecycle import LOST, TENTATIVE
+from .land_mask import on_land
+from .lifecycle import LOST, STATIONARY, TENTATIVE
 from .look import look
+from .memory import Left, OfRadar, changed
+from .memory import Report as Report
+from .memory import TrackerMemory as TrackerMemory
 from .merge import duplicates
 from .noise import noise_of
 from .radars import HELD_REVOLUTIONS, held_updates, radars_of
 from .silence import unmistakable
-from .sweep import Sweep, sweep_of
-
-
-class OfRadar(NamedTuple):
-    """The memory of one radar.
-
-    leftover  plots of its last scan that belong to no track: one may be a new target's first plot
-    clutter   the density of its false plots
-    waiting   what its sectors left undecided; None: whole revolutions
-    """
-
-    leftover: Plots
-    clutter: clutter_map.ClutterMap
-    waiting: sectors.Waiting | None = None
-
-
-class TrackerMemory(NamedTuple):
-    """The memory of the tracker between two scans.
-
-    tracks       N tracks, without lost ones
-    radars       memory of each radar
-    origin       [2] m, own ship's last known position
-    next_id      the next track's id
-    next_number  the next confirmed track's target number
-    """
-
-    tracks: Tracks
-    radars: tuple[OfRadar, ...]
-    origin: Array
-    next_id: int
-    next_number: int
-
-
-class Report(NamedTuple):
-    """The results of one scan; one row a track that was swept, including lost ones and new ones.
-
-    time       [N]     s, when the beam passed the track (the time of its plot if it had one); or
-    the
-                       time of its last plot, if another radar's was later
-    tracks     N rows, after the scan
-    predicted  [N, 2]  m, where the track was expected at `time`; nan for a new track
-    plot       [N]     row of the scan's plots that the track took, -1 for none
-    reason     [N]     why a LOST track was lost: index into lifecycle.REASONS, 0 = not lost
-    begun      [B]     the first plots, of the last scan, of the new tracks: the last B
-    scan       whose plots `plot` refers to: of a sector those that were decided in it
-    """
-
-    time: Array
-    tracks: Tracks
-    predicted: Array
-    plot: IntArray
-    reason: CodeArray
-    begun: Plots
-    left_out: int
-    scan: Scan
-
-
-class Left(NamedTuple):
-    """What a scan left: mask [M] of the plots that are lone; and what the map of clutter learns."""
-
-    free: BoolArray
-    found: sectors.Found
+from .sweep import sweep_of
 
 
 class Tracker:
@@ -123,6 +65,7 @@ class Tracker:
         self.updates = held_updates(radars)
         self.gate_size = gate_size(parameters.gate_probability)
         self.doppler = [doppler.limits(p) for p in self.radars]
+        self.land = land_mask.read(parameters.land_mask, parameters.land_mask_origin)
 
     def start(self) -> TrackerMemory:
         """No tracks yet."""
@@ -130,7 +73,12 @@ class Tracker:
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
         of_radar = OfRadar(plots, clutter_map.empty())
         return TrackerMemory(
-            self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1
+            self._begin(plots, 1, 0),
+            (of_radar,) * len(self.radars),
+            np.zeros(2),
+            1,
+            1,
+            at_rest.begin(),
         )
 
     def extrapolate(self, tracks: Tracks, time: float | Array) -> Extrapolation:
@@ -142,64 +90,24 @@ class Tracker:
     def step(self, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemory, Report]:
         """One antenna revolution, or a part of one (see sectors.py)."""
         if scan.sector is not None:
-            return self._part(memory, scan)
-        memory, report, left = self._judge(memory, scan)
-        clutter = clutter_map.learn(memory.radars[scan.radar].clutter, *left.found)
-        return _with(memory, scan.radar, clutter=clutter), report
+            return parts.step(self, memory, scan)
+        memory, report, left = self.judge(memory, scan)
+        return self.learnt(memory, scan.radar, left.found), report
 
-    def _part(self, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemory, Report]:
-        """A sector: judges the tracks whose windows are swept, with plots that may be theirs."""
-        of_radar, tracks, sweep = memory.radars[scan.radar], memory.tracks, sweep_of(scan)
-        waiting, lone = of_radar.waiting or sectors.begin(scan), of_radar.leftover
-        pool = sectors.pooled(waiting, scan, sweep.period)
-        looked = sectors.last_looks(waiting, tracks.id, tracks.last_time)
-        seen = self._windows(memory, pool, sweep, looked)
-        decided = sectors.decide(waiting, seen, scan, pool.plots, sweep, len(lone.time))
-        now = pool._replace(plots=take(pool.plots, decided.plots))
-        part = memory._replace(tracks=take(tracks, decided.tracks))
-        part = _with(part, scan.radar, leftover=take(lone, decided.lone))
-        after, report, left = self._judge(part, now, int((~decided.tracks).sum()))
+    def learnt(self, memory: TrackerMemory, radar: int, found: sectors.Found) -> TrackerMemory:
+        """The memory after a whole revolution: false plots, and places where plots always are."""
+        p, (*for_clutter, position, variance, time) = self.radars[radar], found
+        clutter = clutter_map.learn(memory.radars[radar].clutter, *for_clutter)
+        known, number = at_rest.name(memory.ground.places, memory.next_number)
+        distance = np.hypot(*(known.position - memory.origin).T)
+        visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
+        if p.stationary_places:
+            known = places.learn(known, position, variance, time, visible)
+        ground = memory.ground._replace(places=known, revolutions=memory.ground.revolutions + 1)
+        memory = memory._replace(next_number=number, ground=ground)
+        return changed(memory, radar, clutter=clutter)
 
-        # what is not decided waits: tracks, lone plots, plots that may be another track's
-        again = decided.contested[decided.plots]
-        again[report.plot[report.plot >= 0]] = False
-        plots = sectors.together(take(pool.plots, ~decided.plots), take(now.plots, again))
-        every = append(take(tracks, ~decided.tracks), after.tracks)
-        every = take(every, every.id.argsort())
-        gone = sectors.unseen(waiting, seen, scan)[: len(looked)]
-        looked = np.where(decided.tracks | gone, seen.middle[: len(looked)], looked)
-        waiting = sectors.remember(waiting, pool, plots, tracks.id, looked, every, left.found)
-        free = take(after.radars[scan.radar].leftover, ~again[left.free])
-        memory = _with(
-            after._replace(tracks=every),
-            scan.radar,
-            leftover=sectors.together(take(lone, ~decided.lone), free),
-            waiting=waiting,
-        )
-        if not sectors.complete(waiting):
-            return memory, report
-        clutter = clutter_map.learn(of_radar.clutter, *sectors.found(waiting))
-        waiting = sectors.next_revolution(waiting)
-        return _with(memory, scan.radar, clutter=clutter, waiting=waiting), report
-
-    def _windows(
-        self, memory: TrackerMemory, pool: Scan, sweep: Sweep, looked: Array
-    ) -> sectors.Windows:
-        """Where and when the beam passes the tracks, judged at `looked` [N] s, and lone plots."""
-        p, tracks, count = self.radars[pool.radar], memory.tracks, len(memory.tracks.id)
-        noise = noise_of(p, pool)
-        measured = noise.locate(pool)
-        lone = noise.with_glint(memory.radars[pool.radar].leftover)
-        before = np.append(tracks.bearing, lone.bearing)
-        passed = sectors.passage(sweep, before, np.append(looked, lone.time))
-        beam = passed[:count]
-        ahead = self.estimator.extrapolate(late_plots.as_of(tracks, beam), beam)
-        expected = noise.with_glint(expect(ahead, lone, pool, p.max_target_speed_mps))
-        pairs, _ = gate(expected, measured, sweep, noise, self.gate_size)
-        _, _, _, bearing, half = windows(expected, measured, sweep, noise, self.gate_size**0.5)
-        return sectors.windows(pairs, measured.time, sweep, passed, before, bearing, half)
-
-    def _judge(
+    def judge(
         self, memory: TrackerMemory, scan: Scan, others: int = 0
     ) -> tuple[TrackerMemory, Report, Left]:
         """The tracks of the memory with the plots of the scan; `others` tracks are not judged."""
@@ -228,6 +136,8 @@ class Tracker:
 
         # initiate: from plots of this scan and the last one that belong to no track
         free = unexplained(plots, pairs, plot_of, tracks)
+        afloat = ~on_land(self.land, plots.position)
+        free &= afloat
         room = max(0, p.max_tracks - count - others)
         first, second = pair_up(lone, plots, starts.track, starts.plot, free, speed, room)
         free[second] = False
@@ -246,12 +156,24 @@ class Tracker:
         elsewhere = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
         tracks, reason = lifecycle.step(tracks, seen, gained, elsewhere, p, self.farthest, scan.end)
         tracks, reason = lifecycle.merge(tracks, reason, duplicates(pairs, plot_of, ahead, tracks))
+        hit, was = seen.hit, np.zeros(len(plot_of), bool)
+        was[:count] = memory.tracks.status == STATIONARY
+        still = at_rest.standing(
+            hit, chosen, ahead, noise.with_glint(expected).covariance[:count], seen.time
+        )
+        ground, tracks, learnable = at_rest.step(memory.ground, tracks, was, still)
         tracks, next_number = lifecycle.number(tracks, memory.next_number)
 
         # remember
         begun = take(of_radar.leftover, first)
         nowhere = np.delete(np.arange(len(lone.time)), first)
-        found = lone.range[nowhere], lone.bearing[nowhere]
+        fixed = afloat.copy()
+        fixed[plot_of[hit & ~learnable]] = False
+        rest = take(plots, fixed)
+        found = (
+            *(lone.range[nowhere], lone.bearing[nowhere]),
+            *(rest.position, at_rest.larger(rest.covariance), rest.time),
+        )
         alive = tracks.status != LOST
         memory = TrackerMemory(
             tracks if alive.all() else take(tracks, alive),
@@ -259,9 +181,11 @@ class Tracker:
             scan.own_ship.position[-1],
             memory.next_id + len(first),
             next_number,
+            ground,
         )
-        report = Report(seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan)
-        memory = _with(memory, scan.radar, leftover=take(measured, free))
+        told = seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan
+        report = Report(*told, at_rest.shown(ground))
+        memory = changed(memory, scan.radar, leftover=take(measured, free))
         return memory, report, Left(free, found)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
@@ -311,10 +235,3 @@ class Tracker:
             radar=(np.full(count, radar, np.int8) if len(self.radars) > 1 else None),
             past=late_plots.nothing_yet(state, plots, self.updates),
         )
-
-
-def _with(memory: TrackerMemory, radar: int, **changes: Any) -> TrackerMemory:
-    """The memory with changes in that of one radar."""
-    radars = list(memory.radars)
-    radars[radar] = radars[radar]._replace(**changes)
-    return memory._replace(radars=tuple(radars))

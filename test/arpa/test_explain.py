@@ -1,6 +1,9 @@
 """Why there is no target at a place: the true reason comes first, in scenes made to have one."""
 
+import json
+
 import numpy as np
+import pytest
 
 from marine_tracker.arpa import acquisition
 from marine_tracker.arpa.explain import explain
@@ -8,7 +11,7 @@ from marine_tracker.arpa.explain_plots import seen as seen_of
 from marine_tracker.geometry import to_range_bearing
 from marine_tracker.parameters import ArpaParameters, TrackerParameters
 from marine_tracker.service import Service
-from marine_tracker.types import OwnShip, PolarPlots, Scan
+from marine_tracker.types import OwnShip, PolarPlots, Scan, Sector, take
 
 PERIOD = 2.2
 TRACKER = {'range_sigma_m': 8.0, 'bearing_sigma_deg': 0.35, 'min_range_m': 150.0}
@@ -27,6 +30,20 @@ def scan_of(number, places, radar=0, own=(0.0, 0.0)):
     return Scan(start, start + PERIOD, plots, still, radar)
 
 
+def parted(scan, count):
+    """The same revolution as so many sectors."""
+    width, length = 2 * np.pi / count, (scan.end - scan.start) / count
+    for k in range(count):
+        here = (scan.plots.bearing // width).astype(int) == k
+        start = scan.start + k * length
+        yield scan._replace(
+            start=start,
+            end=start + length,
+            plots=take(scan.plots, here),
+            sector=Sector(k * width, width),
+        )
+
+
 class Sea:
     """A service that takes scans one after the other, and is asked."""
 
@@ -36,15 +53,18 @@ class Sea:
         )
         self.memory, self.seen, self.count = self.service.start(), [], 0
 
-    def sail(self, *scans, radar=0):
+    def sail(self, *scans, radar=0, sectors=0):
+        """Revolutions of plots at these places, each as so many sectors; 0: as a whole."""
         for places in scans:
             scan = scan_of(self.count, places, radar)
             self.count += 1
-            self.memory, out = self.service.step(self.memory, scan, 0.0)
-            self.seen.append(seen_of(out.scan, out.report, out.estimate, out.picture))
+            for part in parted(scan, sectors) if sectors else [scan]:
+                self.memory, _, out = self.service.take(self.memory, part, 0.0)
+                if out:
+                    self.seen.append(seen_of(out.report, out.estimate, out.picture))
         return self
 
-    def ask(self, *position):
+    def ask(self, *position, silent=0.0):
         extents = self.service.extents
         return explain(
             np.array(position, float),
@@ -54,6 +74,7 @@ class Sea:
             self.memory.arpa,
             self.memory.extents.land if extents.on else None,
             self.seen,
+            silent,
         )
 
     def why(self, *position):
@@ -185,3 +206,51 @@ def test_land_is_told_where_extents_map_it():
 def test_deciding_reasons_come_first():
     decides = [reason.decides for reason in Sea().sail(*[[[3100, 900]]] * 3).ask(60, -70)]
     assert decides == sorted(decides, reverse=True) and decides[0]
+
+
+@pytest.mark.parametrize('sectors', [1, 8, 30])
+def test_a_radar_that_sends_sectors_gives_the_same_reasons(sectors):
+    ship = [[2000.0 + 6 * k, 1500.0 - 4 * k] for k in range(11)]
+    scans = [[place] for place in ship[:10]] + [[ship[10], [-1300, -2100]]]
+    whole = Sea().sail(*scans)
+    parts = Sea().sail(*scans, [[9000, 9000]], sectors=sectors)  # it tells of the last one later
+    assert 'TT01' in parts.why(*ship[10])['target']
+    for place in ((-900, 2500), ship[10]):
+        told = {reason.about for reason in whole.ask(*place)} - {'gate'}
+        assert told <= {reason.about for reason in parts.ask(*place)}
+    seen = next(reason.text for reason in parts.ask(*ship[8]) if reason.about == 'plots')
+    assert 'of the last 10 scans' in seen
+
+
+def test_land_by_a_file_is_told(tmp_path):
+    square = [[1000, 1000], [1900, 1000], [1900, 1800], [1000, 1800], [1000, 1000]]
+    file = tmp_path / 'land.geojson'
+    file.write_text(json.dumps({'type': 'Polygon', 'coordinates': [square]}))
+    sea = Sea(land_mask=str(file)).sail(*moving([1200, 1300], [5, 4], 8))
+    assert 'land_mask' in sea.why(1230, 1324)['land']
+    assert 'land' not in sea.why(950, 1324)
+
+
+def test_a_place_where_plots_always_are_is_told():
+    quay = [[1500 + 60.0 * k, 1800 + 11.0 * (k % 2)] for k in range(6)]
+    rng = np.random.default_rng(3)
+    sea = Sea().sail(*[(np.array(quay) + rng.normal(0, 4, (6, 2))).tolist() for _ in range(90)])
+    assert 'shown as a place' in sea.why(*quay[2]).get('place', ''), sea.why(*quay[2])
+
+
+def test_a_silent_radar_is_told_with_how_long():
+    sea = Sea().sail(*moving([2200, -900], [5, 5], 9))
+    first = sea.ask(2240, -860, silent=11.6)[0]
+    assert (first.about, first.decides) == ('scans', True) and '12 s' in first.text
+
+
+def test_of_several_radars_none_of_which_sees_anything_that_is_the_reason():
+    radars = '[{topic: a/radar/plots}, {topic: b/radar/plots}]'
+    sea = Sea(radars=radars)
+    for _ in range(4):
+        sea.sail([[3000, 100]], radar=0).sail([[-700, 2000]], radar=1)
+    told = [reason for reason in sea.ask(-2000, -2000) if reason.about == 'plots']
+    assert [reason.decides for reason in told] == [True, True]
+    told = [reason for reason in sea.ask(3000, 100) if reason.about == 'plots']
+    assert not any(reason.decides for reason in told)
+    assert ['of b' in reason.text for reason in told] == [False, True]

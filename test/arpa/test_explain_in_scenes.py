@@ -27,7 +27,7 @@ def coast():
     memory, seen = service.start(), []
     for scan, truth in itertools.islice(radar.simulate(chosen, seed=4), 45):  # noqa: B007
         memory, out = service.step(memory, scan)
-        seen.append(seen_of(out.scan, out.report, out.estimate, out.picture))
+        seen.append(seen_of(out.report, out.estimate, out.picture))
 
     def why(position):
         found = explain(

@@ -1,6 +1,7 @@
 """Alerts, their history and a trial manoeuvre beside the picture, in a real browser."""
 
 import asyncio
+import math
 import time
 
 import pytest
@@ -99,6 +100,12 @@ def test_a_trial_shows_its_letter_its_countdown_and_every_target_while_real_data
         assert not any(await scene.drawn('danger', *letter))
         scene.server.publish('trial', {'at': time.monotonic(), **trial})
         await scene.shows('danger', *letter, reach=4)
+        # Own ship goes on, 2 m/s east and 1 m/s north, for 1.6 minutes; then on the new course.
+        begin, turned = (2 * 96, 96), math.radians(285)
+        for way in (150, 400, 700):
+            there = begin[0] + way * math.sin(turned), begin[1] + way * math.cos(turned)
+            assert any(await scene.drawn('safe', scene.place(*there), reach=4))
+        assert not any(await scene.drawn('safe', scene.place(-580, 155), reach=4))
         await scene.page.until("!document.getElementById('trial-targets').hidden")
         rows = await scene.page.evaluate(
             "[...document.querySelectorAll('#trial-targets tbody tr')].map(row =>"
@@ -124,7 +131,7 @@ def test_a_trial_shows_its_letter_its_countdown_and_every_target_while_real_data
         assert (await given(scene, 1)).name == 'trial_off'
         scene.server.publish('trial', {'on': False})
         await scene.hides('danger', *letter)
-        assert await scene.page.evaluate("document.getElementById('trial-targets').hidden")
+        await scene.page.until("document.getElementById('trial-targets').hidden")
 
     on_scene(act, 'north-up', own={'wx': 2.0, 'wy': 1.0})
     assert OWN['wx'] == 0.0

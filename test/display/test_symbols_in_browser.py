@@ -145,6 +145,7 @@ def test_own_ships_vector_has_heads_by_its_stabilisation(orientation, stabilised
         await scene.shows('own', *around(scene.middle, 8, 130, 200, 240))
         words = await scene.page.evaluate("document.getElementById('modes').textContent")
         assert ('over ground' in words) == (heads == 2) and ('the water' in words) == (heads == 1)
+        assert ', by positions' in words  # what tells it
 
     on_scene(act, orientation, own={'wx': -2.2, 'wy': 1.1, 'stabilised': stabilised})
 
@@ -183,6 +184,13 @@ def test_targets_vectors_and_past_positions_lie_along_their_way(orientation):
             },
         )
         await scene.shows('trail', scene.place(420, 480), scene.place(460, 590))
+        await scene.page.evaluate('ppi.app.zoom(1)')  # there at once on another range, too
+        await scene.page.until("document.getElementById('scale').textContent.startsWith('1.5 NM')")
+        scene.scale /= 2
+        await scene.shows('trail', scene.place(420, 480), scene.place(460, 590))
+        await scene.page.evaluate('ppi.app.zoom(-1)')
+        await scene.page.until("document.getElementById('scale').textContent.startsWith('0.75')")
+        scene.scale *= 2
         east, north = PLACES[TRACKED]
         end = scene.place(east - 1.4 * 360, north + 0.3 * 360)
         middle = scene.place(east - 0.7 * 360, north + 0.15 * 360)
@@ -259,3 +267,22 @@ def test_a_simulation_has_its_letter_and_a_radar_has_none():
         await scene.hides('label', *there)
 
     on_scene(act, 'north-up', ship={'source': 'simulation'})
+
+
+@ORIENTATIONS
+def test_the_bearing_scale_has_numbers_and_marks_of_three_lengths(orientation):
+    async def act(scene):
+        def outside(bearing, away):
+            turned = math.degrees(math.radians(bearing) - scene.up)
+            return around(scene.middle, scene.radius + away, turned)[0]
+
+        await scene.shows('scale', *(outside(b, 8) for b in (10, 70, 160, 250, 340)), off=90)
+        await scene.shows('scale', *(outside(b, 4) for b in (15, 75, 165, 255, 345)), off=90)
+        await scene.hides('scale', *(outside(b, 9) for b in (15, 75, 165, 255, 345)))
+        if scene.radius >= 250:
+            await scene.shows('scale', *(outside(b, 2) for b in (12, 73, 168)), off=110)
+        for bearing in range(0, 360, 30):
+            assert any(await scene.drawn('scale', outside(bearing, 20), reach=8)), bearing
+        assert not any(await scene.drawn('scale', outside(20, 22), outside(100, 22), reach=3))
+
+    on_scene(act, orientation, query='&palette=dusk')

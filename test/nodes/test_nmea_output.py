@@ -12,7 +12,7 @@ import pytest
 from pyproj import Geod
 
 pytest.importorskip('rclpy')
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import NavSatFix, PointCloud2
 from std_msgs.msg import String
@@ -393,6 +393,30 @@ def test_signalk_deltas_go_out_as_datagrams(rig, ears):
     here.scan(entry('TT02'), seconds=2.0)
     gone = [delta for delta in map(json.loads, ear.hear(2)) if delta['context'] == first['context']]
     assert all(one['value'] is None for one in gone[0]['updates'][0]['values'] if one['path'])
+
+
+def test_alarms_go_to_signalk_as_notifications_of_own_ship(rig, ears):
+    ear = ears()
+    here = rig(signalk_udp=f'{LOOPBACK}:{ear.port}')
+    alarms = here.other.create_publisher(DiagnosticArray, topics.ALARMS, topics.latched())
+    here.wait(alarms.get_subscription_count)
+    values = {'priority': 'alarm', 'state': 'active acknowledged'}
+    alarms.publish(
+        DiagnosticArray(
+            status=[
+                DiagnosticStatus(
+                    name='TT12: danger',
+                    message='TT12 dangerous: CPA 0.21 NM',
+                    values=[KeyValue(key=key, value=value) for key, value in values.items()],
+                )
+            ]
+        )
+    )
+    (delta,) = map(json.loads, ear.hear(1))
+    (entry,) = delta['updates'][0]['values']
+    assert entry['path'] == 'notifications.radar.nmea_output.TT12_danger'
+    assert entry['value']['message'] == 'TT12 dangerous: CPA 0.21 NM'
+    assert entry['value']['method'] == ['visual']
 
 
 def p(**parameters):

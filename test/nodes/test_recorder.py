@@ -5,6 +5,7 @@ import os
 import random
 import signal
 import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -334,14 +335,18 @@ def test_a_split_on_a_slow_disk_delays_nothing(graph, sender, node_helpers, tmp_
     assert len(files.paths) > 1 and np.diff(times).max() < 0.5 + passed / 400
 
 
-def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(launch, tmp_path, capsys):
+def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(
+    launch, graph, node_helpers, tmp_path, capsys
+):
+    wait, listener = node_helpers
     folder = tmp_path / 'live'
+    seen = listener(graph.bystander('audience'), PointCloud2, topics.TRACKS_CLOUD)
     sim = {'use_sim_time': 'true'}
     tracker = launch('nodes.run tracker', *p(**sim, estimator='imm', cpa_limit_nm=0.7))
     recorder = launch(RECORDER, *p(**sim, folder=folder))
     assert tracker.says('waiting for') and recorder.says('records into')
     simulator = launch('nodes.run radar_simulator', *p(scenario='busy_strait', rate=20.0))
-    time.sleep(9)
+    wait(lambda: len(seen) >= 60)
     simulator.stop()
     time.sleep(0.5)
     recorder.stop()
@@ -355,7 +360,9 @@ def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(launch, tmp_pa
     inside = contents(folder)
     assert inside.parameters['estimator'] == 'imm' and inside.parameters['cpa_limit_nm'] == 0.7
     compared = 0
-    for k, event in enumerate(inside.events('tracks_cloud')):
+    starts = [str(event.message.header.stamp) for event in inside.events('radar/plots')]
+    for event in inside.events('tracks_cloud'):
+        k = starts.index(str(event.message.header.stamp))
         cloud = np.frombuffer(event.message.data, TRACK_TYPE)
         mine = rows.scan == k
         assert sorted(rows.track[mine].astype(int)) == sorted(cloud['id'].tolist())
@@ -454,3 +461,17 @@ def test_an_hour_of_a_busy_strait_is_read_back_by_rosbags_and_mcap_ros2_support(
                 assert decoded is not None
     assert sorted(other) == sorted(mine)
     print(json.dumps({name: files.topics[name].messages for name in files.topics}))
+
+
+def test_the_command_records_for_a_while_and_shows_what_there_is(domain, tmp_path):
+    words = ['record', str(tmp_path / '2026'), '--duration', '4', '--set', 'keep_free_mb=1']
+    done = subprocess.run(
+        [sys.executable, '-m', 'marine_tracker', *words],
+        capture_output=True,
+        text=True,
+        timeout=100,
+        cwd=Path(__file__).parents[2],
+    )
+    assert done.returncode == 0, done.stderr
+    assert '/diagnostics' in done.stdout and 'diagnostic_msgs/msg/DiagnosticArray' in done.stdout
+    assert not McapFiles(tmp_path / '2026').remarks

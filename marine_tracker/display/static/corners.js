@@ -24,7 +24,8 @@ export function showCorners(state, settings, scope, marks, pointer, more) {
   say(
     element('modes'),
     `vectors ${settings.vectors}, ${settings.vectorMinutes} min\ntrails ${settings.trails}${trails}\n` +
-      `${STABILISED[state.own?.stabilised ?? 'none']}${more}`,
+      stabilised(state.own) +
+      more,
   );
   const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
   const lines = place && state.own ? cursorLines(place, state.own) : [];
@@ -43,4 +44,11 @@ export function cursorLines(/** @type {number[]} */ [x, y], own) {
     `cursor ${bearingText(bearing, own)} ${format.miles(range)} NM`,
     found ? format.place(...found) : 'no position',
   ];
+}
+
+/** What courses and speeds are measured against, and by what that is known. */
+function stabilised(/** @type {Record<string, any>|null} */ own) {
+  if (!own) return STABILISED.none;
+  const by = own.stabilised === 'none' ? `: ${own.by}` : `, by ${own.by}`;
+  return STABILISED[own.stabilised] + (own.by ? by : '');
 }

@@ -7,6 +7,7 @@ import { Layer, Stamps } from './layers.js';
 import { farthestSeen } from './scope.js';
 import { RANGES } from './settings.js';
 import { drawOwnShip } from './own_ship.js';
+import { drawStationary } from './stationary.js';
 import { drawMarks, drawScale, drawSimulation, drawTrial } from './surround.js';
 import { LOST, serverNow } from './state.js';
 import { paintSpokes, spokesKey } from './spokes.js';
@@ -75,6 +76,7 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
         );
       }
       drawAreas(canvas, state, settings, scope, colors, local);
+      drawStationary(canvas, state.fixed, scope.view, colors.trail);
       drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
       drawTargets(canvas, state, settings, scope, colors, marks.id, local, names);
     }

@@ -21,6 +21,7 @@ export const UNACKNOWLEDGED = 2;
  * @typedef {object} State
  * @property {Message|null} own
  * @property {Target[]} targets
+ * @property {[number, number, number][]} fixed  stationary objects: number, x, y
  * @property {Message|null} scan     the message that the targets came with, without its columns
  * @property {Message[]} plots       of the last scans, newest last
  * @property {any} spokes           radar video of the last turn (spokes.js)
@@ -46,6 +47,7 @@ export function emptyState() {
   return {
     own: null,
     targets: [],
+    fixed: [],
     scan: null,
     plots: [],
     spokes: null,
@@ -82,6 +84,7 @@ export function receive(state, message, local) {
   switch (message.kind.replace(/\d+$/, '')) {
     case 'targets':
       state.targets = rows(message.columns);
+      state.fixed = message.fixed ?? [];
       state.scan = {
         at: message.at,
         time: message.time,

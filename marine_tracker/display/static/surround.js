@@ -1,7 +1,7 @@
 // What is drawn around and over the picture: bearing scale, cursor, markers, a trial's courses.
 
 import { drawRing } from './dangers.js';
-import { edge, radians, toScreen } from './geometry.js';
+import { edge, radians, toScreen, turned } from './geometry.js';
 
 /**
  * What the viewer has marked.
@@ -89,14 +89,19 @@ export function drawTrial(canvas, state, scope, colors) {
   canvas.textAlign = 'center';
   canvas.textBaseline = 'middle';
   canvas.fillText('T', middleX, middleY + radius - 34);
-  if (state.trial.course_deg !== null && state.own) {
-    canvas.strokeStyle = colors.safe;
-    canvas.lineWidth = 2;
-    canvas.setLineDash([2, 6]);
-    canvas.beginPath();
-    canvas.moveTo(view.centreX, view.centreY);
-    canvas.lineTo(...edge(view, radians(state.trial.course_deg), middleX, middleY, radius));
-    canvas.stroke();
-    canvas.setLineDash([]);
-  }
+  const { own, trial } = state;
+  if (typeof trial.course_deg !== 'number' || !own) return;
+  // On as before until the delay is over, then on the new course.
+  const wait = 60 * (trial.countdown_min ?? 0);
+  const [x, y] = turned(view, wait * (own.wx ?? 0), wait * (own.wy ?? 0));
+  const begin = { ...view, centreX: view.centreX + x, centreY: view.centreY + y };
+  canvas.strokeStyle = colors.safe;
+  canvas.lineWidth = 2;
+  canvas.setLineDash([2, 6]);
+  canvas.beginPath();
+  canvas.moveTo(view.centreX, view.centreY);
+  canvas.lineTo(begin.centreX, begin.centreY);
+  canvas.lineTo(...edge(begin, radians(trial.course_deg), middleX, middleY, radius));
+  canvas.stroke();
+  canvas.setLineDash([]);
 }

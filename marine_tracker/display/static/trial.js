@@ -68,7 +68,7 @@ function words(state, local) {
   const left = countdown(state, local);
   const dangers = trial.targets.filter((target) => target.danger).length;
   return (
-    `TRIAL ${format.number(trial.course_deg, 0)}°, ${format.number(trial.speed_kn, 1)} kn, ` +
+    `TRIAL ${format.number(trial.course_deg, 0).padStart(3, '0')}°, ${format.number(trial.speed_kn, 1)} kn, ` +
     `${left > 0 ? `begins in ${clock(left)}` : 'has begun'}. ` +
     `Safe courses: ${safe.join(', ') || 'none'}. ` +
     `${dangers ? `Dangerous: ${dangers}.` : 'No target is dangerous.'}`

@@ -12,11 +12,9 @@ from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import PointCloud2
 
 from marine_tracker.arpa.danger_areas import dangers
-from marine_tracker.geometry import NAUTICAL_MILE, unit_vector
+from marine_tracker.geometry import KNOT, NAUTICAL_MILE, unit_vector
 from marine_tracker.nodes import targets_cloud, topics
 from marine_tracker.nodes.danger_areas_cloud import AREA_TYPE
-
-from .test_ppi_display import display, look  # noqa: F401  (a fixture)
 
 SHIPS = [(3.4, 15, 195, 11), (2.6, 70, 285, 9)]
 
@@ -59,7 +57,7 @@ def test_without_own_ships_way_there_are_none_and_no_ring(bridge, sea):
     raise AssertionError(f'{ears[-1].width} points')
 
 
-def test_viewers_get_them_on_demand_and_silence_what_sounds(bridge, sea, display):  # noqa: F811
+def test_viewers_get_them_on_demand_and_silence_what_sounds(bridge, sea, display, look):
     here = bridge(sea, cpa_limit_nm=1.5, tcpa_limit_min=50.0)
     node = display(here, own_length_m=96.0, own_beam_m=14.0)
     here.sail(8)
@@ -90,6 +88,8 @@ def test_viewers_get_them_on_demand_and_silence_what_sounds(bridge, sea, display
         said = await viewer.command('silence')
         assert 'silenced for 30 s' in said['text']
         await viewer.until(lambda me: 'active silenced' in str(me.newest['alarms']['alarms']))
+        await asyncio.to_thread(here.sail, 1)  # silenced is not acknowledged
+        await viewer.until(lambda me: 2 in me.newest['targets']['columns']['alarm'])
         one = next(a for a in viewer.newest['alarms']['alarms'] if a['kind'] == 'danger')
         assert one['category'] == 'A' and one['instance'] and one['sounds'] == 1
         assert (await viewer.command('acknowledge_alert', instance=one['instance']))['ok']
@@ -109,3 +109,19 @@ def test_viewers_get_them_on_demand_and_silence_what_sounds(bridge, sea, display
 
     look(node, act)
     assert len(past)
+
+
+def test_own_ships_way_for_the_page_is_that_of_the_targets_courses(bridge, sea, display, look):
+    here = bridge(sea, current_set_deg=90.0, current_drift_kn=2.5)
+    node = display(here)
+
+    async def act(viewer):
+        await asyncio.to_thread(here.sail, 6)
+        await viewer.until(lambda me: me.newest.get('own', {}).get('stabilised') == 'sea')
+        return viewer.newest['own']
+
+    own = look(node, act)
+    assert own['by'] == 'current by hand' and own['reference'] == 0
+    drift = np.array([2.5 * KNOT, 0.0])
+    way, ground = np.array([own['wx'], own['wy']]), np.array([own['vx'], own['vy']])
+    assert way == pytest.approx(ground - drift, abs=0.03)

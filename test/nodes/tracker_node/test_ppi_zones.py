@@ -82,7 +82,7 @@ def test_why_there_is_no_target_is_answered_in_words(bridge, sea, display, look)
         assert said['ok'] and 'by hand only' in said['text'] and 'TT' in said['text'], said
         near = (own + [30, 40]).tolist()
         said = await viewer.command('explain', x=near[0], y=near[1])
-        assert said['text'].splitlines()[0].startswith('50 m from the antenna'), said
+        assert any(line.startswith('50 m from') for line in said['text'].splitlines()), said
 
     look(node, act)
     assert not here.tracker.failures.counts
@@ -118,11 +118,16 @@ def test_a_zone_that_is_drawn_is_the_parameter_of_the_tracker(bridge, sea, displ
                 'import("./zones.js").then(z => { const h = z.handles(ppi.marks.draft.zone,'
                 'ppi.state.own)[%d]; return ppi.toScreen(ppi.scopeNow().view, h.x, h.y) })'
             )
+            under_way.clear()  # while it is dragged own ship lies still
+            own = None
+            while own != (own := await page.evaluate('ppi.state.own')):
+                await asyncio.sleep(1.0)
             x, y = await page.evaluate(handle % 2)
             await drag(page, [box[0] + x, box[1] + y], [box[0] + x + 60, box[1] + y - 45])
             corner = await page.evaluate(f'ppi.toMap(ppi.scopeNow().view, {x} + 60, {y} - 45)')
             drawn = await page.evaluate('ppi.marks.draft.zone')
-            assert drawn['corners'][2] == pytest.approx(corner, abs=12)
+            assert drawn['corners'][2] == pytest.approx(corner, abs=12)  # half a pixel
+            under_way.set()
             await page.evaluate(
                 "document.querySelector('#zone [name=name]').value = 'fairway';"
                 "document.querySelector('#zone [name=kind]').value = 'exclusion';"
@@ -149,8 +154,12 @@ def test_a_zone_that_is_drawn_is_the_parameter_of_the_tracker(bridge, sea, displ
             assert await page.evaluate('ppi.marks.draft !== null')
             assert page.errors == []
 
+    under_way = asyncio.Event()
+    under_way.set()
+
     async def keep_alive():
         while True:
+            await under_way.wait()
             await asyncio.to_thread(here.sail, 1)
             await asyncio.sleep(0.5)
 
@@ -231,9 +240,9 @@ def test_the_command_asks_a_tracker_that_runs(bridge, sea, launch):
     while polar.process.poll() is None:
         here.send_own_ship_of([here.last])
     assert polar.ends() == 0, polar.said
-    assert polar.said.startswith('* 74 m from the antenna'), polar.said
+    assert '* 74 m from the antenna' in polar.said, polar.said
     bow = launch('__main__', 'explain', '--range', '0.05', '--bearing', '300', '--bow')
-    assert bow.ends() == 0 and bow.said.startswith('* 93 m from the antenna'), bow.said
+    assert bow.ends() == 0 and '* 93 m from the antenna' in bow.said, bow.said
 
 
 def test_without_a_tracker_the_command_says_so_in_one_line(graph, launch):
