@@ -41,17 +41,20 @@ def explain(
     known: ArpaMemory,
     land: LandMap | None,
     recent: Sequence[Seen],
+    silent: float = 0.0,
 ) -> list[Reason]:
     """The reasons why there is no target at a position [2] m in `map`, the deciding ones first.
 
     land    where land lies, with extents; else None
     recent  the last scans, the newest last; of each radar the last SCANS are used
+    silent  s that no scan has come for, once the next of every radar is overdue
     """
     if not recent:
         return [Reason('scans', 'no scan has come yet: nothing is known', True)]
     newest = newest_of(recent)
     there = Place(position, reach_of(position, tracker, newest))
     reasons = [
+        *_silence(silent),
         *_ranges(there, tracker, arpa, newest),
         *_zones(there, arpa, newest[-1].own),
         *_land(there, land, tracker),
@@ -62,6 +65,11 @@ def explain(
         *_capacity(tracker, arpa, memory, known),
     ]
     return sorted(reasons, key=lambda reason: not reason.decides)
+
+
+def _silence(silent: float) -> Iterator[Reason]:
+    if silent:
+        yield Reason('scans', f'no scan has come for {silent:.0f} s: this is as it was then', True)
 
 
 # -- where the radar sees ------------------------------------------------------------------------

@@ -122,16 +122,18 @@ def plots_seen(
     there: Place, tracker: Tracker, arpa: Arpa, memory: TrackerMemory, recent: Sequence[Seen]
 ) -> Iterator[Reason]:
     """What each radar saw there in its last scans, and what became of the newest plots."""
-    for radar in range(len(arpa.radars)):
-        turns, name = turns_of(recent, tracker, radar), of_radar(arpa, radar)
+    of_each = [turns_of(recent, tracker, radar) for radar in range(len(arpa.radars))]
+    nearby = [[_near(turn.plots, there) for turn in turns] for turns in of_each]
+    unseen = not any(near.any() for here in nearby for near in here)
+    for radar, (turns, here) in enumerate(zip(of_each, nearby, strict=True)):
+        name = of_radar(arpa, radar)
         if not turns:
             yield Reason('plots', f'no scan{name} has come yet')
             continue
-        here = [_near(turn.plots, there) for turn in turns]
         count = sum(bool(near.any()) for near in here)
         if not count:
             text = f'no plot{name} within {there.reach:.0f} m in the last {len(turns)} scans'
-            yield Reason('plots', text, len(arpa.radars) == 1)
+            yield Reason('plots', text, unseen)
             continue
         back = next(k for k in range(len(here)) if here[-1 - k].any())
         when = 'the last one too' if not back else f'not in the last {back}'

@@ -64,6 +64,13 @@ async def _try(page: Any, children: Children) -> None:
     await page.evaluate("document.getElementById('trial-box').scrollIntoView()")
 
 
+async def _draw_zone(page: Any, children: Children) -> None:
+    """A guard zone by own ship's bow, not saved yet: its handles show."""
+    await page.evaluate("document.getElementById('zones-box').open = true")
+    await page.evaluate("document.querySelector('[data-zone=sector]').click()")
+    await page.evaluate("document.getElementById('zones-box').scrollIntoView()")
+
+
 async def _end_trial(page: Any, children: Children) -> None:
     await page.evaluate("document.getElementById('trial-off').click()")
     await page.until('!ppi.state.trial.on')
@@ -81,39 +88,41 @@ SCENES: dict[str, tuple[float, list[Shot]]] = {
     'encounters': (
         6.0,
         [
-            Shot('danger_day', 'range=3', SETTLED, _choose_danger),
-            Shot('danger_dusk', 'range=3&palette=dusk', SETTLED, _choose_danger),
+            Shot('ppi_day', 'range=3', SETTLED, _choose_danger),
+            Shot('ppi_dusk', 'range=3&palette=dusk', SETTLED, _choose_danger),
+            Shot('ppi_night', 'range=3&palette=night&orientation=head-up', SETTLED, _choose_danger),
             Shot(
-                'danger_night_head_up',
-                'range=3&palette=night&orientation=head-up',
-                SETTLED,
-                _choose_danger,
-            ),
-            Shot('trial', 'range=6&orientation=head-up', SETTLED, _try),
-            Shot('viewer_that_commands', 'range=6', SETTLED, _end_trial, size=(1024, 700)),
-            Shot('viewer_that_looks', 'range=12', SETTLED, looks=True, size=(480, 900)),
-            Shot(
-                'danger_areas',
+                'ppi_danger_areas',
                 'range=6&areas=on&safeCourses=on&offCentre=ahead',
                 f'{SETTLED} && ppi.state.areas?.areas.length > 2',
             ),
-            Shot('no_data', 'range=3', SETTLED, _silence),
+            Shot('ppi_zones', 'range=6', SETTLED, _draw_zone),
+            Shot('ppi_trial', 'range=6&orientation=head-up', SETTLED, _try),
+            Shot('ppi_viewer_commands', 'range=6', SETTLED, _end_trial, size=(1024, 700)),
+            Shot('ppi_viewer_looks', 'range=12', SETTLED, looks=True, size=(480, 900)),
+            Shot('ppi_no_data', 'range=3', SETTLED, _silence),
         ],
     ),
     'busy_strait': (
         10.0,
         [
             Shot(
-                'busy_strait',
-                'range=12&orientation=head-up&trailMinutes=6',
+                'ppi_head_up',
+                'range=12&palette=dusk&orientation=head-up&trailMinutes=6',
                 'ppi.state.targets.length > 35 && ppi.state.trails?.count > 24',
             )
         ],
     ),
-    'coast': (5.0, [Shot('coast', 'range=6', 'ppi.state.plots.length > 10')]),
+    'coast': (5.0, [Shot('ppi_coast', 'range=6', 'ppi.state.plots.length > 10')]),
     'hulls': (
         4.0,
-        [Shot('hulls', 'range=1.5', 'ppi.state.targets.filter(t => t.length !== null).length > 3')],
+        [
+            Shot(
+                'ppi_hulls',
+                'range=1.5',
+                'ppi.state.targets.filter(t => t.length !== null).length > 3',
+            )
+        ],
     ),
 }
 

@@ -8,6 +8,7 @@ WARN), then what is known beside (OK).
 import time
 from collections import deque
 from collections.abc import Callable
+from itertools import chain
 
 import numpy as np
 from builtin_interfaces.msg import Time
@@ -32,24 +33,25 @@ class Explanations:
     """The tracker's side: keeps the last scans, and answers.
 
     point   the position [2] m of a question in `map`, or ValueError
-    now     the service and its memory, as they are
+    now     the service and its memory, as they are; and s without scans, see explain
     """
 
     def __init__(
         self,
         node: RunnableNode,
-        now: Callable[[], tuple[Service, ServiceMemory]],
+        now: Callable[[], tuple[Service, ServiceMemory, float]],
         point: Callable[[PointStamped], Array],
         hardware_id: str,
     ) -> None:
         self._now, self._point, self._hardware_id = now, point, hardware_id
-        self._recent: deque[Seen] = deque(maxlen=SCANS * len(now()[0].arpa.radars))
+        self._recent: list[deque[Seen]] = [deque(maxlen=SCANS) for _ in now()[0].arpa.radars]
         self._to_answers = node.publisher(DiagnosticArray, topics.EXPLANATION, topics.reliable())
         node.subscription(PointStamped, topics.EXPLAIN, self._on_question, topics.reliable())
 
     def take(self, output: Output) -> None:
         """A scan was taken: only looked at when somebody asks."""
-        self._recent.append(seen(output.report, output.estimate, output.picture))
+        kept = seen(output.report, output.estimate, output.picture)
+        self._recent[kept.scan.radar].append(kept)
 
     def _on_question(self, message: PointStamped) -> None:
         try:
@@ -70,7 +72,7 @@ class Explanations:
     def _answer(self, position: Array) -> list[Reason]:
         if not np.isfinite(position).all():
             raise ValueError(f'the place asked about is {position}; it must be two finite numbers')
-        service, memory = self._now()
+        service, memory, silent = self._now()
         land = memory.extents.land if service.extents.on else None
         return explain(
             position,
@@ -79,7 +81,8 @@ class Explanations:
             memory.tracker,
             memory.arpa,
             land,
-            tuple(self._recent),
+            sorted(chain.from_iterable(self._recent), key=lambda one: one.scan.end),
+            silent,
         )
 
 

@@ -86,7 +86,7 @@ class Operator:
             node.create_service(Trigger, own + topics.ACKNOWLEDGE, self._on_acknowledge)
             node.create_service(Trigger, own + topics.SILENCE, self._on_silence)
         self._explanations = Explanations(
-            node, lambda: (self.service, self.memory), self._point, hardware_id
+            node, lambda: (self.service, self.memory, self._since_end()), self._point, hardware_id
         )
         node.create_service(SetBool, topics.TRIAL_MANOEUVRE, self._on_trial)
 

@@ -12,13 +12,25 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, Tracks, append, row_of, take
+from ..types import (
+    Array,
+    BoolArray,
+    Extrapolation,
+    IntArray,
+    Plots,
+    Tracks,
+    append,
+    row_of,
+    take,
+    where,
+)
+from . import steady
 from .lifecycle import COASTING, CONFIRMED, LOST, STATIONARY
 from .places import AT_REST, GATE, UNNAMED, WANDER, Places, empty, nearest
 
-AWAY = 4  # plots in a row off every place, or at speed, that show that a track moves
+AWAY = 12  # of a track that surely moves: a plot counts
+OFF, ALONG = 3, 1  # if it lies off every place, or on a line with those before it
 LEARNT = 40  # revolutions after which the map holds most places
-FAST = 16.0  # squared deviations of a velocity from rest
 
 
 class Anchors(NamedTuple):
@@ -27,10 +39,11 @@ class Anchors(NamedTuple):
     id        [A]
     position  [A, 2]  m, of the first plot
     variance  [A]     m^2, of it, the larger axis
-    away      [A]     plots in a row far from it that were off every place, or at speed
+    away      [A]     sum over plots in a row far from it: OFF or ALONG
     moved     [A]     it has moved for sure
     number    [A]     of the target, 0 for none
     target    [A]     it is a target, and no place
+    line      through its last plots, A rows
     """
 
     id: IntArray
@@ -40,23 +53,22 @@ class Anchors(NamedTuple):
     moved: BoolArray
     number: IntArray
     target: BoolArray
+    line: steady.Line
 
 
 class Standing(NamedTuple):
-    """What is known of the N tracks of a scan, each with its last plot or where it was expected.
+    """What is known of the N tracks of a scan, each with its plot or where it was expected.
 
     position  [N, 2]  m
     variance  [N]     m^2, the larger axis
     hit       [N]     it had a plot
-    fast      [N]     its velocity is surely not 0
-    slow      [N]     its velocity is below that of a place
+    time      [N]     s
     """
 
     position: Array
     variance: Array
     hit: BoolArray
-    fast: BoolArray
-    slow: BoolArray
+    time: Array
 
 
 class Ground(NamedTuple):
@@ -77,10 +89,9 @@ class Ground(NamedTuple):
 
 def begin() -> Ground:
     """Nothing is known."""
-    ids = np.zeros(0, np.int64)
-    return Ground(
-        empty(), Anchors(ids, np.zeros((0, 2)), np.zeros(0), ids, ids > 0, ids, ids > 0), 0
-    )
+    ids, none, at = np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 2))
+    no, line = ids > 0, steady.begin(at, none)
+    return Ground(empty(), Anchors(ids, at, none, ids, no, ids, no, line), 0)
 
 
 def step(
@@ -98,14 +109,15 @@ def step(
     learnt = ground.revolutions >= LEARNT
     anchors = moving(follow(ground.anchors, tracks, seen), at, seen, learnt)
     others = take(ground.anchors, ~np.isin(ground.anchors.id, tracks.id))
-    at = np.where(seen.fast & ~was, -1, at)  # what surely moves does not become a place
+    along = steady.under_way(anchors.line, seen.variance + WANDER**2)
+    at = np.where(along & ~was, -1, at)  # what surely moves does not become a place
     tracks, places = settle(tracks, was, anchors, at, ground.places, others.number)
     target = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
     anchors = anchors._replace(number=tracks.number, target=target)
     every = append(others, take(anchors, tracks.status != LOST))
     every = take(every, every.id.argsort(kind='stable'))
     ground = ground._replace(places=places, anchors=every)
-    return ground, tracks, ~anchors.moved | seen.slow
+    return ground, tracks, ~anchors.moved | (steady.speed(anchors.line) < AT_REST)
 
 
 def follow(before: Anchors, tracks: Tracks, seen: Standing) -> Anchors:
@@ -113,10 +125,13 @@ def follow(before: Anchors, tracks: Tracks, seen: Standing) -> Anchors:
     row = row_of(before.id, tracks.id)
     new = row < 0
     old = take(before, np.maximum(row, 0)) if len(before.id) else None
+    line = steady.begin(seen.position, seen.time)
     if old is None:
         none = np.zeros(len(new), np.int64)
         still = np.zeros(len(new), bool)
-        return Anchors(tracks.id, seen.position, seen.variance, none, still, tracks.number, still)
+        return Anchors(
+            tracks.id, seen.position, seen.variance, none, still, tracks.number, still, line
+        )
     return Anchors(
         tracks.id,
         np.where(new[:, None], seen.position, old.position),
@@ -125,6 +140,7 @@ def follow(before: Anchors, tracks: Tracks, seen: Standing) -> Anchors:
         ~new & old.moved,
         tracks.number,
         ~new & old.target,
+        where(new, line, steady.follow(old.line, seen.hit, seen.position, seen.time)),
     )
 
 
@@ -132,12 +148,13 @@ def moving(anchors: Anchors, at: IntArray, seen: Standing, learnt: bool) -> Anch
     """The anchors after a scan in which the tracks were at the places `at` [N], -1 for none.
 
     Before the map is learnt, a track that goes from plot to plot along a quay is off every place,
-    too; then only speed tells that a track moves.
+    too; then only a line through its plots tells that a track moves.
     """
     apart = ((seen.position - anchors.position) ** 2).sum(1)
     clear = apart > GATE * (seen.variance + anchors.variance + 2 * WANDER**2)
-    off = clear & (seen.fast | ((at < 0) & learnt))
-    away = np.where(seen.hit, np.where(off, anchors.away + 1, 0), anchors.away)
+    under_way = steady.under_way(anchors.line, seen.variance + WANDER**2)
+    step = np.where((at < 0) & learnt, OFF, np.where(under_way, ALONG, 0)) * clear
+    away = np.where(seen.hit, np.where(step > 0, anchors.away + step, 0), anchors.away)
     return anchors._replace(away=away, moved=anchors.moved | (away >= AWAY))
 
 
@@ -222,10 +239,12 @@ def at_places(places: Places, seen: Standing) -> IntArray:
     return np.where(found >= 0, np.append(rows, -1)[found], -1)
 
 
-def standing(hit: BoolArray, chosen: Plots, ahead: Extrapolation, expected: Array) -> Standing:
+def standing(
+    hit: BoolArray, chosen: Plots, ahead: Extrapolation, expected: Array, time: Array
+) -> Standing:
     """What is known of the N tracks of a scan.
 
-    hit       [N] they had a plot; chosen: those plots, in the order of the tracks
+    hit       [N] they had a plot; chosen: those plots, in the order of the tracks; time [N] s
     ahead     the tracks before the scan, with covariances `expected` [N0, 2, 2] m^2; those that are
               missing are new, and had a plot
     """
@@ -233,9 +252,7 @@ def standing(hit: BoolArray, chosen: Plots, ahead: Extrapolation, expected: Arra
     position, variance = np.zeros((count, 2)), np.zeros(count)
     position[:before], variance[:before] = ahead.position, larger(expected)
     position[hit], variance[hit] = chosen.position, larger(chosen.covariance)
-    fast, slow = np.zeros(count, bool), np.ones(count, bool)
-    fast[:before], slow[:before] = _surely(ahead.velocity, ahead.covariance[:, 2:, 2:])
-    return Standing(position, variance, hit, fast, slow)
+    return Standing(position, variance, hit, time)
 
 
 def larger(covariance: Array) -> Array:
@@ -243,13 +260,3 @@ def larger(covariance: Array) -> Array:
     a, b, d = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     found: Array = 0.5 * (a + d) + np.hypot(0.5 * (a - d), b)
     return found
-
-
-def _surely(velocity: Array, covariance: Array) -> tuple[BoolArray, BoolArray]:
-    """Masks [N]: velocities [N, 2] m/s that are surely not 0, and those below that of a place."""
-    a, b, d = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
-    east, north = velocity.T
-    determinant = np.maximum(a * d - b * b, 1e-12)
-    nis = (d * east**2 - 2 * b * east * north + a * north**2) / determinant
-    speed = np.hypot(east, north)
-    return (nis > FAST) & (speed > AT_REST), speed < AT_REST

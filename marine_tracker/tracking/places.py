@@ -21,7 +21,7 @@ WANDER = 4.0  # m, each axis: a thing on the ground echoes here and there
 MEMORY = 60  # revolutions
 LEAST_LOOKS, LEAST_PLOTS = 15, 8
 BECOMES, ENDS = 0.3, 0.1  # share of revolutions with a plot
-AT_REST = 1.0  # m/s; a place surely moves less
+AT_REST = 0.8  # m/s; a place surely moves less
 TRIAL = 6  # revolutions without a plot after which a place that is not established is forgotten
 MOST = 20_000  # rows
 UNNAMED = -1
@@ -167,9 +167,9 @@ def _crowded(position: Array, established: BoolArray) -> BoolArray:
 
 
 def _at_rest(places: Places) -> BoolArray:
-    """Mask [P] of those that surely move less than AT_REST: two deviations of the line's slope."""
+    """Mask [P] of those that surely move less than AT_REST: by three deviations of the slope."""
     spread = np.maximum(places.spread, 1e-9)
     speed = np.hypot(*places.slope.T) / spread
     sigma = np.sqrt((places.variance + WANDER**2) / spread)
-    found: BoolArray = speed + 2 * sigma < AT_REST
+    found: BoolArray = speed + 3 * sigma < AT_REST
     return found

@@ -158,7 +158,9 @@ class Tracker:
         tracks, reason = lifecycle.merge(tracks, reason, duplicates(pairs, plot_of, ahead, tracks))
         hit, was = seen.hit, np.zeros(len(plot_of), bool)
         was[:count] = memory.tracks.status == STATIONARY
-        still = at_rest.standing(hit, chosen, ahead, noise.with_glint(expected).covariance[:count])
+        still = at_rest.standing(
+            hit, chosen, ahead, noise.with_glint(expected).covariance[:count], seen.time
+        )
         ground, tracks, learnable = at_rest.step(memory.ground, tracks, was, still)
         tracks, next_number = lifecycle.number(tracks, memory.next_number)
 

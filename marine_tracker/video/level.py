@@ -101,7 +101,10 @@ def levels(
     in_box = [_columns(_rows(a, reach), -reach, reach) for a in (left, every)]
     few = in_box[0] < 0.25 * in_box[1]
     level = np.where(few, np.maximum(level, first), level)
-    spread = 1.48 * np.median(np.abs(residual), axis=0) / noise
+    # From the lower half alone: echoes lie in the upper one.
+    count = len(residual)
+    ranked = np.partition(residual, (count // 4, count // 2), axis=0)
+    spread = 1.48 * (ranked[count // 2] - ranked[count // 4]) / noise
     return location(level / step) * np.float32(step), occupied, spread
 
 

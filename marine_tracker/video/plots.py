@@ -17,7 +17,7 @@ ROUND = 1.4  # times that: still a point
 SKIRTS = 2.0  # beams that the flanks of a strong echo may add to its width
 STANDS_OUT = 3.5  # nepers, 15 dB: what is so far above most of the land it hangs on is no land
 LOBES = math.radians(8.0)  # side lobes show so far beside a strong echo ...
-LOBE_DOWN = 7.4  # nepers, 32 dB: ... and are at least so much weaker
+LOBE_DOWN = 0.35  # of full scale, some 28 dB: ... and are at least so much weaker
 LEAST_CELLS = 3  # of an echo, where beam and pulse spread it over more
 DECIBEL = 10 / math.log(10)  # of a neper
 
@@ -61,7 +61,7 @@ def measured(
     spread = lobe.shape[0] >= detection.LEAST_SPOKES
     enough = (cells >= LEAST_CELLS) & (spokes >= 2) if spread else cells >= 1
     keep = ~land & enough
-    lobes = keep & _side_lobe(held, found.peak, top, limits)
+    lobes = keep & _side_lobe(held, found.peak, full)
     keep &= ~lobes
     left_out = {
         reason: int(mask.sum()) for reason, mask in ((LAND, land), (LOBE, lobes)) if mask.any()
@@ -119,7 +119,7 @@ def _on_land(held: Stack, found: pieces.Pieces, height: Array, longest: float) -
     return long_[origin] & (top < usual[origin] + STANDS_OUT)
 
 
-def _side_lobe(held: Stack, peak: IntArray, top: Array, limits: tail.Thresholds) -> BoolArray:
+def _side_lobe(held: Stack, peak: IntArray, full: int) -> BoolArray:
     """[K] pieces at the range of a far stronger echo not far away in bearing."""
     half = max(round(LOBES / held.spacing), 1)
     rows = peak[:, :1] + np.arange(-half, half + 1)
@@ -131,7 +131,7 @@ def _side_lobe(held: Stack, peak: IntArray, top: Array, limits: tail.Thresholds)
         strength = np.where(inside, held.strength[rows, sample[:, None]], 0)
         strongest = np.maximum(strongest, strength.max(1))
     value = held.strength[peak[:, 0], peak[:, 1]]
-    return (strongest - value) / limits.slope[peak[:, 1]] > LOBE_DOWN
+    return strongest - value > LOBE_DOWN * full
 
 
 def _spokes(row: IntArray, piece: IntArray, count: int) -> IntArray:

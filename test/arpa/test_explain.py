@@ -64,7 +64,7 @@ class Sea:
                     self.seen.append(seen_of(out.report, out.estimate, out.picture))
         return self
 
-    def ask(self, *position):
+    def ask(self, *position, silent=0.0):
         extents = self.service.extents
         return explain(
             np.array(position, float),
@@ -74,6 +74,7 @@ class Sea:
             self.memory.arpa,
             self.memory.extents.land if extents.on else None,
             self.seen,
+            silent,
         )
 
     def why(self, *position):
@@ -235,3 +236,21 @@ def test_a_place_where_plots_always_are_is_told():
     rng = np.random.default_rng(3)
     sea = Sea().sail(*[(np.array(quay) + rng.normal(0, 4, (6, 2))).tolist() for _ in range(90)])
     assert 'shown as a place' in sea.why(*quay[2]).get('place', ''), sea.why(*quay[2])
+
+
+def test_a_silent_radar_is_told_with_how_long():
+    sea = Sea().sail(*moving([2200, -900], [5, 5], 9))
+    first = sea.ask(2240, -860, silent=11.6)[0]
+    assert (first.about, first.decides) == ('scans', True) and '12 s' in first.text
+
+
+def test_of_several_radars_none_of_which_sees_anything_that_is_the_reason():
+    radars = '[{topic: a/radar/plots}, {topic: b/radar/plots}]'
+    sea = Sea(radars=radars)
+    for _ in range(4):
+        sea.sail([[3000, 100]], radar=0).sail([[-700, 2000]], radar=1)
+    told = [reason for reason in sea.ask(-2000, -2000) if reason.about == 'plots']
+    assert [reason.decides for reason in told] == [True, True]
+    told = [reason for reason in sea.ask(3000, 100) if reason.about == 'plots']
+    assert not any(reason.decides for reason in told)
+    assert ['of b' in reason.text for reason in told] == [False, True]

@@ -17,7 +17,7 @@ def test_a_picture_of_a_scene_is_taken(command, tmp_path):
     done = command('screenshots', tmp_path / 'pictures', '--only', 'hulls', timeout=110)
     assert done.returncode == 0, done.stderr
     (file,) = (tmp_path / 'pictures').iterdir()
-    assert file.name == 'hulls.png' and file.read_bytes().startswith(b'\x89PNG')
+    assert file.name == 'ppi_hulls.png' and file.read_bytes().startswith(b'\x89PNG')
     assert file.stat().st_size > 20_000
     shutil.rmtree(tmp_path / 'pictures')
 

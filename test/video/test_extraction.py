@@ -70,7 +70,7 @@ def test_a_plot_comes_out_soon_after_the_beam(pictures):
 def test_own_level_of_each_place(pictures):
     """Rain lifts the level by 15 dB over a part of the picture: no plots there, a ship in it."""
     random = np.random.default_rng(8)
-    picture = pictures.make([(2600.0, 100.0, 32.0), (900.0, 250.0, 25.0)])
+    picture = pictures.make([(2600.0, 100.0, 36.0), (900.0, 250.0, 25.0)])
     strength = picture.strength.astype(int)
     rain = np.zeros(strength.shape, bool)
     rain[200:320, 150:320] = True

@@ -3,7 +3,8 @@
 Scenes of the simulator (config/scenarios), so the truth is known: a harbour and a canal full of
 plots that are always there, straits, small craft, false plots. Tracks that are confirmed or coast
 count. A track is false if no ship is within the scene's cutoff; moored craft, quays and buoys are
-no ships here, so tracks on them are false. A ship is held while a track is within the cutoff.
+no ships here, so tracks on them are false. A ship is held while a track is within the cutoff; one
+at rest also while a stationary object is.
 Confirmation time counts from a ship's first scan in range to its first track; its median is over
 all ships of all runs.
 """
@@ -36,6 +37,7 @@ SCENES = {
     'two_boats': 25.0,
     'false_plots': 200.0,
 }
+STILL = 0.3  # m/s; a ship slower than this may be shown as a stationary object
 # Of a scene: what must be reached.
 FALSE_ALIVE = {'false_plots': 0.1, 'busy_strait': 0.5}
 HELD = {'false_plots': 0.97, 'busy_strait': 0.989}
@@ -94,7 +96,7 @@ def follow(name: str, estimator: str, seed: int) -> Run:
     parts, false = [], []
     for scan, truth in radar.simulate(scene, seed):
         memory, done = service.track(memory, scan)
-        distance = apart(truth, done)
+        distance = apart(truth, done, cutoff)
         seen = scenario.detectable(scene, truth)
         row, column = assign(distance, cutoff)
         aside = column[~seen[row]]  # on ships just out of range: neither right nor wrong
@@ -118,13 +120,18 @@ def follow(name: str, estimator: str, seed: int) -> Run:
     )
 
 
-def apart(truth: Truth, done: Tracking) -> Array:
-    """Distances [ships, live tracks] m, at the times of the truth."""
+def apart(truth: Truth, done: Tracking, cutoff: float) -> Array:
+    """Distances [ships, live tracks] m, at the times of the truth; then those of the stationary
+    objects that stand for a ship at rest."""
     live = np.isin(done.report.tracks.status, (CONFIRMED, COASTING))
     later = truth.time[:, None] - done.estimate.time[live]
     moved = done.estimate.position[live] + later[..., None] * done.estimate.velocity[live]
     distance: Array = np.linalg.norm(moved - truth.position[:, None], axis=-1)
-    return distance
+    fixed = np.linalg.norm(done.report.places.position - truth.position[:, None], axis=-1)
+    fixed[np.hypot(*truth.velocity.T) > STILL] = np.inf
+    without = distance.min(1, initial=np.inf) >= cutoff
+    row, column = assign(fixed[without], cutoff)
+    return np.append(distance, fixed[:, column], 1)
 
 
 def _figures(name: str, runs: list[Run]) -> list[report.Figure]:

@@ -13,13 +13,13 @@ def false_alarms(canvas: Any, found: Sequence[Any]) -> None:
     rates = sorted({one.rate for one in found}, reverse=True)
     axes = canvas.subplots(1, len(rates), sharey=True)
     for axis, rate in zip(np.atleast_1d(axes), rates):
+        axis.set(xlim=(7, 1200), xscale='log', ylim=(0, 3), xlabel='range, samples')
         for one in found:
-            if one.rate == rate:
+            if one.rate == rate and np.isfinite(one.ratio).any():
                 octave = 2.0 ** (np.arange(len(one.ratio)) + 3)
                 axis.plot(octave, one.ratio, 'o-', markersize=4, label=one.kind)
         axis.axhspan(0.5, 2.0, color='0.9')
         axis.axhline(1.0, color='0.4', linewidth=1)
-        axis.set(xscale='log', ylim=(0, 3), xlabel='range, samples')
         axis.set_title(f'asked for {rate:.0e}', fontsize=10)
     np.atleast_1d(axes)[0].set_ylabel('false alarms, measured over asked for')
     np.atleast_1d(axes)[0].legend(fontsize=7)

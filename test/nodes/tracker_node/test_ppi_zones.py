@@ -82,7 +82,7 @@ def test_why_there_is_no_target_is_answered_in_words(bridge, sea, display, look)
         assert said['ok'] and 'by hand only' in said['text'] and 'TT' in said['text'], said
         near = (own + [30, 40]).tolist()
         said = await viewer.command('explain', x=near[0], y=near[1])
-        assert said['text'].splitlines()[0].startswith('50 m from the antenna'), said
+        assert any(line.startswith('50 m from') for line in said['text'].splitlines()), said
 
     look(node, act)
     assert not here.tracker.failures.counts
@@ -240,9 +240,9 @@ def test_the_command_asks_a_tracker_that_runs(bridge, sea, launch):
     while polar.process.poll() is None:
         here.send_own_ship_of([here.last])
     assert polar.ends() == 0, polar.said
-    assert polar.said.startswith('* 74 m from the antenna'), polar.said
+    assert '* 74 m from the antenna' in polar.said, polar.said
     bow = launch('__main__', 'explain', '--range', '0.05', '--bearing', '300', '--bow')
-    assert bow.ends() == 0 and bow.said.startswith('* 93 m from the antenna'), bow.said
+    assert bow.ends() == 0 and '* 93 m from the antenna' in bow.said, bow.said
 
 
 def test_without_a_tracker_the_command_says_so_in_one_line(graph, launch):
