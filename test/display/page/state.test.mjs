@@ -111,7 +111,6 @@ test('plots of another run push those of the last one out', () => {
 
 test('of a radar that sends sectors as many scans are kept as of one that does not', () => {
   const state = emptyState();
-  const none = { number: [], id: [] };
   receive(state, { kind: 'targets', now: 1, at: 1, time: 9, period: 2.5, columns: none }, 1);
   for (let k = 0; k < 600; k++) {
     receive(state, { kind: 'plots', now: 1, at: 1, stamp: (k * 2.5) / 16 }, 1);
