@@ -15,7 +15,7 @@ from .base_node import RunnableNode
 from .convert import OdometryPool
 
 TICK_S = 0.01
-MOST = 2  # at a tick, so that a listener of the usual depth may rest for some
+MOST = 5  # at a tick: half of what the usual depth holds
 SHARE = 0.8  # of the revolution: all are out before the next ones come
 
 
