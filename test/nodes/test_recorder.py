@@ -464,7 +464,7 @@ def test_an_hour_of_a_busy_strait_is_read_back_by_rosbags_and_mcap_ros2_support(
 
 
 def test_the_command_records_for_a_while_and_shows_what_there_is(domain, tmp_path):
-    words = ['record', str(tmp_path / '2026'), '--duration', '2', '--set', 'keep_free_mb=1']
+    words = ['record', str(tmp_path / '2026'), '--duration', '5', '--set', 'keep_free_mb=1']
     done = subprocess.run(
         [sys.executable, '-m', 'marine_tracker', *words],
         capture_output=True,

@@ -116,8 +116,10 @@ def test_own_ships_way_for_the_page_is_that_of_the_targets_courses(bridge, sea, 
     node = display(here)
 
     async def act(viewer):
-        await asyncio.to_thread(here.sail, 6)
-        await viewer.until(lambda me: me.newest.get('own', {}).get('stabilised') == 'sea')
+        def told():
+            return viewer.newest.get('own', {}).get('stabilised') == 'sea'
+
+        await asyncio.to_thread(here.sail_on, told)
         return viewer.newest['own']
 
     own = look(node, act)
