@@ -378,6 +378,7 @@ def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(
     assert 'own ship: course' in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_recording_that_is_played_tells_no_old_logs_alarms_or_health(
     launch, graph, node_helpers, tmp_path
 ):
