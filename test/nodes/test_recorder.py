@@ -140,6 +140,7 @@ def test_nothing_is_written_before_the_simulated_clock_runs_and_that_is_said_onc
     for k in range(5):
         sender.send(k)
     assert recorder.says('nothing is recorded before it runs')
+    time.sleep(1.0)  # all that was sent has come
     clock = sender.node.create_publisher(Clock, '/clock', 10)
     sender.wait(clock.get_subscription_count)
     for _ in range(100):
