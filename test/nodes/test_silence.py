@@ -120,6 +120,7 @@ def test_a_pause_above_rate_1_is_extrapolated_over(sailing):
     assert not sailing.tracker.inputs[0].bad.counts[intake.REBASED]
 
 
+@pytest.mark.slow
 def test_single_stamps_ahead_of_plots_or_own_ship_cost_no_track(sailing):
     sailing.until(110)
     before = {name: ship for name, ship in sailing.shown.ships().items() if ship}
