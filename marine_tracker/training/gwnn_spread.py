@@ -17,6 +17,9 @@ from .gwnn_symmetry import apply, symmetries
 LAYOUT = net.Layout(levels=2, translations=2, q=1.2, outputs=gwnn.SPREADS)
 STEPS = 4000
 LEVEL = (-8.0, 6.0)  # log of the smallest and the largest variance, sigma^2
+# Largest squared error, sigma^2, and steepest slope of the loss by the log variance. They hold back
+# single wild samples only: with less, errors would on the whole be larger than the variances say.
+LARGEST, STEEPEST = 400.0, -50.0
 SAMPLES = 300000  # at most
 PEAK = 3e-3
 
@@ -38,7 +41,7 @@ def train(
             for part in (take(samples, slice(i, i + 10000)) for i in range(0, len(pick), 10000))
         ]
     )
-    square = np.minimum(error * error, 100.0)
+    square = np.minimum(error * error, LARGEST)
     spread = net.start(layout, network.centre, network.scale, rng)
     parameters = [spread.inner, spread.outer, spread.bias]
     form, ways = net.units(layout, np.float32), symmetries()
@@ -52,7 +55,7 @@ def train(
         ratio = value @ net.connect(spread.outer) + spread.bias
         part = np.minimum(batch.scans, 1.0)[:, None]
         level = batch.spread + ratio[:, :4] + part * (ratio[:, 4:] - ratio[:, :4])
-        slope = np.clip(0.5 * (1 - off * np.exp(-np.clip(level, *LEVEL))), -5, 0.5)
+        slope = np.clip(0.5 * (1 - off * np.exp(-np.clip(level, *LEVEL))), STEEPEST, 0.5)
         slope /= len(pick)
         back = np.concatenate([slope * (1 - part), slope * part], 1).astype(np.float32)
         moments = adam.step(

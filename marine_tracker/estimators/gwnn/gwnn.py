@@ -27,7 +27,7 @@ from . import bank as filters
 from . import monitor as monitors
 from .bank import BankState, Expected
 from .inputs import ResidualMemory
-from .monitor import EXPECTED, FALLBACK, GWNN, TRUST, WARM, Monitor, Trust, judge
+from .monitor import FALLBACK, GWNN, TRUST, WARM, Monitor, Trust, judge
 
 GATE, REFUSALS = 16.0, 2  # squared distance from the base; largest number of plots refused in a row
 SETTLED = 10  # plots before any is refused
@@ -121,7 +121,7 @@ def advance(
     """
     expected = filters.expect(bank, state, plots)
     used = ~((expected.nis > GATE) & (memory.refused < REFUSALS) & (memory.plots >= SETTLED))
-    after = filters.correct(bank, expected, plots)
+    after = filters.correct(bank, state, expected, plots)
     if not used.all():
         after = where(used, after, state)
     memory = inputs.remember(memory, expected, plots, plots.time - state.time, used)
@@ -178,19 +178,10 @@ def gwnn(
 
     def init(plots: Plots, velocity: Velocity | None = None) -> GwnnState:
         count = len(plots.time)
-        zero = np.zeros(count)
-        monitor = Monitor(
-            zero,
-            zero + EXPECTED,
-            zero + EXPECTED,
-            np.full((count, 2), EXPECTED),
-            zero.copy(),
-            zero.copy(),
-        )
         return GwnnState(
             filters.begin(bank, plots, max_speed, velocity),
             inputs.begin(plots),
-            monitor,
+            monitors.begin(count),
             np.zeros((count, OUTPUTS + SPREADS)),
             adaptation.begin(count, weights.fusion, learning),
         )

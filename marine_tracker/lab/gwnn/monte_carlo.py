@@ -3,9 +3,10 @@
 Ships: 22 rpm, 25 m and 0.4 deg, targets at 1.5 to 18 km. Small craft: 30 rpm, 6 m and 0.7 deg,
 0.15 to 4 km. 150 scans, of which the first 20 are left out. Kinds of motion: those that the network
 was trained on, on new tracks; and others: ships under autopilot, the sharp turn of paper 000, real
-ships by AIS and a real speed boat (from --data). Errors are RMS per axis, positions in the plots'
-deviations sigma. Ratios are to the IMM tuned on the network's own training tracks, with 95 %
-intervals over the tracks. 300 runs take two to three minutes on two processors.
+ships by AIS and a real speed boat (from --data), and strangers: ships of an independent simulation.
+Errors are RMS per axis, positions in the plots' deviations sigma. Ratios are to the IMM tuned on
+the network's own training tracks (for strangers: tuned on those), with 95 % intervals over the
+tracks. 300 runs take about five minutes on two processors.
 """
 
 from collections.abc import Iterator
@@ -21,7 +22,7 @@ from ...networks import gwnn_weights, weight_file
 from . import failures, figures, pictures
 from .claims import claims
 from .figures import Findings
-from .trials import FLEETS, OWN, RECORDED, TANH, cells, kinds
+from .trials import FLEETS, NO_LEGS, OWN, RECORDED, TANH, cells, kinds
 
 HELP = 'GWNN against CS-Kalman, CV and IMMs, on tracks it was trained on and others'
 RUNS = 300
@@ -56,7 +57,8 @@ def measure(
             f'--data is {data}; it holds neither of ' + ', '.join(map(str, RECORDED.values()))
         )
     weights = {name: {OWN: gwnn.weights(vessel_class=name)} for name in FLEETS}
-    weights['ship'][TANH] = gwnn.weights(str(weight_file.FOLDER / 'gwnn_tanh.npz'))
+    for other, file in ((TANH, 'gwnn_tanh.npz'), (NO_LEGS, 'gwnn_no_legs.npz')):
+        weights['ship'][other] = gwnn.weights(str(weight_file.FOLDER / file))
     # Apart from every seed of a training, whose numbers come in pairs.
     seeds = iter(np.random.SeedSequence([seed, 7, 7]).generate_state(100).tolist())
     planned = {

@@ -5,14 +5,14 @@ from typing import Any
 
 from ...evaluation.result import Picture
 from .figures import SHIPPED, Findings, fair_cells
-from .trials import HELD_OUT, OWN, TANH, Cell
+from .trials import HELD_OUT, MANOEUVRE, OWN, TANH, Cell, is_stranger
 
 # Colours of Okabe and Ito, safe for colour-blind readers; the markers differ too. OWN is drawn
 # last.
 STYLES = {
     'CS': ('x', '#000000', 'current statistical model (tuned)'),
     'CV/CV': ('D', '#cc79a7', 'IMM of two constant velocities (tuned)'),
-    'IMM for manoeuvre': ('s', '#e69f00', 'IMM tuned for manoeuvre'),
+    MANOEUVRE: ('s', '#e69f00', 'IMM tuned for manoeuvre'),
     SHIPPED: ('^', '#009e73', '`imm` as shipped'),
     TANH: ('o', '#56b4e9', 'GWNN with plain tanh units'),
     OWN: ('o', '#0072b2', 'GWNN'),
@@ -41,7 +41,8 @@ def compare(figure: Any, cells: list[Cell], title: str) -> None:
     """Rows of cells: straight courses, manoeuvres, then kinds of motion outside the training."""
     groups: dict[str, list[Cell]] = {'straight': [], 'manoeuvre': [], 'never trained on': []}
     for cell in cells:
-        groups['never trained on' if cell.kind in HELD_OUT else cell.phase].append(cell)
+        new = cell.kind in HELD_OUT or is_stranger(cell.vessel_class, cell.kind)
+        groups['never trained on' if new else cell.phase].append(cell)
     rows = [cell for group in groups.values() for cell in group]
     shown = [name for name in STYLES if name != LEFT_OUT[cells[0].vessel_class]]
     least = min([LEAST] + [0.97 * cell.position[name].value for cell in rows for name in shown])
