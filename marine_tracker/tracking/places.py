@@ -24,7 +24,7 @@ from ..types import Array, BoolArray, IntArray, append, take
 
 GATE = 9.0  # squared deviations within which a plot belongs to a place
 WANDER = 4.0  # m, each axis: a thing on the ground echoes here and there
-MEMORY = 60  # revolutions
+MEMORY, SHORT = 60, 15  # revolutions
 LEAST_LOOKS, LEAST_PLOTS = 15, 8
 BECOMES, ENDS = 0.3, 0.1  # share of revolutions with a plot
 AT_REST = 0.8  # m/s; a place surely moves less
@@ -45,6 +45,7 @@ class Places(NamedTuple):
     position  [P, 2]  m, east and north, the mean
     variance  [P]     m^2, of a plot there, the larger axis
     share     [P]     of the last MEMORY revolutions with a plot
+    lately    [P]     the same of the last SHORT: a slow ship that has gone on is no place
     looks     [P]     revolutions
     chance    [P]     mean share of its neighbours, over the last MEMORY revolutions, and
     tried     [P]     revolutions in which they were counted
@@ -59,6 +60,7 @@ class Places(NamedTuple):
     position: Array
     variance: Array
     share: Array
+    lately: Array
     looks: IntArray
     chance: Array
     tried: IntArray
@@ -82,7 +84,8 @@ def empty() -> Places:
     none, count = np.zeros(0), np.zeros(0, np.int64)
     pairs = np.zeros((0, 2))
     return Places(
-        pairs, none, none, count, none, count, count, none, none, none, pairs, count, count > 0
+        *(pairs, none, none, none, count, none, count, count),
+        *(none, none, none, pairs, count, count > 0),
     )
 
 
@@ -134,7 +137,8 @@ def learn(before: Places, position: Array, variance: Array, time: Array, view: V
     keep &= ~(after.established & no_more & (after.looks > LEAST_LOOKS))
     after = append(take(after, keep), _new(position[~known], variance[~known], time[~known]))
     after = take(after, slice(0, MOST))
-    sure = ~after.established & _at_rest(after) & (after.share >= BECOMES)
+    often = np.minimum(after.share, after.lately) >= BECOMES
+    sure = ~after.established & _at_rest(after) & often
     sure &= (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS)
     sure[sure] = surplus(take(after, sure)) > SURE
     number = np.where(sure, UNNAMED, after.number)
@@ -192,8 +196,10 @@ def _looked(places: Places, hit: IntArray, visible: BoolArray) -> Places:
     counted = visible | seen
     looks = places.looks + counted
     gain = counted / np.minimum(np.maximum(looks, 1), MEMORY)
+    quick = counted / np.minimum(np.maximum(looks, 1), SHORT)
     return places._replace(
         share=places.share + gain * (seen - places.share),
+        lately=places.lately + quick * (seen - places.lately),
         looks=looks,
         idle=np.where(seen, 0, places.idle + counted),
     )
@@ -223,6 +229,7 @@ def _new(position: Array, variance: Array, time: Array) -> Places:
     return Places(
         position,
         variance,
+        one,
         one,
         whole,
         none,
