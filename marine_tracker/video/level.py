@@ -69,7 +69,7 @@ def grid(samples: int, range_step: float, spacing: float, beam: float, pulse: fl
 
 def of_edges(rows: int, edge: IntArray) -> Grid:
     """Blocks of so many spokes, with columns at these edges."""
-    centre: Array = 0.5 * (edge[:-1] + edge[1:])
+    centre = (edge[:-1] + edge[1:]).astype(np.float64) / 2
     sample = np.arange(edge[-1])
     last = len(centre) - 1
     right = np.clip(np.searchsorted(centre, sample + 0.5), min(1, last), last)
