@@ -18,7 +18,7 @@ BIN := .venv/bin
 DESCRIPTION := setup.py setup.cfg pyproject.toml package.xml Makefile .ci/setup
 # What each target needs, the extras of setup.py. Every one has more than the one before.
 FOR_DEMO := ros,display,record
-FOR_TEST := $(FOR_DEMO),top,test,parallel,plot,bench,cluster
+FOR_TEST := $(FOR_DEMO),top,test,parallel,plot,bench,cluster,nmea2000
 FOR_CHECK := $(FOR_TEST),dev
 # A stamp for each, and for each choice of interpreter: asking for another one makes .venv anew.
 CHOICE := $(addprefix -,$(notdir $(PYTHON)))
