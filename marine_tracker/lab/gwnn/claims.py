@@ -36,8 +36,7 @@ def claims(found: Findings) -> list[Claim]:
         _everywhere(ships, IMM, 'the IMM tuned on the same tracks'),
         _everywhere(ships, MANOEUVRE, 'the IMM tuned for manoeuvre'),
         _everywhere(every, 'CS of the fallback', 'CS-Kalman, which it falls back to'),
-        _legs(ships),
-        _units(ships),
+        *(claim(ships) for name, claim in BESIDE.items() if name in ships[0].over),
         _fallback(every),
         _rubbish(found),
         _everywhere(boats, SHIPPED, '`imm` as shipped for small craft'),
@@ -113,6 +112,9 @@ def _units(cells: list[Cell]) -> Claim:
         told,
         verdict(mean.high < 1 - LITTLE, IN_PART if mean.high < 1 else NOT_BORNE_OUT),
     )
+
+
+BESIDE = {NO_LEGS: _legs, TANH: _units}
 
 
 def _fallback(cells: list[Cell]) -> Claim:

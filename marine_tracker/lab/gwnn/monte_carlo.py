@@ -26,6 +26,8 @@ from .trials import FLEETS, NO_LEGS, OWN, RECORDED, TANH, cells, kinds
 
 HELP = 'GWNN against CS-Kalman, CV and IMMs, on tracks it was trained on and others'
 RUNS = 300
+# Other networks of ships, to compare with; each is measured if its file is there.
+BESIDE = {TANH: 'gwnn_tanh.npz', NO_LEGS: 'gwnn_no_legs.npz'}
 OPTIONS = {
     'data': {
         'type': Path,
@@ -57,8 +59,10 @@ def measure(
             f'--data is {data}; it holds neither of ' + ', '.join(map(str, RECORDED.values()))
         )
     weights = {name: {OWN: gwnn.weights(vessel_class=name)} for name in FLEETS}
-    for other, file in ((TANH, 'gwnn_tanh.npz'), (NO_LEGS, 'gwnn_no_legs.npz')):
-        weights['ship'][other] = gwnn.weights(str(weight_file.FOLDER / file))
+    for other, name in BESIDE.items():
+        file = weight_file.FOLDER / name
+        if file.exists():
+            weights['ship'][other] = gwnn.weights(str(file))
     # Apart from every seed of a training, whose numbers come in pairs.
     seeds = iter(np.random.SeedSequence([seed, 7, 7]).generate_state(100).tolist())
     planned = {

@@ -44,7 +44,11 @@ def compare(figure: Any, cells: list[Cell], title: str) -> None:
         new = cell.kind in HELD_OUT or is_stranger(cell.vessel_class, cell.kind)
         groups['never trained on' if new else cell.phase].append(cell)
     rows = [cell for group in groups.values() for cell in group]
-    shown = [name for name in STYLES if name != LEFT_OUT[cells[0].vessel_class]]
+    shown = [
+        name
+        for name in STYLES
+        if name != LEFT_OUT[cells[0].vessel_class] and name in cells[0].position
+    ]
     least = min([LEAST] + [0.97 * cell.position[name].value for cell in rows for name in shown])
     axes = figure.add_subplot(xscale='log', xlim=(least, MOST), ylim=(len(rows) - 0.5, -0.5))
     for row, cell in enumerate(rows):
