@@ -5,6 +5,7 @@ all derive from the frozen dataclasses here. A wrong value raises ValueError at 
 names the parameter, the value and the limit.
 """
 
+from .ais import AisParameters
 from .arpa import ArpaParameters
 from .description import from_mapping, from_mappings
 from .display import PpiDisplayParameters
@@ -19,7 +20,7 @@ from .tracker import EXTENTS, GLINT_SIGMA, VESSEL_CLASSES, TrackerParameters
 from .video import PlotExtractorParameters, VideoParameters
 
 NODES: dict[str, tuple[type, ...]] = {
-    'tracker': (TrackerParameters, ArpaParameters, TrackerOutputParameters),
+    'tracker': (TrackerParameters, ArpaParameters, AisParameters, TrackerOutputParameters),
     'radar_simulator': (RadarSimulatorParameters,),
     'plot_extractor': (VideoParameters, PlotExtractorParameters),
     'recording_player': (RecordingPlayerParameters,),
@@ -33,6 +34,7 @@ __all__ = [
     'GLINT_SIGMA',
     'NODES',
     'VESSEL_CLASSES',
+    'AisParameters',
     'ArpaParameters',
     'NmeaOutputParameters',
     'PlotExtractorParameters',
