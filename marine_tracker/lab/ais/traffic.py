@@ -104,9 +104,7 @@ def follow(
     sentences = Sentences()
     sent = transponders.transmit(fleet.ais, fleet.paths, fleet.length, of.duration, seed)
     lines = (
-        pair
-        for some in sent
-        for pair in ais_sentences.encode(some, frame, fleet.names, EPOCH)
+        pair for some in sent for pair in ais_sentences.encode(some, frame, fleet.names, EPOCH)
     )
     waiting = next(lines, None)
     for scan, _ in biased(radar.simulate(of, seed), *errors):
@@ -116,7 +114,9 @@ def follow(
             waiting = next(lines, None)
         reports = sentences.reports()
         reports = reports._replace(heard=reports.heard - EPOCH, time=reports.time - EPOCH)
-        memory = service.hear(memory, reports, frame.to_local_or_nan(reports.latitude, reports.longitude))
+        memory = service.hear(
+            memory, reports, frame.to_local_or_nan(reports.latitude, reports.longitude)
+        )
         memory, output = service.step(memory, scan)
         truth = of.truth_at(scan.end)
         place = np.full((fleet.paths.ships - 1, 2), np.nan)
@@ -156,5 +156,3 @@ def whose(
 def number_of(mmsi: NDArray[np.int64]) -> NDArray[np.int64]:
     """The ship, from 1 on, of each number that the simulator gave."""
     return mmsi - transponders.FIRST_MMSI + 1
-
-
