@@ -36,6 +36,7 @@ setup(
     install_requires=[
         'numpy>=1.26.4',
         'PyWavelets>=1.4',
+        'pyais>=3.0',
         'pynmea2>=1.19',
         'pyproj>=3.4',
         'rich>=13.3',

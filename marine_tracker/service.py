@@ -290,6 +290,11 @@ def service_for(values: Mapping[str, Any], **changes: Any) -> Service:
     return Service(from_mapping(TrackerParameters, {**values, **changes}))
 
 
+def service_of(tracker: TrackerParameters, arpa: ArpaParameters, ais: AisParameters) -> Service:
+    """A service with these parameters. ValueError where they are wrong."""
+    return Service(tracker, arpa, ais=ais)
+
+
 def heading_of(own_ship: OwnShip) -> float:
     """rad: own ship's heading in her last sample; where none is told her course over ground stands
     for it, and nan where she makes no way."""

@@ -132,7 +132,8 @@ def test_only_the_service_puts_extents_tracker_and_arpa_together():
             assert name not in ('Tracker', 'Extents', 'Arpa'), f'{file}, line {node.lineno}'
             if name == 'step' and isinstance(called, ast.Attribute):
                 owner = ast.unparse(called.value).split('.')[-1].strip('_')
-                assert owner not in ('tracker', 'arpa', 'extents', 'ais'), f'{file}, line {node.lineno}'
+                parts = ('tracker', 'arpa', 'extents', 'ais')
+                assert owner not in parts, f'{file}, line {node.lineno}'
 
 
 def longest(file, name):

@@ -18,8 +18,9 @@ from ..arpa.stabilisation import OwnSensors
 from ..geometry import NAUTICAL_MILE
 from ..parameters import AisParameters
 from ..types import Array, BoolArray, CodeArray, IntArray, OwnShip
-from . import ais_alarms, join, passing, registration, ships
-from .join import Joined, Pairs, Seen
+from . import ais_alarms, join, pairs, passing, registration, ships
+from .join import Joined, Seen
+from .pairs import Pairs
 from .registration import Registration
 from .reports import Reports
 from .ship_motion import Moving, at
@@ -82,7 +83,7 @@ class Ais:
     def start(self) -> AisMemory:
         """No ships yet."""
         ids = np.zeros(0, np.int64)
-        return AisMemory(none(), join.nothing(), registration.begin(), 1, np.nan, ids, ids)
+        return AisMemory(none(), pairs.nothing(), registration.begin(), 1, np.nan, ids, ids)
 
     def hear(self, memory: AisMemory, reports: Reports, position: Array) -> AisMemory:
         """The memory with reports, whose places are at `position` [R, 2] m; nan for none."""
@@ -117,13 +118,13 @@ class Ais:
         # joined: which of them are radar tracks
         before = memory.time
         elapsed = 0.0 if np.isnan(before) else float(np.clip(now - before, 0.0, MOST_STEP))
-        pairs, errors = memory.pairs, memory.registration
+        known_pairs, errors = memory.pairs, memory.registration
         joined = join.alone(len(known.id))
         if p.ais_join:
-            pairs, errors, joined = join.step(
-                pairs, errors, known, moving, seen, own.position, now, elapsed
+            known_pairs, errors, joined = join.step(
+                known_pairs, errors, known, moving, seen, own.position, now, elapsed
             )
-        memory = memory._replace(ships=known, pairs=pairs, registration=errors, time=now)
+        memory = memory._replace(ships=known, pairs=known_pairs, registration=errors, time=now)
 
         # passing: how they pass own ship
         passes = passing.look(self.arpa, known, moving, joined, own, samples, drift, sensors, now)

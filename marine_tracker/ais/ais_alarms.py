@@ -16,7 +16,8 @@ from ..geometry import NAUTICAL_MILE
 from ..parameters import AisParameters
 from ..tracking.lifecycle import LOST
 from ..types import Array, BoolArray, Tracks, row_of, take
-from .join import APART_STATE, BOTH, JOINED, Joined, Pairs, Seen
+from .join import APART_STATE, BOTH, Joined, Seen
+from .pairs import JOINED, Pairs
 from .passing import Passing
 from .ship_table import Ships
 

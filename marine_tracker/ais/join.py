@@ -7,7 +7,8 @@ forgotten, because differences of a moment are those of the next. All pairs toge
 gone.
 
 A pair that was surely joined and comes apart, while ship and track both go on and neither finds
-another, is a mismatch: AIS says there, radar says elsewhere.
+another, is a mismatch: AIS says there, radar says elsewhere. It comes apart when its evidence is
+gone; or sooner, when the ship leaves the place beside her echo that she has kept so far.
 """
 
 from typing import NamedTuple
@@ -18,6 +19,7 @@ from scipy.spatial import cKDTree
 from ..tracking.associate import associate
 from ..types import Array, BoolArray, CodeArray, IntArray, row_of, take
 from . import registration
+from .pairs import APART, CANDIDATE, JOINED, LEFT_FOR, MISMATCH, Pairs, beside, judged, remembered
 from .registration import Registration
 from .ship_motion import Moving
 from .ship_table import Ships
@@ -30,12 +32,10 @@ MIDDLE, WAY = 8.0, 0.25  # m, m/s: echo and antenna are not the same place
 LEAST, START = 3.0, 2.0  # evidence that joins; what a joined pair has before others
 NEAR, WIDE = 400.0, 3.5  # m; deviations of the registration: pairs that may be
 FARTHEST = 2500.0  # m
-SURELY = 20.0  # s joined, after which coming apart is a mismatch
-APART = 5.0  # deviations by which they must differ then
-KEPT = 600.0  # s that a mismatch is told at most
+SWAPPED = 400.0  # m; tracks of ships that meet change places no farther than this
+THERE = 80.0  # m; another track so near where AIS says may be the ship
 SLOW = 12.0  # s; of who reports so seldom a place that is refused counts
 
-CANDIDATE, JOINED, MISMATCH = range(3)
 STATES = ('radar_only', 'ais_only', 'joined', 'mismatch')
 RADAR_ONLY, AIS_ONLY, BOTH, APART_STATE = range(4)
 
@@ -60,24 +60,6 @@ class Seen(NamedTuple):
     fresh: BoolArray
 
 
-class Pairs(NamedTuple):
-    """P pairs that are remembered.
-
-    ship, track  [P]  ids
-    evidence     [P]  log-likelihood ratio
-    state        [P]  CANDIDATE, JOINED or MISMATCH
-    since        [P]  s, of that state
-    sure         [P]  s that it has been joined without a break; of a mismatch before it
-    """
-
-    ship: IntArray
-    track: IntArray
-    evidence: Array
-    state: CodeArray
-    since: Array
-    sure: Array
-
-
 class Joined(NamedTuple):
     """What each of S ships is.
 
@@ -89,12 +71,6 @@ class Joined(NamedTuple):
     state: CodeArray
     track: IntArray
     probability: Array
-
-
-def nothing() -> Pairs:
-    """No pairs."""
-    ids, times = np.zeros(0, np.int64), np.zeros(0)
-    return Pairs(ids, ids, times, np.zeros(0, np.int8), times, times)
 
 
 def alone(ships: int) -> Joined:
@@ -132,14 +108,19 @@ def step(
     # Of who reports seldom, the place that was refused is the newest there is.
     pending = (ships.other_time > ships.time) & (ships.timeout > 6 * SLOW)
     ratio = np.where(pending[ship], LOW, ratio)
-    pairs = _remembered(before, ships.id[ship], seen.id[track], now)
+    pairs = remembered(before, ships.id[ship], seen.id[track], now)
     keep = np.exp(-elapsed / MEMORY)
     ratio = np.where(seen.fresh[track] | (ratio < 0), ratio, 0.5 * ratio)
     evidence = keep * pairs.evidence + min(elapsed / INDEPENDENT, 1.0) * ratio
     pairs = pairs._replace(evidence=evidence)
-    pairs = _assigned(pairs, ship, track, len(ships.id), len(seen.id), now, elapsed)
-    something = _something_there(moving, seen, errors, own, ship, track)
-    pairs = _apart(pairs, ships, ship, seen, track, distance, something, pending[ship], now)
+    pairs = beside(pairs, differ[:, :2], covariance, pending[ship], elapsed)
+    chosen = _assigned(pairs, ship, track, len(ships.id), len(seen.id))
+    differs = (distance > APART**2) | (pairs.left >= LEFT_FOR) | pending[ship]
+    far = np.hypot(*differ[:, :2].T) > SWAPPED
+    differs &= seen.fresh[track]
+    maybe = differs & ~far & (pairs.state != CANDIDATE)
+    differs[maybe] &= ~_something_there(moving, seen, errors, own, ship[maybe], track[maybe])
+    pairs = judged(pairs, chosen, ship, track, differs, now, elapsed)
     errors = _registered(errors, pairs, ship, offset, told, covariance, differ, moving, elapsed)
     joined = _joined(pairs, ship, len(ships.id))
     useful = (pairs.evidence > -4.0) | (pairs.state != CANDIDATE)
@@ -211,49 +192,15 @@ def _ratio(
     return np.clip(same - any_, LOW, HIGH), place
 
 
-def _remembered(before: Pairs, ship: IntArray, track: IntArray, now: float) -> Pairs:
-    """The pairs of these ids [P], with what is remembered of them."""
-    count = len(ship)
-    new = Pairs(
-        ship, track, np.zeros(count), np.zeros(count, np.int8), np.full(count, now), np.zeros(count)
-    )
-    if not len(before.ship):
-        return new
-    most = 1 + max(int(track.max(initial=0)), int(before.track.max(initial=0)))
-    row = row_of(before.ship * most + before.track, ship * most + track)
-    known = row >= 0
-    old = take(before, np.where(known, row, 0))
-    return Pairs(
-        ship,
-        track,
-        *(np.where(known, getattr(old, name), getattr(new, name)) for name in Pairs._fields[2:]),
-    )
-
-
-def _assigned(
-    pairs: Pairs,
-    ship: IntArray,
-    track: IntArray,
-    ships: int,
-    tracks: int,
-    now: float,
-    elapsed: float,
-) -> Pairs:
-    """The pairs, those joined that the best assignment of all joins."""
-    was = pairs.state == JOINED
-    worth = pairs.evidence + START * was
+def _assigned(pairs: Pairs, ship: IntArray, track: IntArray, ships: int, tracks: int) -> BoolArray:
+    """Mask [P] of the pairs that the best assignment of all joins."""
+    worth = pairs.evidence + START * (pairs.state == JOINED)
     able = (worth > LEAST).nonzero()[0]
     chosen = np.zeros(len(ship), bool)
     if len(able):
         partner = associate(ship[able], track[able], worth[able], ships, tracks)
         chosen[able] = partner[ship[able]] == track[able]
-    state = np.where(chosen, JOINED, np.where(pairs.state == MISMATCH, MISMATCH, CANDIDATE))
-    began = np.where((state == JOINED) != was, now, pairs.since)
-    return pairs._replace(
-        state=np.where(was & ~chosen, JOINED, state).astype(np.int8),  # _apart judges these
-        since=began,
-        sure=np.where(chosen, pairs.sure + elapsed, np.where(was, -1.0 - pairs.sure, pairs.sure)),
-    )
+    return chosen
 
 
 def _something_there(
@@ -266,39 +213,10 @@ def _something_there(
         return found
     tree = cKDTree(own + registration.corrected(errors, seen.position[there] - own))
     spread = np.sqrt(np.trace(moving.covariance[ship][:, :2, :2], axis1=1, axis2=2))
-    near = tree.query_ball_point(moving.position[ship], 80.0 + 2 * spread)
+    near = tree.query_ball_point(moving.position[ship], THERE + 2 * spread)
     for row, those in enumerate(near):
         found[row] = bool(set(there[those].tolist()) - {int(track[row])})
     return found
-
-
-def _apart(
-    pairs: Pairs,
-    ships: Ships,
-    ship: IntArray,
-    seen: Seen,
-    track: IntArray,
-    distance: Array,
-    something: BoolArray,
-    pending: BoolArray,
-    now: float,
-) -> Pairs:
-    """The pairs after those that were joined and are not any more; and mismatches that end."""
-    ended = (pairs.state == JOINED) & (pairs.sure < 0)
-    had = -1.0 - pairs.sure
-    taken = (pairs.state == JOINED) & ~ended
-    ship_taken, track_taken = np.isin(ship, ship[taken]), np.isin(track, track[taken])
-    differ = (distance > APART**2) | pending
-    mismatch = ended & (had >= SURELY) & differ & ~ship_taken & ~track_taken & ~something
-    mismatch &= seen.fresh[track]
-    goes_on = (pairs.state == MISMATCH) & ~ship_taken & ~track_taken
-    goes_on &= now - pairs.since < KEPT
-    state = np.select([taken, mismatch | goes_on], [JOINED, MISMATCH], CANDIDATE)
-    return pairs._replace(
-        state=state.astype(np.int8),
-        since=np.where(mismatch | (ended & ~mismatch), now, pairs.since),
-        sure=np.where(taken, pairs.sure, np.where(state == MISMATCH, np.maximum(had, 0.0), 0.0)),
-    )
 
 
 def _registered(

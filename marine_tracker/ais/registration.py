@@ -2,7 +2,7 @@
 
 Bearing and range of a radar are wrong by a little, for all targets alike; own ship's GPS moves all
 ships of AIS alike. All four are estimated together by least squares over the ships that are joined,
-with forgetting: one that stands twice as far off as expected counts half.
+with forgetting. One that stands much farther off than expected hardly counts: her AIS may be wrong.
 
 At first nobody knows which track is which ship, and a bearing that is wrong by 1 degree puts each
 ship of a lane on her neighbour's track. So `search` first asks under which errors of range and
@@ -19,7 +19,7 @@ from ..types import Array, BoolArray, IntArray
 MEMORY, INDEPENDENT = 180.0, 30.0  # s; errors of a pair are the same for so long
 RANGE, BEARING, OFFSET = 60.0, np.radians(1.2), 6.0  # m, rad, m: what is expected, deviations
 PAIR = 12.0  # m; a ship's own GPS error, and her echo off her middle
-HUBER = 2.0  # deviations
+DOUBTED = 3.0  # deviations at which a pair counts a quarter
 BEARINGS = np.radians(np.arange(-4.0, 4.01, 0.25))
 RANGES = np.arange(-150.0, 151.0, 30.0)
 SEARCH_MEMORY = 20.0  # s
@@ -27,6 +27,7 @@ LEAST_TIME = 20.0  # s of looks
 CLEARLY = 6.0  # log-likelihood of the best answer over all that are not beside it
 MOST_PAIRS = 300
 VARIANCES = np.array([RANGE**2, BEARING**2, OFFSET**2, OFFSET**2])
+FREE = np.array([16.0, 16.0, 1.0, 1.0])  # times as much, once the search has an answer
 
 
 class Registration(NamedTuple):
@@ -110,13 +111,14 @@ def learn(
         rest = corrected(start, seen) - told
         off = np.hypot(*(corrected(before, seen) - told).T)
         sigma = np.sqrt(variance + PAIR**2)
-        weight = np.minimum(1.0, HUBER * sigma / np.maximum(off, 1e-6)) / sigma**2
+        weight = 1 / (sigma * (1 + (off / (DOUBTED * sigma)) ** 2)) ** 2
         weight *= min(step / INDEPENDENT, 1.0)
         information = information + np.einsum('p,pij,pik->jk', weight, h, h)
         vector = vector + np.einsum('p,pij,pi->j', weight, h, rest)
-    covariance = np.linalg.inv(information + np.diag(1 / VARIANCES))
+    expected = VARIANCES * (FREE if before.settled else 1.0)
+    covariance = np.linalg.inv(information + np.diag(1 / expected))
     # What is expected is 0 of all, not of what is left beside the centre.
-    value = before.centre + covariance @ (vector - before.centre / VARIANCES)
+    value = before.centre + covariance @ (vector - before.centre / expected)
     return before._replace(
         value=value, covariance=covariance, information=information, vector=vector, pairs=len(seen)
     )

@@ -22,8 +22,8 @@ from sensor_msgs.msg import PointCloud2
 
 from ..arpa.arpa import Picture
 from ..arpa.view import Standing
-from ..parameters import NODES, ArpaParameters, TrackerParameters
-from ..service import Service
+from ..parameters import NODES
+from ..service import Service, service_of
 from ..tracking import clocks, own_ship
 from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
 from ..tracking.mounting import needs_heading
@@ -48,8 +48,10 @@ class TrackerNode(RunnableNode):
 
     def __init__(self, **node_arguments: Any) -> None:
         super().__init__('tracker', **node_arguments)
-        parameters, arpa_parameters, output_parameters = declare(self, *NODES['tracker'])
-        service = Service(parameters, arpa_parameters)
+        parameters, arpa_parameters, ais_parameters, output_parameters = declare(
+            self, *NODES['tracker']
+        )
+        service = service_of(parameters, arpa_parameters, ais_parameters)
         self._base_ns: int | None = None  # stamps are seconds after this
         self._own_log, self._own_frame = own_ship.empty_log(), topics.OWN_SHIP_FRAME
         self._fallback = own_ship.OWN_NEVER_HEARD
@@ -69,7 +71,7 @@ class TrackerNode(RunnableNode):
         )
 
         self._operator = Operator(self, service, self._sensors, self.hardware_id)
-        follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
+        follow(self, NODES['tracker'][:3], service_of, self._change)
         self._output = TrackerOutput(self, self.hardware_id, output_parameters)
         p = output_parameters
         self._send_transform = messages_of_others.transforms(self) if p.broadcast_tf else None

@@ -18,19 +18,25 @@ EPOCH = 1_700_000_000.0  # s of UTC at time 0 of a scene
 OWN_PLACE = 150.0  # m; a track so near a ship, and to no other, is hers
 LANE = 300.0  # m between the ships of the lane
 IN_LANE = 12
+SPOOFED, SPOOFED_FROM = 4, (150.0, 210.0)  # ships of a scene; s
 ORIGIN = {'lat_deg': 54.2, 'lon_deg': 6.1}
 
 
 def scene(
-    seed: int, ships: int = 40, minutes: float = 8.0, send: dict[str, Any] | None = None, **top: Any
+    seed: int,
+    ships: int = 40,
+    minutes: float = 8.0,
+    send: dict[str, Any] | None = None,
+    spoof: dict[str, Any] | None = None,
+    **top: Any,
 ) -> Scenario:
-    """Ships all about own ship, a third of them in a lane 300 m apart, of many courses and speeds."""
+    """Ships all about own ship, of many courses and speeds, twelve of them in a lane."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
     targets = []
-    way, course = rng.uniform(-2, 2), float(rng.uniform(0, 360))
+    course = float(rng.uniform(0, 360))
     speed = float(rng.uniform(8, 14))
     along = np.array([np.sin(np.radians(course)), np.cos(np.radians(course))])
-    middle = (3.5 + way) * 1852 * np.array([along[1], -along[0]])
+    middle = rng.uniform(1.5, 4.0) * 1852 * np.array([along[1], -along[0]])
     for k in range(ships):
         if k < IN_LANE:
             place = middle + (k - IN_LANE / 2) * LANE * along
@@ -53,6 +59,14 @@ def scene(
                 {'turn': {'angle_deg': turn, 'rate_deg_per_s': 0.5}},
             ]
         targets.append(target)
+    chosen = rng.permutation(ships)[: SPOOFED if spoof else 0].tolist()
+    for k in chosen:
+        begins, way = float(rng.uniform(*SPOOFED_FROM)), float(rng.uniform(0, 360))
+        small = rng.random() < 0.1
+        targets[k]['ais'] = {
+            'class': 'b' if small else 'a',
+            'spoof': {**(spoof or {}), 'from_s': begins, 'bearing_deg': way},
+        }
     values = {
         'duration_s': 60 * minutes,
         'origin': ORIGIN,
