@@ -71,6 +71,7 @@ setup(
     entry_points={
         'console_scripts': [
             'marine_tracker = marine_tracker.cli:main',
+            'ais_input = marine_tracker.nodes.run:ais_input',
             'nmea_output = marine_tracker.nodes.run:nmea_output',
             'plot_extractor = marine_tracker.nodes.run:plot_extractor',
             'ppi_display = marine_tracker.nodes.run:ppi_display',

@@ -29,7 +29,6 @@ STATUSES = (
 )
 NO_STATUS = -1
 AT_ANCHOR, MOORED, AGROUND, ACTIVE, TEST = 1, 5, 6, 14, 15
-HELD = (AT_ANCHOR, MOORED, AGROUND)
 
 TURNING = np.radians(5.0) / 30.0  # rad/s; a class A ship that turns faster reports more often
 LONG_RANGE = 180.0  # s between two messages 27
@@ -38,7 +37,8 @@ MOST = 999_999_999  # MMSI
 
 def at_rest(status: CodeArray, speed: Array) -> BoolArray:
     """Mask [N] of those at anchor, moored or aground that make less than 3 kn."""
-    found: BoolArray = np.isin(status, HELD) & ~(speed > 3 * KNOT)
+    held = (status == AT_ANCHOR) | (status == MOORED) | (status == AGROUND)
+    found: BoolArray = held & ~(speed > 3 * KNOT)
     return found
 
 
@@ -48,20 +48,15 @@ def interval(kind: CodeArray, status: CodeArray, speed: Array, turn: Array) -> A
     kind, status  [N]  of KINDS and STATUSES; speed [N] m/s, turn [N] rad/s: nan where not known
     A SART sends eight in a burst, once a minute.
     """
-    knots, turning = np.nan_to_num(speed) / KNOT, np.abs(np.nan_to_num(turn)) > TURNING
-    moving = np.select(
-        [knots > 23, knots > 14, turning], [2.0, np.where(turning, 2.0, 6.0), 10.0 / 3], 10.0
-    )
-    return np.select(
-        [kind == CLASS_A, kind == CLASS_B, kind == AIRCRAFT, kind == AID],
-        [
-            np.where(at_rest(status, speed), 180.0, moving),
-            np.where(knots > 2, 30.0, 180.0),
-            10.0,
-            180.0,
-        ],
-        60.0,
-    )
+    fast, faster, turning = speed > 14 * KNOT, speed > 23 * KNOT, np.abs(turn) > TURNING  # nan: no
+    found = np.array([10.0, 180.0, 10.0, 180.0, 60.0])[kind]
+    ship = kind == CLASS_A
+    found[ship & turning] = 10.0 / 3
+    found[ship & fast] = 6.0
+    found[ship & (faster | (fast & turning))] = 2.0
+    found[ship & at_rest(status, speed)] = 180.0
+    found[(kind == CLASS_B) & (speed > 2 * KNOT)] = 30.0
+    return found
 
 
 def kind_of_number(mmsi: IntArray) -> CodeArray:

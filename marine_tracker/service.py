@@ -186,7 +186,7 @@ class Service:
             return memory, Output(*done, fares, picture)
         seen = _seen(known.motion, tracks, done.scan.end)
         against = picture.stabilised.drift
-        memory, ships, changed = self._ships(
+        memory, ships, changed = self.ships(
             memory, seen, picture.own, against, sensors, done.scan.end
         )
         picture = picture._replace(
@@ -209,9 +209,9 @@ class Service:
         nothing = motion.at(motion.begin(), now)
         ids, no = np.zeros(0, np.int64), np.zeros(0, bool)
         seen = Seen(ids, ids, nothing.position, nothing.velocity, nothing.covariance, no, no)
-        return self._ships(memory, seen, own, np.zeros(2), sensors, now)
+        return self.ships(memory, seen, own, np.zeros(2), sensors, now)
 
-    def _ships(
+    def ships(
         self,
         memory: ServiceMemory,
         seen: Seen,
@@ -220,6 +220,7 @@ class Service:
         sensors: OwnSensors,
         now: float,
     ) -> tuple[ServiceMemory, AisPicture, Alerts]:
+        """Ships of AIS beside the tracks that are seen, as Ais.step; the alerts that changed."""
         known = memory.arpa
         ais, alerts, changed, ships = self.ais.step(
             memory.ais, seen, known.alerts, own, known.own, drift, sensors, now

@@ -157,12 +157,7 @@ def test_every_ros_package_imported_is_in_package_xml():
 
 def test_every_rosdep_key_of_our_own_has_a_rule_for_debian_and_ubuntu():
     rules = read_yaml('rosdep.yaml')
-    lacking = {
-        'python3-mcap',
-        'python3-mcap-ros2-support',
-        'python3-pyais',
-        'python3-pywavelets',
-    }
+    lacking = {'python3-mcap', 'python3-mcap-ros2-support', 'python3-pyais', 'python3-pywavelets'}
     assert set(rules) == lacking <= manifest('exec_depend')
     assert all({'debian', 'ubuntu'} <= set(rule) for rule in rules.values())
 

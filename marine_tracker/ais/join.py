@@ -22,7 +22,7 @@ from . import registration
 from .pairs import APART, CANDIDATE, JOINED, LEFT_FOR, MISMATCH, Pairs, beside, judged, remembered
 from .registration import Registration
 from .ship_motion import Moving
-from .ship_table import Ships
+from .ship_table import LOST_AFTER, Ships
 
 MEMORY, INDEPENDENT = 40.0, 30.0  # s, of evidence; s after which a difference is a new one
 LOW, HIGH = -12.0, 5.0  # log-likelihood ratio of one moment
@@ -106,7 +106,9 @@ def step(
     covariance = _covariance(ships, moving, seen, ship, track)
     ratio, distance = _ratio(differ, covariance, errors, told, moving.told[ship])
     # Of who reports seldom, the place that was refused is the newest there is.
-    pending = (ships.other_time > ships.time) & (ships.timeout > 6 * SLOW)
+    pending = ships.other_time > ships.time
+    if pending.any():
+        pending &= ships.timeout > LOST_AFTER * SLOW
     ratio = np.where(pending[ship], LOW, ratio)
     pairs = remembered(before, ships.id[ship], seen.id[track], now)
     keep = np.exp(-elapsed / MEMORY)

@@ -134,7 +134,7 @@ class Sentences:
                 return TAG
             told = dict(one.split(':', 1) for one in block[1].split(',') if ':' in one)
             source += '/' + told.get('s', '')
-            sent, line = _unix(told.get('c', ''), sent), line[block.end() :]
+            sent, line = unix_time(told.get('c', ''), sent), line[block.end() :]
         if line.startswith('$') or (line.startswith('!') and line[3:6] not in ('VDM', 'VDO')):
             return OTHER
         found = SENTENCE.fullmatch(line)
@@ -272,8 +272,8 @@ def _checksum(text: str) -> int:
     return functools.reduce(operator.xor, text.encode(), 0)
 
 
-def _unix(text: str, otherwise: float) -> float:
-    """s of a tag block's time, which may be in ms."""
+def unix_time(text: str, otherwise: float) -> float:
+    """s of a tag block's time, which may be in ms; `otherwise` where it tells none."""
     if not text.isdecimal() or len(text) > 13:
         return otherwise
     return float(text) / (1000.0 if len(text) > 11 else 1.0)

@@ -65,8 +65,11 @@ def _hear_once(ships: Ships, reports: Reports, position: Array, next_id: int) ->
     )
     told = np.isfinite(position[:, 0]) & ~new
     coarse = reports.type == LONG_RANGE
-    better = ~before.coarse & before.placed & (reports.heard - before.time < before.timeout)
-    told &= ~(coarse & better) & ~(reports.time < before.time - MISORDERED)
+    if coarse.any():
+        better = ~before.coarse & before.placed
+        better &= reports.heard - before.time < before.timeout
+        told &= ~(coarse & better)
+    told &= ~(reports.time < before.time - MISORDERED)
     fits, agrees = _fits(before, reports, position)
     refused = told & ~fits
     placed = told & (fits | agrees)
@@ -152,6 +155,8 @@ def _begin(reports: Reports, position: Array, next_id: int) -> Ships:
 
 def _identified(ships: Ships, reports: Reports) -> Ships:
     """The ships [R] with what their reports tell of name, kind and size."""
+    if not np.isin(reports.type, (5, 18, 19, 21, 24)).any() and (reports.name == '').all():
+        return ships  # nothing new
     kind = np.select(
         [np.isin(reports.type, (1, 2, 3, 5)), np.isin(reports.type, (18, 19, 24))],
         [m1371.CLASS_A, m1371.CLASS_B],

@@ -5,7 +5,7 @@ all derive from the frozen dataclasses here. A wrong value raises ValueError at 
 names the parameter, the value and the limit.
 """
 
-from .ais import AisParameters
+from .ais import AisInputParameters, AisParameters
 from .arpa import ArpaParameters
 from .description import from_mapping, from_mappings
 from .display import PpiDisplayParameters
@@ -27,6 +27,7 @@ NODES: dict[str, tuple[type, ...]] = {
     'nmea_output': (NmeaOutputParameters,),
     'ppi_display': (PpiDisplayParameters,),
     'recorder': (RecorderParameters,),
+    'ais_input': (AisInputParameters,),
 }
 
 __all__ = [
@@ -34,6 +35,7 @@ __all__ = [
     'GLINT_SIGMA',
     'NODES',
     'VESSEL_CLASSES',
+    'AisInputParameters',
     'AisParameters',
     'ArpaParameters',
     'NmeaOutputParameters',

@@ -93,3 +93,43 @@ class AisParameters:
                     raise ValueError(
                         f'parameter {name} has {word[:40]!r}; it must be of {", ".join(known)}'
                     )
+
+
+@dataclass(frozen=True)
+class AisInputParameters:
+    """The parameters of the node that takes AIS sentences."""
+
+    udp: str = parameter(
+        '0.0.0.0:10111',
+        'host:port to take datagrams of sentences on; 0.0.0.0 for all networks, [::] for those of '
+        'IPv6 as well. Empty: none.',
+    )
+    tcp: str = parameter(
+        '',
+        'host:port to connect to for sentences, or for the JSON of gpsd (port 2947), several '
+        'separated by blanks. Lost connections are made again. Empty: none.',
+    )
+    tcp_server: str = parameter(
+        '', 'host:port to take connections on that send sentences. Empty: none.'
+    )
+    serial: str = parameter('', 'Serial port to read sentences from, as /dev/ttyUSB0. Empty: none.')
+    baud: int = parameter(
+        38400, 'Speed of the serial port: 38400 for AIS.', unit='bit/s', low=4800, high=230400
+    )
+    file: str = parameter(
+        '',
+        'Recorded sentences to play, each after its seconds (`12.3 !AIVDM,...`) or tag block. '
+        'Empty: none.',
+    )
+    rate: float = parameter(1.0, 'Recorded seconds of the file in a second.', low=0.01, high=1000.0)
+    topics: str = parameter(
+        'ais/simulated',
+        'Topics of sentences (std_msgs/String) to take, separated by blanks: those of the '
+        'simulator.',
+    )
+    own_mmsi: int = parameter(
+        0, "Own ship's MMSI; 0: as her own receiver tells it (AIVDO).", low=0, high=999999999
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
