@@ -30,6 +30,7 @@ SPACE = 1500.0**2  # m^2 in which another track is to be expected
 OTHERS = 4.0  # m/s, deviation of the difference of velocities of two ships that meet
 MIDDLE, WAY = 8.0, 0.25  # m, m/s: echo and antenna are not the same place
 LEAST, START = 3.0, 2.0  # evidence that joins; what a joined pair has before others
+AGAINST = -4.0  # no evidence is remembered that is worse: who is wrong may be right again soon
 NEAR, WIDE = 400.0, 3.5  # m; deviations of the registration: pairs that may be
 FARTHEST = 2500.0  # m
 SWAPPED = 400.0  # m; tracks of ships that meet change places no farther than this
@@ -114,7 +115,7 @@ def step(
     keep = np.exp(-elapsed / MEMORY)
     ratio = np.where(seen.fresh[track] | (ratio < 0), ratio, 0.5 * ratio)
     evidence = keep * pairs.evidence + min(elapsed / INDEPENDENT, 1.0) * ratio
-    pairs = pairs._replace(evidence=evidence)
+    pairs = pairs._replace(evidence=np.maximum(evidence, AGAINST))
     pairs = beside(pairs, differ[:, :2], covariance, pending[ship], elapsed)
     chosen = _assigned(pairs, ship, track, len(ships.id), len(seen.id))
     differs = (distance > APART**2) | (pairs.left >= LEFT_FOR) | pending[ship]
@@ -125,7 +126,7 @@ def step(
     pairs = judged(pairs, chosen, ship, track, differs, now, elapsed)
     errors = _registered(errors, pairs, ship, offset, told, covariance, differ, moving, elapsed)
     joined = _joined(pairs, ship, len(ships.id))
-    useful = (pairs.evidence > -4.0) | (pairs.state != CANDIDATE)
+    useful = (pairs.evidence > AGAINST) | (pairs.state != CANDIDATE)
     return take(pairs, useful), errors, joined
 
 

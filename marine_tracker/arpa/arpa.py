@@ -194,7 +194,8 @@ class Arpa:
     ) -> tuple[OwnMotion, BoolArray]:
         """Own ship, at rest if she is at anchor; and the tracks [N] that are no danger then."""
         status = self.parameters.own_ship_status
-        if sensors.way == NONE or not at_anchor(samples, own, now, status):
+        known = sensors.way != NONE and len(samples.time)
+        if not known or not at_anchor(samples, own, now, status):
             return own, np.zeros(len(moving.position), bool)
         return own._replace(velocity=np.zeros(2)), harmless(moving, own)
 
