@@ -32,7 +32,7 @@ class Links:
         self._take = take
         self._selector = selectors.DefaultSelector()
         self._rest: dict[Any, bytes] = {}  # of each stream the line that has not ended
-        self._wanted: dict[Endpoint, float] = {}  # to be connected; s of the wall, when
+        self._wanted: dict[str, tuple[Endpoint, float]] = {}  # to be connected; s of the wall, when
         self._open: dict[Any, Endpoint | None] = {}
         self.faults: list[str] = []
 
@@ -49,7 +49,7 @@ class Links:
     def connect_tcp(self, name: str, text: str) -> None:
         """Connects to each host:port, again when it is lost. ValueError for a wrong one."""
         for endpoint in endpoints(name, text):
-            self._wanted[endpoint] = 0.0
+            self._wanted[endpoint.text] = endpoint, 0.0
 
     def open_serial(self, name: str, path: str, baud: int) -> None:
         """Reads a serial port, raw, or what stands for one. ValueError where it cannot."""
@@ -73,7 +73,7 @@ class Links:
     def poll(self) -> None:
         """Takes all that has come, makes connections that are due."""
         now = time.monotonic()
-        for endpoint in [one for one, due in self._wanted.items() if due <= now]:
+        for endpoint in [one for one, due in self._wanted.values() if due <= now]:
             self._connect(endpoint, now)
         for key, _ in self._selector.select(0):
             key.data(key.fileobj)
@@ -123,20 +123,19 @@ class Links:
 
     def _connect(self, endpoint: Endpoint, now: float) -> None:
         """Begins a connection; whether it is made shows when it is read."""
-        self._wanted[endpoint] = now + AGAIN
+        self._wanted[endpoint.text] = endpoint, now + AGAIN
         family, addresses = next(reversed(endpoint.addresses.items()))  # IPv4 where there is one
         one = socket.socket(family, socket.SOCK_STREAM)
         one.setblocking(False)
-        with contextlib.suppress(BlockingIOError):
-            try:
-                one.connect(addresses[0])
-            except BlockingIOError:
-                pass
-            except OSError as error:
-                one.close()
-                self.faults.append(f'{endpoint.text}: {error.strerror}')
-                return
-        del self._wanted[endpoint]
+        try:
+            one.connect(addresses[0])
+        except BlockingIOError:
+            pass
+        except OSError as error:
+            one.close()
+            self.faults.append(f'{endpoint.text}: {error.strerror}')
+            return
+        del self._wanted[endpoint.text]
         self._open[one] = endpoint
         if addresses[0][1] == GPSD_PORT:
             events = selectors.EVENT_READ | selectors.EVENT_WRITE
@@ -188,20 +187,19 @@ class Links:
         self._rest.pop(one, None)
         one.close()
         if endpoint is not None:
-            self._wanted[endpoint] = time.monotonic() + AGAIN
+            self._wanted[endpoint.text] = endpoint, time.monotonic() + AGAIN
             self.faults.append(f'{endpoint.text}: {why}')
 
     def _on_serial(self, port: int) -> None:
-        with contextlib.suppress(BlockingIOError):
-            try:
-                data = os.read(port, AT_ONCE)
-            except BlockingIOError:
-                return
-            except OSError as error:
-                self._selector.unregister(port)
-                self.faults.append(f'serial port: {error.strerror}')
-                return
-            self._split(port, data, 'serial')
+        try:
+            data = os.read(port, AT_ONCE)
+        except BlockingIOError:
+            return
+        except OSError as error:
+            self._selector.unregister(port)
+            self.faults.append(f'serial port: {error.strerror}')
+            return
+        self._split(port, data, 'serial')
 
     def _split(self, key: Any, data: bytes, source: str) -> None:
         *lines, rest = (self._rest.get(key, b'') + data).split(b'\n')
