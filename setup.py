@@ -61,6 +61,8 @@ setup(
         'top': ['textual>=1.0'],
         # Recordings of topics: node recorder, replay and score of MCAP files.
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.6'],
+        # Targets on NMEA 2000: nmea_output with nmea2000_udp.
+        'nmea2000': ['nmea2000>=2026.10'],
         'parallel': ['pytest-xdist>=3.3'],
         # Parts of experiments on other machines: --scheduler.
         'cluster': ['distributed>=2024.1', 'threadpoolctl>=3.1'],

@@ -161,6 +161,11 @@ class NmeaOutputParameters:
     signalk_udp: str = parameter(
         '', 'Where Signal K deltas are sent as datagrams, as for udp. Empty: nowhere.'
     )
+    nmea2000_udp: str = parameter(
+        '',
+        'Where targets are sent as NMEA 2000 (PGN 128520), in lines as gateways of Yacht Devices '
+        'take them, a datagram each, as for udp. Needs the package nmea2000. Empty: nowhere.',
+    )
     talker: str = parameter('RA', 'Talker of OSD, RSD, TTM and TLL.')
     target_numbers: int = parameter(
         99,
