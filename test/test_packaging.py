@@ -196,6 +196,7 @@ def test_package_is_in_the_ament_index(installed):
 def test_executables_stand_where_ros2_run_looks(installed, distribution):
     folder = installed / 'lib' / 'marine_tracker'
     names = {
+        'ais_input',
         'marine_tracker',
         'nmea_output',
         'plot_extractor',

@@ -157,15 +157,13 @@ class Sentences:
         _, kind, count, number, message, channel, payload, _, _ = found.groups()
         if int(number) > int(count):
             return UNKNOWN
-        same = (kind, count, number, payload) if count == '1' else (line,)
-        if heard - self._payloads.get(same, -math.inf) < TWICE_WITHIN:
-            return TWICE
-        self._remember(same, heard)
         if count == '1':
             return self._decode(kind, [line], payload, heard)
         self._lapse(heard)
         key = (source, kind, channel, message, count)
         parts = self._parts.setdefault(key, {})
+        if int(number) in parts and parts[int(number)].line == line:
+            return TWICE
         if int(number) in parts:  # of another message: what waits will not be whole any more
             self._give_up(key)
             parts = self._parts.setdefault(key, {})
@@ -206,6 +204,10 @@ class Sentences:
     def _decode(self, kind: str, lines: list[str], payload: str, heard: float) -> str:
         if not payload:
             return LENGTH
+        same = kind, payload
+        if heard - self._payloads.get(same, -math.inf) < TWICE_WITHIN:
+            return TWICE
+        self._remember(same, heard)
         code = ord(payload[0]) - 48
         code -= 8 * (code > 40)
         if code not in reports.TYPES:

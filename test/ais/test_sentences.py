@@ -109,8 +109,18 @@ def test_parts_join_in_any_order_from_one_source_only():
     apart.take(second, NOON, 'south')
     assert not len(apart.reports().mmsi)
     apart.take(second, NOON + 0.2, 'north')
-    # The same sentence again so soon counts as heard twice; the one that waits stays alone.
-    assert apart.outcome[sentences.TWICE] == 1
+    apart.take(first, NOON + 0.3, 'south')
+    assert apart.reports().name.tolist() == ['FULMAR']
+    assert +apart.outcome == {sentences.TAKEN: 2, sentences.TWICE: 2}
+
+
+def test_ships_whose_second_parts_are_the_same_are_both_taken():
+    one = lines(type=5, shipname='DUNLIN', mmsi=235066666)
+    other = lines(type=5, shipname='DUNLIN', mmsi=235077777)
+    assert one[1] == other[1]
+    assert heard(*one, *other).reports().mmsi.tolist() == [235066666, 235077777]
+    again = heard(one[0], one[0], one[1])
+    assert again.outcome == {sentences.TAKEN: 2, sentences.TWICE: 1, sentences.WAITING: 0}
 
 
 def test_a_part_of_another_message_completes_nothing():
