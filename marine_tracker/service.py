@@ -24,6 +24,7 @@ from .extent.hulls import Shapes
 from .geometry import heading_from
 from .parameters import ArpaParameters, TrackerParameters, from_mapping
 from .tracking.mounting import mounted
+from .tracking.offsets import corrected
 from .tracking.revolution import Turn, report_of, whole
 from .tracking.tracker import Report, Tracker, TrackerMemory
 from .types import Extrapolation, OwnShip, Scan, take
@@ -172,6 +173,7 @@ class Service:
         if heading is None:
             heading = heading_of(scan.own_ship)
         scan = mounted(scan, tracker.radars[scan.radar], heading)
+        scan = corrected(scan, memory.tracker.radars[scan.radar].offsets.applied)
         seen = None
         if extents.on:
             sure = take(memory.tracker.tracks, memory.tracker.tracks.number > 0)
