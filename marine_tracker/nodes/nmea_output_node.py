@@ -1,4 +1,5 @@
-"""NMEA 0183 out: targets and own ship as sentences on the topic `nmea`, over UDP and TCP.
+"""NMEA 0183 out: targets and own ship as sentences on the topic `nmea`, over UDP and TCP; targets
+also as NMEA 2000 and to Signal K.
 
 Each message on `targets_cloud` gives own ship's sentences first, then one TTM for each target, all
 for the moment of its stamp. Between scans, own ship's sentences are sent alone. A target that was
@@ -16,7 +17,7 @@ from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import NavSatFix, PointCloud2
 from std_msgs.msg import String
 
-from ..arpa import nmea, nmea_fields, signalk
+from ..arpa import nmea, nmea2000, nmea_fields, signalk
 from ..arpa.nmea_targets import nothing_told, word
 from ..files import shown
 from ..geometry import NAUTICAL_MILE, unit_vector
@@ -72,6 +73,9 @@ class NmeaOutputNode(RunnableNode):
             lambda reason, detail: self._bad.add(reason, time.monotonic(), detail=detail),
         )
         self._udp, self._signalk = Datagrams('udp', p.udp), Datagrams('signalk_udp', p.signalk_udp)
+        self._bus, self._frames = Datagrams('nmea2000_udp', p.nmea2000_udp), None
+        if p.nmea2000_udp:
+            self._frames = _encoder()
         self._tcp = Clients('tcp', p.tcp)
         self._told = nothing_told()
         self._heard = {topics.ODOMETRY: -np.inf, topics.TARGETS_CLOUD: -np.inf}  # s of the wall
@@ -118,7 +122,7 @@ class NmeaOutputNode(RunnableNode):
     def close(self) -> None:
         """A last word on /diagnostics; the clients are let go."""
         self._on_second()
-        for link in (self._udp, self._signalk, self._tcp):
+        for link in (self._udp, self._signalk, self._bus, self._tcp):
             link.close()
 
     # -- in ------------------------------------------------------------------------------------
@@ -174,6 +178,9 @@ class NmeaOutputNode(RunnableNode):
         if 'TLL' in self._wanted:
             lines += nmea.tll(now.targets, latitude, longitude, seconds, p.talker, slot)
         self._send(lines)
+        if self._frames:
+            frames = self._frames(now.targets._replace(bearing=bearing), seconds, slot)
+            self._send_datagrams(self._bus, [f'{frame}\r\n'.encode() for frame in frames])
         if self._signalk.destinations:
             self._send_datagrams(
                 self._signalk,
@@ -286,6 +293,7 @@ class NmeaOutputNode(RunnableNode):
             **self._count,
             'datagrams': self._udp.sent,
             'Signal K datagrams': self._signalk.sent,
+            'NMEA 2000 datagrams': self._bus.sent,
             'TCP clients': len(self._tcp),
             **self._bad.counts,
             FAILED: sum(self.failures.counts.values()),
@@ -309,3 +317,13 @@ class NmeaOutputNode(RunnableNode):
                 ],
             )
         )
+
+
+def _encoder() -> nmea2000.Lines:
+    try:
+        return nmea2000.encoder()
+    except ImportError as error:
+        raise ValueError(
+            'parameter nmea2000_udp asks for the package nmea2000, which is not installed here '
+            f'({error}): pip install "marine_tracker[nmea2000]"'
+        ) from error

@@ -9,7 +9,7 @@ from sensor_msgs.msg import PointCloud2
 from ..estimators import WANT_DOPPLER
 from ..tracking import intake, own_ship
 from ..tracking.radars import Radar
-from ..tracking.scan_input import MISSED, Came, ScanInput
+from ..tracking.scan_input import MISSED, PART_UNKNOWN, Came, ScanInput
 from ..types import Array, Scan
 from . import convert
 from .diagnostics import OK, WARN, Tally
@@ -46,6 +46,7 @@ class RadarInput(ScanInput):
                 *intake.PLOT_REASONS,
                 *intake.SCAN_REASONS,
                 MISSED,
+                PART_UNKNOWN,
                 NO_DOPPLER,
                 own_ship.OWN_BY_ARRIVAL,
             ),

@@ -224,7 +224,7 @@ def _instead(position: Array, others: Array, row: IntArray) -> Array:
 def _compared(
     applied: Array, position: Array, told: tuple[Array, ...], radar: TrackerParameters
 ) -> Compared:
-    """K plots, told as for `learn`, and what is expected of things at rest at `position` [K, 2] m."""
+    """K plots, told as for `learn`, and what is expected of things that rest at `position` m."""
     range_, bearing, origin, rate = told
     away = position - origin
     distance, expected = to_range_bearing(away)

@@ -13,6 +13,7 @@ from . import intake, own_ship, rotation
 from .radars import Radar
 
 MISSED = 'revolutions missed'
+PART_UNKNOWN = 'messages left out: the part of a revolution is not known yet'
 NO_STAMP = 'messages without a stamp: timed as they arrived'
 UNKNOWN = 4.0  # revolutions; so long messages wait for the antenna's rotation to be known
 LEADS = 15  # scans; more than ever wait in a queue
@@ -109,6 +110,7 @@ class ScanInput:
             self._count(MISSED, round((start - before) / period) - 1, '')
         self._starts.append(start)
         if not self._turns(start, plots):
+            self._count(PART_UNKNOWN, 1, '')
             return None
 
         # Recordings may stamp all plots of a scan alike; an antenna never does.

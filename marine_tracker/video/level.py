@@ -13,6 +13,7 @@ Sources: Skolnik, Radar Handbook, 3rd ed., 7.4 (cell averaging, greatest of, cen
 "False-alarm regulation in log-normal and Weibull clutter", IEEE T-AES 9(1), 1973.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -34,11 +35,16 @@ class Grid(NamedTuple):
     rows      spokes in a block
     edge      [C + 1]  first sample of each column; the last one is the number of samples
     centre    [C]      samples, the middle of each column
+    left, right, share  [B]  of each sample, the columns on both sides of its middle, and how far it
+                             is on the way
     """
 
     rows: int
     edge: IntArray
     centre: Array
+    left: IntArray
+    right: IntArray
+    share: Array
 
     @property
     def cells(self) -> FloatArray:
@@ -58,8 +64,19 @@ def grid(samples: int, range_step: float, spacing: float, beam: float, pulse: fl
     while edges[-1] < samples:
         edges.append(edges[-1] + int(np.clip(edges[-1] // 8, 2, widest)))
     edges[-1] = samples
-    edge = np.array(edges)
-    return Grid(rows, edge, 0.5 * (edge[:-1] + edge[1:]))
+    return of_edges(rows, np.array(edges))
+
+
+def of_edges(rows: int, edge: IntArray) -> Grid:
+    """Blocks of so many spokes, with columns at these edges."""
+    centre = (edge[:-1] + edge[1:]).astype(np.float64) / 2
+    sample = np.arange(edge[-1])
+    last = len(centre) - 1
+    right = np.clip(np.searchsorted(centre, sample + 0.5), min(1, last), last)
+    left = np.maximum(right - 1, 0)
+    apart = np.maximum(centre[right] - centre[left], 1e-9)
+    share = np.clip((sample + 0.5 - centre[left]) / apart, 0.0, 1.0)
+    return Grid(rows, edge, centre, left, right, share)
 
 
 def block_means(of: Grid, strength: StrengthArray) -> FloatArray:
@@ -89,23 +106,24 @@ def levels(
     """
     reach = GUARD_BLOCKS + RING_BLOCKS
     cells = np.broadcast_to(of.cells, mean.shape)
-    total, every = _integral(mean * cells), _integral(cells)
-    first = _around(total, every)
+    count = len(mean)
+    every = np.arange(count + 1.0)[:, None] * np.append(0.0, np.cumsum(of.cells, dtype=np.float64))
+    first = _around(_integral(mean * cells), every)
     residual = mean - first
     noise = np.float32(1.28 * step) / np.sqrt(of.cells)
     occupied = residual > OCCUPIED * texture * noise
     free = np.where(occupied, np.float32(0), cells)
-    total, left = _integral(mean * free), _integral(free)
-    level = _around(total, left)
+    left = _integral(free)
+    level = _around(_integral(mean * free), left)
     # Where hardly anything is free, as on land, its own level counts.
     in_box = [_columns(_rows(a, reach), -reach, reach) for a in (left, every)]
     few = in_box[0] < 0.25 * in_box[1]
     level = np.where(few, np.maximum(level, first), level)
     # From the lower half alone: echoes lie in the upper one.
-    some = residual[:: 2 if len(residual) > 8 else 1]
-    count = len(some)
-    ranked = np.partition(some, (count // 4, count // 2), axis=0)
-    spread = 1.48 * (ranked[count // 2] - ranked[count // 4]) / noise
+    some = np.ascontiguousarray(residual[:: 2 if count > 8 else 1].T)
+    count = some.shape[1]
+    ranked = np.partition(some, (count // 4, count // 2), axis=1)
+    spread = 1.48 * (ranked[:, count // 2] - ranked[:, count // 4]) / noise
     return location(level / step) * np.float32(step), occupied, spread
 
 
@@ -143,10 +161,15 @@ def _rows(integral: Array, half: int) -> Array:
 
 def _columns(rows: Array, low: int, high: int) -> Array:
     """[R, C] sums over the columns from `low` to `high` beside each column."""
-    count = rows.shape[1] - 1
-    at = np.arange(count)
-    first, last = np.clip(at + low, 0, count), np.clip(at + high + 1, 0, count)
+    first, last = _ends(rows.shape[1] - 1, low, high)
     return rows.take(last, 1) - rows.take(first, 1)
+
+
+@cache
+def _ends(count: int, low: int, high: int) -> tuple[IntArray, IntArray]:
+    """Where the sums over columns begin and end, of `count` columns."""
+    at = np.arange(count)
+    return np.clip(at + low, 0, count), np.clip(at + high + 1, 0, count)
 
 
 def _clipped_means() -> tuple[Array, Array]:
@@ -170,15 +193,5 @@ def location(mean: FloatArray) -> FloatArray:
 
 def at_samples(of: Grid, values: FloatArray) -> FloatArray:
     """[blocks, samples]: values [blocks, C] of blocks, straight between their middles."""
-    left, right, share = between(of, np.arange(of.edge[-1]))
-    low = values[:, left]
-    return low + share.astype(np.float32) * (values[:, right] - low)
-
-
-def between(of: Grid, sample: IntArray) -> tuple[IntArray, IntArray, Array]:
-    """The columns on both sides of the middle of samples, and how far it is on the way."""
-    last = len(of.centre) - 1
-    right = np.clip(np.searchsorted(of.centre, sample + 0.5), min(1, last), last)
-    left = np.maximum(right - 1, 0)
-    apart = np.maximum(of.centre[right] - of.centre[left], 1e-9)
-    return left, right, np.clip((sample + 0.5 - of.centre[left]) / apart, 0.0, 1.0)
+    low = values.take(of.left, 1)
+    return low + of.share.astype(np.float32) * (values.take(of.right, 1) - low)

@@ -204,7 +204,13 @@ def bad_weights(how):
     return good._replace(fusion=good.fusion._replace(bias=bias))
 
 
-@pytest.mark.parametrize('how', ['random', 'huge', 'off', 'wrong way'])
+SLOW = pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    'how',
+    ['random', 'off', pytest.param('huge', marks=SLOW), pytest.param('wrong way', marks=SLOW)],
+)
 def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(watch, tmp_path, how):
     file = tmp_path / 'bad.npz'
     gwnn_weights.save(file, bad_weights(how))
