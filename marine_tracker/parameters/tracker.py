@@ -225,7 +225,7 @@ class TrackerParameters:
         live=True,
     )
     stationary_places: bool = parameter(
-        False,
+        True,
         'Whether places where plots always are (quays, moored craft) are learnt and shown as '
         'stationary objects, not as ever new targets; see doc/tracking.md.',
         live=True,

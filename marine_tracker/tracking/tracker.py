@@ -99,10 +99,9 @@ class Tracker:
         p, (*for_clutter, position, variance, time) = self.radars[radar], found
         clutter = clutter_map.learn(memory.radars[radar].clutter, *for_clutter)
         known, number = at_rest.name(memory.ground.places, memory.next_number)
-        distance = np.hypot(*(known.position - memory.origin).T)
-        visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
         if p.stationary_places:
-            known = places.learn(known, position, variance, time, visible)
+            view = places.View(memory.origin, p.min_range_m, p.max_range_m)
+            known = places.learn(known, position, variance, time, view)
         ground = memory.ground._replace(places=known, revolutions=memory.ground.revolutions + 1)
         memory = memory._replace(next_number=number, ground=ground)
         return changed(memory, radar, clutter=clutter)

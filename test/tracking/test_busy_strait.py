@@ -12,7 +12,6 @@ from marine_tracker.simulation import scenario
 from marine_tracker.simulation.radar import simulate
 from marine_tracker.tracking.tracker import Tracker
 
-
 HALF_AN_HOUR = 660
 
 
