@@ -36,6 +36,7 @@ setup(
     install_requires=[
         'numpy>=1.26.4',
         'PyWavelets>=1.4',
+        'pyais>=3.0',
         'pynmea2>=1.19',
         'pyproj>=3.4',
         'rich>=13.3',
@@ -72,6 +73,7 @@ setup(
     entry_points={
         'console_scripts': [
             'marine_tracker = marine_tracker.cli:main',
+            'ais_input = marine_tracker.nodes.run:ais_input',
             'nmea_output = marine_tracker.nodes.run:nmea_output',
             'plot_extractor = marine_tracker.nodes.run:plot_extractor',
             'ppi_display = marine_tracker.nodes.run:ppi_display',

@@ -28,6 +28,11 @@ class RadarSimulatorParameters:
         high=1e10,
     )
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
+    ais_udp: str = parameter(
+        '',
+        'Where the AIS sentences of the scenario (`ais: {send: ...}`) are sent as datagrams: '
+        'host:port, several separated by blanks; beside the topic `ais/simulated`. Empty: nowhere.',
+    )
     sectors: int = parameter(
         0,
         'Messages of plots a revolution: the antenna does not wait for its whole turn. 0: as the '
