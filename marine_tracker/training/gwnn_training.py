@@ -119,7 +119,11 @@ def run(
         gwnn_checkpoint.save(checkpoint, settings(plan), training)
     progress('spread', 0, 1)
     spread = gwnn_spread.train(
-        training.network, samples, plan.seed, min(plan.steps, gwnn_spread.STEPS)
+        training.network,
+        samples,
+        plan.seed,
+        min(plan.steps, gwnn_spread.STEPS),
+        vessel_class=plan.vessel_class,
     )
     if not plan.legs:  # during the training these inputs were 0
         for network in (training.network, spread):

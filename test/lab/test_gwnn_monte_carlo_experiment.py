@@ -9,21 +9,11 @@ from marine_tracker.cli import main
 from marine_tracker.estimators.gwnn import gwnn
 from marine_tracker.evaluation.result import BORNE_OUT, IN_PART, NOT_BORNE_OUT, draw
 from marine_tracker.lab.gwnn import claims, failures, figures, leave_one_out, pictures, trials
-from marine_tracker.lab.gwnn.trials import (
-    ALONE,
-    FLEETS,
-    IMM,
-    LINE,
-    MANOEUVRE,
-    NO_LEGS,
-    OWN,
-    TANH,
-    Cell,
-)
+from marine_tracker.lab.gwnn.trials import ALONE, FLEETS, IMM, LINE, MANOEUVRE, OWN, Cell
 from marine_tracker.networks.wavelet_network import forward
 from marine_tracker.training.track_trials import Ratio
 
-OTHERS = (ALONE, TANH, NO_LEGS, MANOEUVRE, 'IMM as shipped', 'CV/CV', 'CS', 'CS of the fallback')
+OTHERS = (ALONE, MANOEUVRE, 'IMM as shipped', 'CV/CV', 'CS', 'CS of the fallback')
 
 
 def ratio(value, half=0.01):
@@ -112,7 +102,7 @@ class TestCells:
         """Found with 100 runs: .91, .91 and .87. 30 runs of 80 scans know that to .02 (deviation);
         .97 is three deviations or more above."""
         monkeypatch.setattr(trials, 'SCANS', 80)
-        weights = {OWN: gwnn.weights(vessel_class=vessel_class)}
+        weights = gwnn.weights(vessel_class=vessel_class)
         (found,) = trials.cells(
             vessel_class, kind, 30, FLEETS[vessel_class].radar, 3, None, weights
         )
@@ -120,7 +110,7 @@ class TestCells:
         assert found.position[OWN].value < 0.97
         assert found.idle < 0.05
         lone = {LINE} if kind == 'steady' else set()
-        assert set(found.rms) == {OWN, IMM, *OTHERS, *lone} - {TANH, NO_LEGS}
+        assert set(found.rms) == {OWN, IMM, *OTHERS, *lone}
         assert set(found.faster) == {MANOEUVRE, *lone} and 0.2 < found.nees < 2.0
         assert set(found.position) == set(found.velocity) == set(found.rms) - {IMM}
         assert set(found.over) == set(found.rms) - {OWN}
@@ -181,8 +171,9 @@ class TestFigures:
         figure = named(figures.figures(findings(one)))
         assert figure[f'mix, manoeuvre: velocity ratio to the {MANOEUVRE}'].ok is False
         straight = cell(kind='steady')
-        straight.over[LINE] = straight.faster[LINE] = ratio(1.08)
-        figure = named(figures.figures(findings(straight)))
+        for ratios in (straight.over, straight.faster, straight.position, straight.velocity):
+            ratios[LINE] = ratio(1.08)
+        figure = named(figures.figures(findings(straight, cell())))
         assert figure[f'steady, straight: velocity ratio to the {LINE}'].ok is True
 
     def test_what_is_demanded_beside_the_fair_cells(self):
@@ -228,26 +219,32 @@ class TestClaims:
         assert found[self.BETTER].verdict == NOT_BORNE_OUT
         assert found[MEANS].verdict == NOT_BORNE_OUT
 
-    def test_wavelets_that_do_as_well_as_plain_units_are_told(self):
-        says = 'wavelets do better than plain sigmoids'
-        assert claims_by_text(cell(other=0.95))[says].verdict == NOT_BORNE_OUT
-        assert claims_by_text(cell(other=1.1))[says].verdict == BORNE_OUT
-        barely = cell(other=0.955)
-        barely.over[TANH] = ratio(0.995, 0.001)
-        assert claims_by_text(barely)[says].verdict == IN_PART
-
     def test_rubbish_that_gives_no_numbers_is_told(self):
         claim = claims_by_text(cell())['bad weights cost little more than CS-Kalman']
         assert claim.verdict == NOT_BORNE_OUT and '1.050, not numbers' in claim.found
 
 
 def test_kinds_left_out_stand_beside_the_same_kinds_trained_on():
-    left_out = [[cell(own=0.96)], [cell(kind='weave', phase='manoeuvre', own=0.9)]]
-    trained = [[cell(own=0.94)], [cell(kind='weave', phase='manoeuvre', own=0.88)]]
-    found = named(leave_one_out.figures(left_out, trained))
-    assert found['weave left out, manoeuvre: velocity ratio'].against.endswith('all kinds 0.880')
-    mean = found['position ratio, geometric mean, kinds left out']
+    found = {}
+    for way, own in ((leave_one_out.WHOLE, 0.94), ('no legs', 0.98), ('tanh units', 0.95)):
+        for kind in ('mix', 'weave'):
+            found[way, kind] = [cell(kind=kind, own=own)]
+    found['mix', 'mix'] = [cell(own=0.96)]
+    found['weave', 'weave'] = [cell(kind='weave', own=0.9)]
+    told = named(leave_one_out.figures(found, ['mix', 'weave']))
+    assert told['weave left out, straight: velocity ratio'].against.endswith('everything 0.940')
+    mean = told['position ratio, geometric mean: left out']
     assert mean.value == pytest.approx((0.96 * 0.9) ** 0.5) and mean.ok is True
+    assert told['velocity ratio, geometric mean: no legs'].value == pytest.approx(0.98)
+
+
+@pytest.mark.slow
+def test_a_network_is_trained_without_a_kind_or_without_legs(monkeypatch):
+    monkeypatch.setattr(leave_one_out, 'CHUNKS', 1)
+    monkeypatch.setattr(leave_one_out, 'STEPS', 30)
+    for way in ('moored', leave_one_out.NO_LEGS, leave_one_out.PLAIN):
+        found = leave_one_out.measure(3, way, ['moored'], 5)
+        assert 0.3 < found['moored'][0].position[OWN].value < 3.0
 
 
 class TestFailures:

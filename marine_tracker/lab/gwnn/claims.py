@@ -14,9 +14,7 @@ from .figures import (
     geometric_mean,
     name_of,
 )
-from .trials import ALONE, IMM, MANOEUVRE, NO_LEGS, OWN, TANH, Cell, is_stranger
-
-LITTLE = 0.01  # of the error; a smaller difference does not count
+from .trials import ALONE, IMM, MANOEUVRE, OWN, Cell, is_stranger
 
 
 def claims(found: Findings) -> list[Claim]:
@@ -36,7 +34,6 @@ def claims(found: Findings) -> list[Claim]:
         _everywhere(ships, IMM, 'the IMM tuned on the same tracks'),
         _everywhere(ships, MANOEUVRE, 'the IMM tuned for manoeuvre'),
         _everywhere(every, 'CS of the fallback', 'CS-Kalman, which it falls back to'),
-        *(claim(ships) for name, claim in BESIDE.items() if name in ships[0].over),
         _fallback(every),
         _rubbish(found),
         _everywhere(boats, SHIPPED, '`imm` as shipped for small craft'),
@@ -62,18 +59,6 @@ def _mean(whose: str, cells: list[Cell], most: dict[str, float]) -> Claim:
     )
 
 
-def _legs(cells: list[Cell]) -> Claim:
-    """The same network without the straight legs, trained by the same command."""
-    straight = [cell for cell in cells if cell.phase == 'straight'] or cells
-    mean = geometric_mean([cell.over[NO_LEGS] for cell in straight])
-    return Claim(
-        'ships on straight courses',
-        'fits to the straight leg that a ship is on make it better',
-        f'ratio to a network without them: {mean.value:.3f} [{mean.low:.3f} {mean.high:.3f}]',
-        verdict(mean.high < 1 - LITTLE, IN_PART if mean.high < 1 else NOT_BORNE_OUT),
-    )
-
-
 def _everywhere(cells: list[Cell], rival: str, called: str) -> Claim:
     """The verdict over every kind of motion and phase."""
     over = {name_of(cell): cell.over[rival] for cell in cells}
@@ -93,28 +78,6 @@ def _everywhere(cells: list[Cell], rival: str, called: str) -> Claim:
         told,
         verdict(len(won) == len(over), IN_PART if mean.high < 1 else NOT_BORNE_OUT),
     )
-
-
-def _units(cells: list[Cell]) -> Claim:
-    """Compares wavelet with tanh units. Each network was trained only once, so a gain below LITTLE
-    proves nothing.
-    """
-    mean = geometric_mean([cell.over[TANH] for cell in cells])
-    told = (
-        'with as many plain tanh units in their place, trained once by the same command, the '
-        f'ratio is {mean.value:.3f} [{mean.low:.3f} {mean.high:.3f}]'
-    )
-    if mean.value > 1 - LITTLE:
-        told += ': the gain comes from weighting the filters, not from the kind of unit'
-    return Claim(
-        'paper 000',
-        'wavelets do better than plain sigmoids',
-        told,
-        verdict(mean.high < 1 - LITTLE, IN_PART if mean.high < 1 else NOT_BORNE_OUT),
-    )
-
-
-BESIDE = {NO_LEGS: _legs, TANH: _units}
 
 
 def _fallback(cells: list[Cell]) -> Claim:

@@ -214,6 +214,8 @@ def _mean(name: str, what: str, cells: list[Cell], limit: float | None = None) -
     """Geometric means of position or velocity over some cells; only the network's has a limit."""
     table = []
     for rival in getattr(cells[0], what) if cells else ():
+        if rival == LINE:  # is not there in every cell
+            continue
         mean = geometric_mean([getattr(cell, what)[rival] for cell in cells])
         called = f'{name} ratio, geometric mean over the cells'
         if rival == OWN and limit is not None:

@@ -18,16 +18,14 @@ from ...estimators.gwnn import gwnn
 from ...evaluation import parallel
 from ...evaluation.parallel import Job, Workers
 from ...evaluation.result import Progress, Result, silent
-from ...networks import gwnn_weights, weight_file
+from ...networks import gwnn_weights
 from . import failures, figures, pictures
 from .claims import claims
 from .figures import Findings
-from .trials import FLEETS, NO_LEGS, OWN, RECORDED, TANH, cells, kinds
+from .trials import FLEETS, RECORDED, cells, kinds
 
 HELP = 'GWNN against CS-Kalman, CV and IMMs, on tracks it was trained on and others'
 RUNS = 300
-# Other networks of ships, to compare with; each is measured if its file is there.
-BESIDE = {TANH: 'gwnn_tanh.npz', NO_LEGS: 'gwnn_no_legs.npz'}
 OPTIONS = {
     'data': {
         'type': Path,
@@ -58,11 +56,7 @@ def measure(
         raise ValueError(
             f'--data is {data}; it holds neither of ' + ', '.join(map(str, RECORDED.values()))
         )
-    weights = {name: {OWN: gwnn.weights(vessel_class=name)} for name in FLEETS}
-    for other, name in BESIDE.items():
-        file = weight_file.FOLDER / name
-        if file.exists():
-            weights['ship'][other] = gwnn.weights(str(file))
+    weights = {name: gwnn.weights(vessel_class=name) for name in FLEETS}
     # Apart from every seed of a training, whose numbers come in pairs.
     seeds = iter(np.random.SeedSequence([seed, 7, 7]).generate_state(100).tolist())
     planned = {
@@ -74,23 +68,19 @@ def measure(
         return {of[1:]: result for of, result in results.items() if of[0] == what}
 
     # Timed last, when no other job runs.
-    (cost,) = parallel.run([Job(failures.cost, (next(seeds), weights['ship'][OWN]))], 1, silent)
+    (cost,) = parallel.run([Job(failures.cost, (next(seeds), weights['ship']))], 1, silent)
     return Findings(
         those('fair'), those('hard'), those('sigma'), those('broken'), those('rubbish'), cost
     )
 
 
 def plan(
-    name: str,
-    runs: int,
-    data: Path | None,
-    weights: dict[str, gwnn_weights.Weights],
-    seeds: Iterator[int],
+    name: str, runs: int, data: Path | None, weights: gwnn_weights.Weights, seeds: Iterator[int]
 ) -> Iterator[tuple[tuple[str, str, str], Job]]:
     """The measurements of a vessel class, each with its key: field of `Findings`, vessel class,
     kind of motion.
     """
-    fleet, own = FLEETS[name], weights[OWN]
+    fleet = FLEETS[name]
     for kind in kinds(name):
         its = next(seeds)  # drawn even if unused: without data the other seeds stay the same
         if kind not in RECORDED or (data is not None and (data / RECORDED[kind]).exists()):
@@ -103,6 +93,6 @@ def plan(
     for kind in figures.BROKEN[name]:
         yield (
             ('broken', name, kind),
-            Job(failures.scans_to_fallback, (name, kind, runs, next(seeds), own)),
+            Job(failures.scans_to_fallback, (name, kind, runs, next(seeds), weights)),
         )
-    yield ('rubbish', name, fleet.usual), Job(failures.rubbish, (name, runs, next(seeds), own))
+    yield ('rubbish', name, fleet.usual), Job(failures.rubbish, (name, runs, next(seeds), weights))

@@ -5,7 +5,7 @@ from typing import Any
 
 from ...evaluation.result import Picture
 from .figures import SHIPPED, Findings, fair_cells
-from .trials import HELD_OUT, MANOEUVRE, OWN, TANH, Cell, is_stranger
+from .trials import HELD_OUT, MANOEUVRE, OWN, Cell, is_stranger
 
 # Colours of Okabe and Ito, safe for colour-blind readers; the markers differ too. OWN is drawn
 # last.
@@ -14,10 +14,8 @@ STYLES = {
     'CV/CV': ('D', '#cc79a7', 'IMM of two constant velocities (tuned)'),
     MANOEUVRE: ('s', '#e69f00', 'IMM tuned for manoeuvre'),
     SHIPPED: ('^', '#009e73', '`imm` as shipped'),
-    TANH: ('o', '#56b4e9', 'GWNN with plain tanh units'),
     OWN: ('o', '#0072b2', 'GWNN'),
 }
-LEFT_OUT = {'ship': SHIPPED, 'small_craft': TANH}  # keeps the picture readable
 LEAST, MOST = 0.8, 1.6  # ratio; larger values are written as a number at the edge
 LINE = 0.16  # rows between two estimators
 
@@ -44,11 +42,8 @@ def compare(figure: Any, cells: list[Cell], title: str) -> None:
         new = cell.kind in HELD_OUT or is_stranger(cell.vessel_class, cell.kind)
         groups['never trained on' if new else cell.phase].append(cell)
     rows = [cell for group in groups.values() for cell in group]
-    shown = [
-        name
-        for name in STYLES
-        if name != LEFT_OUT[cells[0].vessel_class] and name in cells[0].position
-    ]
+    ships = cells[0].vessel_class == 'ship'  # for whom one rival less keeps the picture readable
+    shown = [name for name in STYLES if name != SHIPPED or not ships]
     least = min([LEAST] + [0.97 * cell.position[name].value for cell in rows for name in shown])
     axes = figure.add_subplot(xscale='log', xlim=(least, MOST), ylim=(len(rows) - 0.5, -0.5))
     for row, cell in enumerate(rows):
@@ -85,16 +80,7 @@ def compare(figure: Any, cells: list[Cell], title: str) -> None:
     axes.set_axisbelow(True)
     for name in reversed(shown):
         mark, colour, text = STYLES[name]
-        axes.plot(
-            [],
-            [],
-            mark,
-            color=colour,
-            markersize=_size(name),
-            linestyle='',
-            markerfacecolor='white' if name == TANH else colour,
-            label=text,
-        )
+        axes.plot([], [], mark, color=colour, markersize=_size(name), linestyle='', label=text)
     axes.plot([], [], color='0.35', linewidth=1, label='1: IMM tuned on all kinds of motion')
     figure.legend(
         loc='outside upper left',
@@ -126,11 +112,4 @@ def _mark(axes, y: float, name: str, ratio) -> None:
         )
         return
     axes.plot([ratio.low, ratio.high], [y, y], color=colour, linewidth=1.2)
-    axes.plot(
-        ratio.value,
-        y,
-        mark,
-        color=colour,
-        markersize=_size(name),
-        markerfacecolor='white' if name == TANH else colour,
-    )
+    axes.plot(ratio.value, y, mark, color=colour, markersize=_size(name))

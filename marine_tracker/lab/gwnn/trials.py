@@ -32,9 +32,8 @@ HELD_OUT = {
     'AIS': held_out_tracks.real_ships,
     'boat': held_out_tracks.recorded_boats,
 }
-# The network; others with plain units, and without the straight legs; with its monitor switched
-# off; the reference of all ratios.
-OWN, TANH, NO_LEGS, ALONE, IMM = 'GWNN', 'tanh units', 'no legs', 'never falling back', 'IMM'
+# The network; with its monitor switched off; the reference of all ratios.
+OWN, ALONE, IMM = 'GWNN', 'never falling back', 'IMM'
 MANOEUVRE, LINE = 'IMM for manoeuvre', 'straight line'
 # Kinds whose ships never change course nor speed: a fit to all plots is the best there can be.
 STRAIGHT_KINDS = ('steady', 'still')
@@ -224,12 +223,9 @@ def cells(
     radar: Conditions,
     seed: int,
     data: Path | None,
-    weights: dict[str, gwnn_weights.Weights],
+    weights: gwnn_weights.Weights,
 ) -> list[Cell]:
-    """Both phases of one kind of motion.
-
-    weights  of the network, OWN, and of other networks to compare with it
-    """
+    """Both phases of one kind of motion, with these weights of the network."""
     rng = np.random.default_rng(seed)
     on = trial(vessel_class, kind, runs, radar, rng, data)
     period = 60 / radar.rpm
@@ -238,19 +234,10 @@ def cells(
     def watch(k, state):
         fallen[:, k] = state.monitor.status == monitor.FALLBACK
 
-    outcomes = {
-        OWN: track_trials.run(network(vessel_class, weights[OWN], period), on, False, watch)
-    }
+    outcomes = {OWN: track_trials.run(network(vessel_class, weights, period), on, False, watch)}
     outcomes[ALONE] = track_trials.run(
-        network(vessel_class, weights[OWN], period, trust=monitor.Trust(np.inf, np.inf)),
-        on,
-        gated=False,
+        network(vessel_class, weights, period, trust=monitor.Trust(np.inf, np.inf)), on, gated=False
     )
-    for name in weights:
-        if name != OWN:
-            outcomes[name] = track_trials.run(
-                network(vessel_class, weights[name], period), on, gated=False
-            )
     outcomes |= {
         name: track_trials.run(rival, on, gated=True)
         for name, rival in rivals(vessel_class, kind).items()
