@@ -206,15 +206,12 @@ class Service:
 
         Returns the alerts that changed last. own: own ship over ground
         """
-        nothing = motion.at(motion.begin(), now)
-        ids, no = np.zeros(0, np.int64), np.zeros(0, bool)
-        seen = Seen(ids, ids, nothing.position, nothing.velocity, nothing.covariance, no, no)
-        return self.ships(memory, seen, own, np.zeros(2), sensors, now)
+        return self.ships(memory, None, own, np.zeros(2), sensors, now)
 
     def ships(
         self,
         memory: ServiceMemory,
-        seen: Seen,
+        seen: Seen | None,
         own: OwnMotion,
         drift: Array,
         sensors: OwnSensors,

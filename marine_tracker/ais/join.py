@@ -79,6 +79,20 @@ def alone(ships: int) -> Joined:
     return Joined(np.full(ships, AIS_ONLY, np.int8), np.zeros(ships, np.int64), np.zeros(ships))
 
 
+def as_before(pairs: Pairs, ships: Ships) -> Joined:
+    """What each ship was when radar was last heard."""
+    row = row_of(ships.id, pairs.ship)
+    there = (row >= 0) & ~np.append(ships.lost, True)[row]
+    return _joined(take(pairs, there), row[there], len(ships.id))
+
+
+def nothing_seen() -> Seen:
+    """No tracks."""
+    ids, no = np.zeros(0, np.int64), np.zeros(0, bool)
+    pairs = np.zeros((0, 2))
+    return Seen(ids, ids, pairs, pairs, np.zeros((0, 4, 4)), no, no)
+
+
 def step(
     before: Pairs,
     errors: Registration,
