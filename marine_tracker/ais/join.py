@@ -29,6 +29,7 @@ from .pairs import (
     Pairs,
     beside,
     judged,
+    probability_of,
     remembered,
 )
 from .registration import Registration
@@ -307,9 +308,7 @@ def _searched(
 
 def _joined(pairs: Pairs, ship: IntArray, ships: int) -> Joined:
     """What each ship is; the probability that of the evidence among all tracks of hers."""
-    odds = np.exp(np.minimum(pairs.evidence, 30.0))
-    total = 1.0 + np.bincount(ship, odds, ships)
-    likely = odds / total[ship]
+    likely = probability_of(pairs)
     state = np.full(ships, AIS_ONLY, np.int8)
     track, probability = np.zeros(ships, np.int64), np.zeros(ships)
     np.maximum.at(probability, ship, np.where(pairs.state == CANDIDATE, likely, 0.0))

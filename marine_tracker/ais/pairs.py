@@ -50,6 +50,14 @@ def nothing() -> Pairs:
     )
 
 
+def probability_of(pairs: Pairs) -> Array:
+    """Of each pair [P], that it is one ship: by the evidence of all tracks that may be hers."""
+    odds = np.exp(np.minimum(pairs.evidence, 30.0))
+    _, which = np.unique(pairs.ship, return_inverse=True)
+    found: Array = odds / (1.0 + np.bincount(which, odds)[which])
+    return found
+
+
 def remembered(before: Pairs, ship: IntArray, track: IntArray, now: float) -> Pairs:
     """The pairs of these ids [P], with what is remembered of them."""
     count = len(ship)

@@ -3,6 +3,7 @@
     joined   40 ships, 12 of them in a lane 300 m apart; 70 % have AIS, 10 % of those of class B;
              reports come up to 10 s late; the radar measures 30 m and 1 degree too much
     spoofed  four ships of such a scene tell places 1 km off, or that walk off at 5 m/s
+    fused    with AIS as another sensor of the tracks; a quarter of the runs
     recorded spokes with the sentences of the same seconds, with --data
     speed    1,000 ships and 200 tracks; sentences; broken sentences
 
@@ -19,7 +20,7 @@ from ...evaluation import parallel, report
 from ...evaluation.report import Figure
 from ...evaluation.result import Picture, Progress, Result, silent
 from ...types import Array
-from . import recorded, speed
+from . import fused, recorded, speed
 from .tallies import TOLD_WITHIN, Tally, of_scene
 
 HELP = 'ships of AIS joined to radar targets, and told when they are wrong'
@@ -52,9 +53,18 @@ def run(
         for spoof in (None, *SPOOFS.values())
         for one in seeds
     ]
+    few = max(runs // 4, 1)
+    work += [
+        parallel.Job(fused.of_scene, (int(one), estimator))
+        for estimator in fused.ESTIMATORS
+        for one in seeds[:few]
+    ]
     found = parallel.run(work, workers, progress)
+    found, off = found[: 3 * runs], found[3 * runs :]
     honest = found[:runs]
     figures = _joined(honest) + _told(found, runs)
+    for k, estimator in enumerate(fused.ESTIMATORS):
+        figures += fused.figures(estimator, off[k * few : (k + 1) * few])
     figures += speed.figures(seed)
     chance = np.concatenate([one.chance for one in honest])
     pictures = [Picture('join_probability', (6, 4.5), _paint(chance))]
@@ -149,6 +159,6 @@ def _paint(chance: Array) -> Any:
             xlim=(0, 1.02),
             ylim=(0, 1.02),
         )
-        axis.set_title('Joined pairs and likeliest candidates; numbers of ship-scans', fontsize=10)
+        axis.set_title('Pairs of a ship and a track; numbers of pair-scans', fontsize=10)
 
     return paint

@@ -89,7 +89,7 @@ def clock(lines: list[tuple[float, str]]) -> float:
     for at, line in lines:
         if line[3:6] != 'VDM' or line.split(',')[1] != '1':
             continue
-        second = pyais.decode(line).asdict().get('second', 60)
+        second: Any = pyais.decode(line).asdict().get('second', 60)
         if second < 60:
             offsets.append((second - at) % 60)
     if not offsets:
