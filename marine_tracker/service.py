@@ -33,6 +33,7 @@ from .parameters import AisParameters, ArpaParameters, TrackerParameters, from_m
 from .tracking import late_plots
 from .tracking.lifecycle import CONFIRMED, LOST, STATIONARY
 from .tracking.mounting import mounted
+from .tracking.offsets import corrected
 from .tracking.revolution import Turn, report_of, whole
 from .tracking.tracker import Report, Tracker, TrackerMemory
 from .types import Array, Extrapolation, OwnShip, Scan, Tracks, append, take
@@ -249,6 +250,7 @@ class Service:
         if heading is None:
             heading = heading_of(scan.own_ship)
         scan = mounted(scan, tracker.radars[scan.radar], heading)
+        scan = corrected(scan, memory.tracker.radars[scan.radar].offsets.applied)
         seen = None
         if extents.on:
             sure = take(memory.tracker.tracks, memory.tracker.tracks.number > 0)
