@@ -21,7 +21,7 @@ LEVEL = (-8.0, 6.0)  # log of the smallest and the largest variance, sigma^2
 # Ships: they hold back single wild samples only, so that errors are on the whole as large as the
 # variances say. Boats' plots jump over the hull: with the same values the variance of their
 # velocity would be ten times too large on quiet straight courses.
-HELD_BACK = {'ship': (400.0, -50.0), 'small_craft': (100.0, -5.0)}
+HELD_BACK = {'ship': (400.0, -50.0), 'small_craft': (110.0, -7.0)}
 SAMPLES = 300000  # at most
 PEAK = 3e-3
 

@@ -228,7 +228,9 @@ def gwnn(
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state: GwnnState, plots: Plots, rows: IntArray) -> GwnnState:
-        before = take(state, rows)
+        # If all rows had a plot, there is no need to copy them out and in again.
+        whole = len(rows) == len(state.output) and bool((rows[1:] > rows[:-1]).all())
+        before = state if whole else take(state, rows)
         frame = before.memory.frame
         after, memory, expected = advance(bank, before.bank, before.memory, plots)
         at = look(before.bank, frame, expected.ahead, plots.time)
@@ -246,11 +248,9 @@ def gwnn(
                 adapted, residual, at.scans, np.where(sound[:, None, None], units, 0.0)
             )
         monitor = judge(before.monitor, plots, expected.ahead, shift, memory, wrong, trust)
-        return put(
-            state,
-            rows,
-            GwnnState(after, memory, monitor, np.where(sound[:, None], output, 0.0), adapted),
-        )
+        output = np.where(sound[:, None], output, 0.0)
+        updated = GwnnState(after, memory, monitor, output, adapted)
+        return updated if whole else put(state, rows, updated)
 
     return Estimator(init, extrapolate, update, account)
 
