@@ -24,7 +24,7 @@ from ..arpa.arpa import Picture
 from ..arpa.view import Standing
 from ..parameters import NODES
 from ..service import Service, service_of
-from ..tracking import clocks, own_ship
+from ..tracking import clocks, offsets, own_ship
 from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
 from ..tracking.mounting import needs_heading
 from ..tracking.own_velocity import AUTO, POSITIONS
@@ -248,6 +248,8 @@ class TrackerNode(RunnableNode):
         level, message, values = heard.state(wall)
         if now == 0:
             level, message = WARN, message + '; use_sim_time is set and /clock is silent'
+        radar = self._operator.memory.tracker.radars[self.inputs.index(heard)]
+        values = {**values, **offsets.in_words(radar.offsets)}
         return self._status(f'input {heard.radar.name}'.rstrip(), level, message, values)
 
     def _tracking_status(self, wall: float) -> DiagnosticStatus:

@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from ..types import Array, BoolArray, CodeArray, IntArray, Plots, Scan, Tracks
-from . import at_rest, clutter_map, sectors
+from . import at_rest, clutter_map, offsets, sectors
 
 
 class OfRadar(NamedTuple):
@@ -11,11 +11,13 @@ class OfRadar(NamedTuple):
 
     leftover  plots of its last scan that belong to no track: one may be a new target's first plot
     clutter   the density of its false plots
+    offsets   of its ranges and bearings, and the lag of its plots
     waiting   what its sectors left undecided; None: whole revolutions
     """
 
     leftover: Plots
     clutter: clutter_map.ClutterMap
+    offsets: offsets.Offsets
     waiting: sectors.Waiting | None = None
 
 

@@ -15,6 +15,7 @@ from . import (
     land_mask,
     late_plots,
     lifecycle,
+    offsets,
     parts,
     places,
     score,
@@ -65,13 +66,14 @@ class Tracker:
         self.updates = held_updates(radars)
         self.gate_size = gate_size(parameters.gate_probability)
         self.doppler = [doppler.limits(p) for p in self.radars]
+        self.marks = offsets.marks_of(parameters.known_marks)
         self.land = land_mask.read(parameters.land_mask, parameters.land_mask_origin)
 
     def start(self) -> TrackerMemory:
         """No tracks yet."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
-        of_radar = OfRadar(plots, clutter_map.empty())
+        of_radar = OfRadar(plots, clutter_map.empty(), offsets.begin())
         return TrackerMemory(
             self._begin(plots, 1, 0),
             (of_radar,) * len(self.radars),
@@ -96,15 +98,17 @@ class Tracker:
 
     def learnt(self, memory: TrackerMemory, radar: int, found: sectors.Found) -> TrackerMemory:
         """The memory after a whole revolution: false plots, and places where plots always are."""
-        p, (*for_clutter, position, variance, time) = self.radars[radar], found
-        clutter = clutter_map.learn(memory.radars[radar].clutter, *for_clutter)
+        p, of_radar = self.radars[radar], memory.radars[radar]
+        for_clutter, (position, variance, time), told = found[:2], found[2:5], found[5:]
+        clutter = clutter_map.learn(of_radar.clutter, *for_clutter)
         known, number = at_rest.name(memory.ground.places, memory.next_number)
         if p.stationary_places:
             view = places.View(memory.origin, p.min_range_m, p.max_range_m)
             known = places.learn(known, position, variance, time, view)
+        off = offsets.learn(of_radar.offsets, known, position, variance, told, p, self.marks)
         ground = memory.ground._replace(places=known, revolutions=memory.ground.revolutions + 1)
         memory = memory._replace(next_number=number, ground=ground)
-        return changed(memory, radar, clutter=clutter)
+        return changed(memory, radar, clutter=clutter, offsets=off)
 
     def judge(
         self, memory: TrackerMemory, scan: Scan, others: int = 0
@@ -172,6 +176,7 @@ class Tracker:
         found = (
             *(lone.range[nowhere], lone.bearing[nowhere]),
             *(rest.position, at_rest.larger(rest.covariance), rest.time),
+            *(rest.range, rest.bearing, rest.origin, offsets.rates(scan, rest.time, p)),
         )
         alive = tracks.status != LOST
         memory = TrackerMemory(
