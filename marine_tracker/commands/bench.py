@@ -9,6 +9,9 @@ traffic and Stone Soup.
 
 `--display` measures the picture instead: frames a second in a headless browser, processor time of
 the display node, load time of the page, bytes to a viewer; 200 targets, 1,000 plots in a scan.
+
+`--sectors` measures how soon after the beam a track comes over DDS, from a radar that sends 16
+sectors a revolution, in real time.
 """
 
 from argparse import ArgumentParser, Namespace
@@ -16,7 +19,7 @@ from argparse import ArgumentParser, Namespace
 from ..estimators import ESTIMATORS
 from ..evaluation import benchmark, report, video_benchmark
 from ..processes import keep_freed_memory, peak_memory_mb
-from . import bench_display
+from . import bench_display, bench_sectors
 
 HELP = 'measure the cost of a scan, compared with Stone Soup'
 PLAIN, ALL = 'cs_kalman', 'all'
@@ -58,6 +61,9 @@ def add_arguments(parser: ArgumentParser) -> None:
         help='instead: plots out of radar video, 2,048 spokes of 1,024 samples a revolution',
     )
     parser.add_argument('--alone', action='store_true', help='leave Stone Soup out')
+    parser.add_argument(
+        '--sectors', action='store_true', help='instead: from the beam to the track, over DDS'
+    )
     parser.add_argument('--display', action='store_true', help='the picture, and nothing else')
     parser.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
     report.add_arguments(parser)
@@ -73,6 +79,10 @@ def run(args: Namespace) -> int:
     for name, least in (('tracks', 1), ('clutter', 0), ('scans', 1)):
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
+    if args.sectors:
+        title = f'{bench_sectors.SECTORS} sectors a revolution, {args.scans} revolutions'
+        figures = bench_sectors.figures(args.scans, args.seed)
+        return report.publish(title, figures, args.json, {'scans': args.scans, 'seed': args.seed})
     keep_freed_memory()
     if args.video:
         return _video(args)
