@@ -26,7 +26,7 @@ DEMO := .venv/.for-demo$(CHOICE)
 TEST := .venv/.for-test$(CHOICE)
 CHECK := .venv/.for-check$(CHOICE)
 
-.PHONY: demo test nodes arithmetic check api slow fuzz clean
+.PHONY: demo test nodes arithmetic check types api slow fuzz clean
 
 demo: $(DEMO)
 	@exec $(BIN)/python .ci/foreground.py $(BIN)/marine_tracker demo $(ARGS)
@@ -47,11 +47,13 @@ arithmetic:
 check: $(CHECK)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy
-	@$(MAKE) --no-print-directory api test
+	@$(MAKE) --no-print-directory --jobs=3 --keep-going --output-sync=target nodes arithmetic types api
+
+types:
+	nice -n 19 $(BIN)/mypy
 
 api: $(CHECK)
-	$(BIN)/python doc/api/build.py build/api
+	nice -n 19 $(BIN)/python doc/api/build.py build/api
 
 slow: $(TEST)
 	$(BIN)/python -m pytest -m slow $(ARGS)

@@ -141,6 +141,7 @@ def step(
     now        s, end of the scan
     """
     in_range = (seen.distance >= radar.min_range_m) & (seen.distance <= radar.max_range_m)
+    in_range &= seen.swept
     tracks = tracks._replace(bearing=seen.bearing)
     rows = seen.hit.nonzero()[0]
     tracks = record(tracks, rows, gained, in_range & ~elsewhere, radar)

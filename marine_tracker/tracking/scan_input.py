@@ -79,6 +79,7 @@ class ScanInput:
         others: Sequence[intake.TimeOrder],
         way: Array,
         heading: float,
+        unswept: Array | None = None,
     ) -> tuple[Scan, str, own_ship.OwnShipLog] | None:
         """The scan in the tracker's time, the fallback for own ship, and her log, in which what
         waited may be confirmed by the scan; None where the scan is rejected.
@@ -87,6 +88,7 @@ class ScanInput:
         others   the orders of the other radars
         way      [2] m/s, own ship's way through the water, should her positions be lost; nan: none
         heading  rad, hers now; nan: not known
+        unswept  gaps, as in Scan
         """
         parameters, period, start_ns = self.radar.parameters, self.period, came.start_ns
         plots, rejected = intake.screen_plots(plots, period, parameters.max_plots)
@@ -137,6 +139,7 @@ class ScanInput:
             own._replace(time=own.time + shift),
             self._place,
             sector=self._rotation.sector(start, end) if self.in_sectors else None,
+            unswept=unswept,
         )
         return scan, fallback, own_log
 

@@ -154,7 +154,7 @@ class Tracker:
         tracks = late_plots.update(self.estimator, tracks, chosen, rows, scan.radar)
 
         # judge: record the scan for each track, and decide its status
-        seen = look(tracks, rows, chosen, ahead, expected, noise)
+        seen = look(tracks, rows, chosen, ahead, expected, noise, scan)
         gained = score.gained(pairs, plot_of, take(lone, first), chosen, of_radar.clutter, p)
         elsewhere = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
         tracks, reason = lifecycle.step(tracks, seen, gained, elsewhere, p, self.farthest, scan.end)

@@ -17,12 +17,12 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array, FloatArray, IntArray, StrengthArray
+from ..types import Array, BoolArray, FloatArray, IntArray, StrengthArray
 
 DYNAMIC_NEPERS = 13.8  # of power, 60 dB: what a radar's scale is taken to span, to begin with
 GUARD_M = 40.0  # m: echoes that long do not raise their own level
+SHIP_M = 100.0  # m: half of a long ship
 RING_BLOCKS = 4  # depth of the ring of blocks beyond the guard
 GUARD_BLOCKS = 2
 OCCUPIED = 4.0  # deviations of a block's mean above the level, from which it holds an echo
@@ -37,6 +37,7 @@ class Grid(NamedTuple):
     centre    [C]      samples, the middle of each column
     left, right, share  [B]  of each sample, the columns on both sides of its middle, and how far it
                              is on the way
+    close     [C]      a ship may be wider than what is looked at beside a block
     """
 
     rows: int
@@ -45,6 +46,7 @@ class Grid(NamedTuple):
     left: IntArray
     right: IntArray
     share: Array
+    close: BoolArray
 
     @property
     def cells(self) -> FloatArray:
@@ -64,11 +66,13 @@ def grid(samples: int, range_step: float, spacing: float, beam: float, pulse: fl
     while edges[-1] < samples:
         edges.append(edges[-1] + int(np.clip(edges[-1] // 8, 2, widest)))
     edges[-1] = samples
-    return of_edges(rows, np.array(edges))
+    beside = (GUARD_BLOCKS + RING_BLOCKS) * rows * spacing * range_step
+    return of_edges(rows, np.array(edges), SHIP_M / beside)
 
 
-def of_edges(rows: int, edge: IntArray) -> Grid:
-    """Blocks of so many spokes, with columns at these edges."""
+def of_edges(rows: int, edge: IntArray, wide: float = 0.0) -> Grid:
+    """Blocks of so many spokes, with columns at these edges; before the sample `wide` a ship is
+    wider than what is looked at beside a block."""
     centre = (edge[:-1] + edge[1:]).astype(np.float64) / 2
     sample = np.arange(edge[-1])
     last = len(centre) - 1
@@ -76,7 +80,7 @@ def of_edges(rows: int, edge: IntArray) -> Grid:
     left = np.maximum(right - 1, 0)
     apart = np.maximum(centre[right] - centre[left], 1e-9)
     share = np.clip((sample + 0.5 - centre[left]) / apart, 0.0, 1.0)
-    return Grid(rows, edge, centre, left, right, share)
+    return Grid(rows, edge, centre, left, right, share, centre < wide)
 
 
 def block_means(of: Grid, strength: StrengthArray) -> FloatArray:
@@ -97,7 +101,7 @@ def scale(full: int) -> float:
 
 def levels(
     of: Grid, mean: FloatArray, step: float, texture: FloatArray
-) -> tuple[FloatArray, NDArray[np.bool_], FloatArray]:
+) -> tuple[FloatArray, BoolArray, FloatArray]:
     """Location [blocks, C] of the noise around each block, which blocks hold an echo, and by how
     much [C] the means of blocks differ, over what noise alone would give.
 
@@ -108,13 +112,14 @@ def levels(
     cells = np.broadcast_to(of.cells, mean.shape)
     count = len(mean)
     every = np.arange(count + 1.0)[:, None] * np.append(0.0, np.cumsum(of.cells, dtype=np.float64))
-    first = _around(_integral(mean * cells), every)
+    # A ship close by fills all that is beside it: what may be an echo is told by range alone.
+    first = _around(_integral(mean * cells), every, ~of.close)
     residual = mean - first
     noise = np.float32(1.28 * step) / np.sqrt(of.cells)
     occupied = residual > OCCUPIED * texture * noise
     free = np.where(occupied, np.float32(0), cells)
     left = _integral(free)
-    level = _around(_integral(mean * free), left)
+    level = _around(_integral(mean * free), left, np.ones(len(of.cells), bool))
     # Where hardly anything is free, as on land, its own level counts.
     in_box = [_columns(_rows(a, reach), -reach, reach) for a in (left, every)]
     few = in_box[0] < 0.25 * in_box[1]
@@ -127,16 +132,17 @@ def levels(
     return location(level / step) * np.float32(step), occupied, spread
 
 
-def _around(total: Array, cells: Array) -> FloatArray:
+def _around(total: Array, cells: Array, with_sides: BoolArray) -> FloatArray:
     """Mean in the ring around each block, on the nearer or farther side: the greater one.
 
     total, cells  [blocks + 1, C + 1]  integrals (_integral) of the sums and numbers of cells
+    with_sides    [C]  whether what is beside a block in bearing counts, too
     """
     guard, reach = GUARD_BLOCKS, GUARD_BLOCKS + RING_BLOCKS
     parts = []
     for a in (total, cells):
         wide = _rows(a, reach)
-        beside = _columns(wide - _rows(a, guard), -guard, guard)
+        beside = _columns(wide - _rows(a, guard), -guard, guard) * with_sides
         near, far = _columns(wide, -reach, -guard - 1), _columns(wide, guard + 1, reach)
         parts.append((beside + near, beside + far))
     sides = [sums / np.maximum(counts, 1) for sums, counts in zip(*parts)]

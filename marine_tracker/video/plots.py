@@ -16,6 +16,7 @@ POINT = np.array([1.0, math.sqrt(2.0)])  # beams and pulses that a point is wide
 ROUND = 1.4  # times that: still a point
 SKIRTS = 2.0  # beams that the flanks of a strong echo may add to its width
 STANDS_OUT = 3.5  # nepers, 15 dB: what is so far above most of the land it hangs on is no land
+FEW = 3  # maxima: so few are ships near each other with their side lobes; land has more
 LOBES = math.radians(8.0)  # side lobes show so far beside a strong echo ...
 LOBE_DOWN = 0.35  # of full scale, some 28 dB: ... and are at least so much weaker
 LEAST_CELLS = 3  # of an echo, where beam and pulse spread it over more
@@ -33,16 +34,19 @@ def measured(
 ) -> Found:
     """The plots of the components [n] of cells at rows and samples [n]."""
     lobe, count = held.lobe, int(component.max()) + 1
-    slope = np.ones(count)
-    slope[component] = limits.slope[sample]
     order = np.argsort(component, kind='stable')
     row, sample, component = row[order], sample[order], component[order]
-    height = held.strength[row, sample] / limits.slope[sample]  # nepers
-    land_height = _land(held, row, sample, component, height, parameters.max_size_m)
+    # The slope of the tail is the display's scale in noise only: clutter has a longer tail.
+    usual = level.scale(full)
+    slope = np.full(count, usual)
+    np.minimum.at(slope, component, limits.slope[sample])
+    height = held.strength[row, sample] / usual  # nepers
+    land_height, deep = _land(held, row, sample, component, height, parameters.max_size_m)
     top = np.full(count, -np.inf)
     np.maximum.at(top, component, height)
-    whole = top < land_height
+    whole = (top < land_height) & deep
     found = pieces.split(row, sample, component, whole, held.strength, lobe, slope)
+    few = ~deep & (np.bincount(found.origin, minlength=count) <= FEW)
     row, sample, piece, count = found.row, found.sample, found.piece, found.number
     power, value = detection.power_at(held, row, sample, limits)
     top = np.full(count, -np.inf)
@@ -65,7 +69,7 @@ def measured(
     land = (size - np.stack([0 * flanks, flanks], 1) > parameters.max_size_m).any(1)
     highest = np.full(count, -np.inf)
     np.maximum.at(highest, piece, height)
-    land |= highest < land_height[found.origin]
+    land |= (highest < land_height[found.origin]) & ~few[found.origin]
     spread = lobe.shape[0] >= detection.LEAST_SPOKES
     enough = (cells >= LEAST_CELLS) & (spokes >= 2) if spread else cells >= 1
     keep = ~land & enough
@@ -106,9 +110,10 @@ def measured(
 
 def _land(
     held: Stack, row: IntArray, sample: IntArray, component: IntArray, height: Array, longest: float
-) -> Array:
+) -> tuple[Array, BoolArray]:
     """[C] nepers: what is lower in a component that is longer than any ship is land; -inf for the
-    others. Cells [n] in the order of their components.
+    others. [C] whether it is deeper in range than a few ships. Cells [n] in the order of their
+    components.
 
     height  [n]  strength of the cells, in nepers
     """
@@ -122,7 +127,7 @@ def _land(
     land = np.full(len(cells), -np.inf)
     for one in np.flatnonzero(long_).tolist():
         land[one] = np.median(height[edge[one] : edge[one + 1]]) + STANDS_OUT
-    return land
+    return land, span[1] * held.range_step > FEW * longest
 
 
 def _side_lobe(held: Stack, peak: IntArray, full: int) -> BoolArray:
