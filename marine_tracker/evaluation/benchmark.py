@@ -183,7 +183,7 @@ def run_stone_soup(scene: Traffic, joint: bool = False) -> Iterator[BenchmarkRes
     from stonesoup.updater.kalman import ExtendedKalmanUpdater
     from stonesoup.updater.probability import PDAUpdater
 
-    class DetectionKDTreeJPDA(DetectionKDTreeMixIn, JPDAwithEHM2):  # type: ignore[misc]
+    class DetectionKDTreeJPDA(DetectionKDTreeMixIn, JPDAwithEHM2):
         """As DetectionKDTreeGNN2D is made."""
 
     start = datetime.datetime(2000, 1, 1)

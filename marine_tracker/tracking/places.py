@@ -136,11 +136,13 @@ def learn(before: Places, position: Array, variance: Array, time: Array, view: V
     no_more = after.share < np.maximum(ENDS, after.chance)
     keep &= ~(after.established & no_more & (after.looks > LEAST_LOOKS))
     after = append(take(after, keep), _new(position[~known], variance[~known], time[~known]))
-    after = take(after, slice(0, MOST))
-    often = np.minimum(after.share, after.lately) >= BECOMES
-    sure = ~after.established & _at_rest(after) & often
-    sure &= (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS)
-    sure[sure] = surplus(take(after, sure)) > SURE
+    if len(after.share) > MOST:
+        after = take(after, slice(0, MOST))
+    sure = (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS) & ~after.established
+    sure &= np.minimum(after.share, after.lately) >= BECOMES
+    if sure.any():
+        those = take(after, sure)
+        sure[sure] = _at_rest(those) & (surplus(those) > SURE)
     number = np.where(sure, UNNAMED, after.number)
     return after._replace(number=number, crowded=_crowded(after.position, number != 0))
 
