@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .ais import ais_alarms
+from .ais import ais_alarms, fusion
 from .ais.ais import Ais, AisMemory, AisPicture
 from .ais.join import Seen
 from .ais.reports import Reports
@@ -30,6 +30,7 @@ from .extent.extents import Extents, ExtentsMemory
 from .extent.hulls import Shapes
 from .geometry import heading_from
 from .parameters import AisParameters, ArpaParameters, TrackerParameters, from_mapping
+from .tracking import late_plots
 from .tracking.lifecycle import CONFIRMED, LOST, STATIONARY
 from .tracking.mounting import mounted
 from .tracking.offsets import corrected
@@ -185,7 +186,7 @@ class Service:
         memory = memory._replace(arpa=known)
         if not heard:
             return memory, Output(*done, fares, picture)
-        seen = _seen(known.motion, tracks, done.scan.end)
+        seen, before = _seen(known.motion, tracks, done.scan.end), memory.ais.time
         against = picture.stabilised.drift
         memory, ships, changed = self.ships(
             memory, seen, picture.own, against, sensors, done.scan.end
@@ -193,7 +194,23 @@ class Service:
         picture = picture._replace(
             alerts=memory.arpa.alerts, changed=append(picture.changed, changed)
         )
+        if self.ais.parameters.ais_fusion:
+            memory = self._fused(memory, ships, picture.own.position, before, done.scan.radar)
         return memory, Output(*done, fares, picture, ships)
+
+    def _fused(
+        self, memory: ServiceMemory, ships: AisPicture, own: Array, since: float, radar: int
+    ) -> ServiceMemory:
+        """The memory with places of AIS, heard after `since` s, in the tracks of their ships."""
+        tracks = memory.tracker.tracks
+        plots, rows = fusion.plots_of(
+            ships.ships, ships.joined, ships.registration, tracks, own, since
+        )
+        if not len(rows):
+            return memory
+        fused = late_plots.update(self.tracker.estimator, tracks, plots, rows, radar)
+        tracks = fused._replace(last_time=tracks.last_time, radar=tracks.radar)
+        return memory._replace(tracker=memory.tracker._replace(tracks=tracks))
 
     def hear(self, memory: ServiceMemory, reports: Reports, position: Array) -> ServiceMemory:
         """The memory with reports of AIS, whose places are at `position` [R, 2] m in the frame
@@ -207,15 +224,12 @@ class Service:
 
         Returns the alerts that changed last. own: own ship over ground
         """
-        nothing = motion.at(motion.begin(), now)
-        ids, no = np.zeros(0, np.int64), np.zeros(0, bool)
-        seen = Seen(ids, ids, nothing.position, nothing.velocity, nothing.covariance, no, no)
-        return self.ships(memory, seen, own, np.zeros(2), sensors, now)
+        return self.ships(memory, None, own, np.zeros(2), sensors, now)
 
     def ships(
         self,
         memory: ServiceMemory,
-        seen: Seen,
+        seen: Seen | None,
         own: OwnMotion,
         drift: Array,
         sensors: OwnSensors,

@@ -38,8 +38,9 @@ class AisMemory(NamedTuple):
     pairs         ships and tracks that may be the same
     registration  how far radar and AIS stand off each other as a whole
     next_id       of a new ship
-    time          s, of the last step; nan: none yet
+    time          s, of the last scan; nan: none yet
     awake, asleep  ids of ships that the operator activated, or put to sleep
+    active        ids of those that were activated; a lost one stays so
     """
 
     ships: Ships
@@ -49,6 +50,7 @@ class AisMemory(NamedTuple):
     time: float
     awake: IntArray
     asleep: IntArray
+    active: IntArray
 
 
 class AisPicture(NamedTuple):
@@ -83,7 +85,7 @@ class Ais:
     def start(self) -> AisMemory:
         """No ships yet."""
         ids = np.zeros(0, np.int64)
-        return AisMemory(none(), pairs.nothing(), registration.begin(), 1, np.nan, ids, ids)
+        return AisMemory(none(), pairs.nothing(), registration.begin(), 1, np.nan, *[ids] * 3)
 
     def hear(self, memory: AisMemory, reports: Reports, position: Array) -> AisMemory:
         """The memory with reports, whose places are at `position` [R, 2] m; nan for none."""
@@ -97,7 +99,7 @@ class Ais:
     def step(
         self,
         memory: AisMemory,
-        seen: Seen,
+        seen: Seen | None,
         alerts: Alerts,
         own: OwnMotion,
         samples: OwnShip,
@@ -107,7 +109,7 @@ class Ais:
     ) -> tuple[AisMemory, Alerts, Alerts, AisPicture]:
         """The ships at the time now, s: the memory, the alerts, those that changed, the picture.
 
-        seen     the radar's tracks then
+        seen     the radar's tracks then; None: no scan came, what was joined is so for a while
         own      own ship, stabilised as the targets are; samples: hers
         drift    [2] m/s, what was subtracted from all motion for that
         """
@@ -118,13 +120,17 @@ class Ais:
         # joined: which of them are radar tracks
         before = memory.time
         elapsed = 0.0 if np.isnan(before) else float(np.clip(now - before, 0.0, MOST_STEP))
-        known_pairs, errors = memory.pairs, memory.registration
+        known_pairs, errors, now_seen = memory.pairs, memory.registration, now
         joined = join.alone(len(known.id))
-        if p.ais_join:
+        if seen is None:
+            if elapsed < MOST_STEP:
+                joined = join.as_before(known_pairs, known)
+            seen, now_seen = join.nothing_seen(), before
+        elif p.ais_join:
             known_pairs, errors, joined = join.step(
                 known_pairs, errors, known, moving, seen, own.position, now, elapsed
             )
-        memory = memory._replace(ships=known, pairs=known_pairs, registration=errors, time=now)
+        memory = memory._replace(ships=known, pairs=known_pairs, registration=errors, time=now_seen)
 
         # passing: how they pass own ship
         passes = passing.look(self.arpa, known, moving, joined, own, samples, drift, sensors, now)
@@ -169,11 +175,13 @@ class Ais:
         ):
             if rule in self.rules:
                 active |= holds
+        active |= known.lost & np.isin(known.id, memory.active)
         active &= ~rests
         order = np.lexsort((np.nan_to_num(miles, nan=np.inf), ~danger, ~by_hand))
         active = _first(active, order, p.ais_max_activated)
         asleep = ~active & np.isin(known.kind, self.kinds) & ~(miles > p.ais_range_nm)
         asleep = _first(asleep, order, p.ais_max_sleeping)
+        memory = memory._replace(active=known.id[active])
         return memory, np.select([active, asleep], [ACTIVATED, SLEEPING], LEFT_OUT).astype(np.int8)
 
 

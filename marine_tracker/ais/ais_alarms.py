@@ -21,6 +21,7 @@ from .pairs import JOINED, Pairs
 from .passing import Passing
 from .ship_table import Ships
 
+LIKELY = 0.5
 FULL = 0.95  # share of the ships that may be activated, from which on it is told
 
 
@@ -44,7 +45,10 @@ def step(
     alerts = encounters.marked(alerts, alerts.kind == of, situation, limits, now)
     danger = encounters.level(passing.danger, alerts, alerts.kind == of, situation, limits, now)
     asked = active if not p.ais_sleeping_danger else np.ones(len(active), bool)
-    alone = (joined.state != BOTH) & ships.placed & ~ships.lost & asked
+    # Of who is probably a radar target already the danger is told as of that.
+    told_of = np.isin(-ships.id, alerts.id[alerts.kind == of])
+    alone = (joined.state != BOTH) & (told_of | (joined.probability < LIKELY))
+    alone &= ships.placed & ~ships.lost & asked
     rows = np.arange(len(ships.id))
     near = situation.range < p.ais_lost_range_nm * NAUTICAL_MILE
     ship = ~np.isin(ships.kind, (m1371.SART, m1371.AID))

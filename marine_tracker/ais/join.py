@@ -19,12 +19,25 @@ from scipy.spatial import cKDTree
 from ..tracking.associate import associate
 from ..types import Array, BoolArray, CodeArray, IntArray, row_of, take
 from . import registration
-from .pairs import APART, CANDIDATE, JOINED, LEFT_FOR, MISMATCH, Pairs, beside, judged, remembered
+from .pairs import (
+    APART,
+    CANDIDATE,
+    JOINED,
+    LEFT_FOR,
+    MISMATCH,
+    SURELY,
+    Pairs,
+    beside,
+    judged,
+    probability_of,
+    remembered,
+)
 from .registration import Registration
 from .ship_motion import Moving
 from .ship_table import LOST_AFTER, Ships
 
 MEMORY, INDEPENDENT = 40.0, 30.0  # s, of evidence; s after which a difference is a new one
+FIRST = 0.8  # what the first look at a pair counts, once the registration is known
 LOW, HIGH = -12.0, 5.0  # log-likelihood ratio of one moment
 SPACE = 1500.0**2  # m^2 in which another track is to be expected
 OTHERS = 4.0  # m/s, deviation of the difference of velocities of two ships that meet
@@ -35,6 +48,7 @@ NEAR, WIDE = 400.0, 3.5  # m; deviations of the registration: pairs that may be
 FARTHEST = 2500.0  # m
 SWAPPED = 400.0  # m; tracks of ships that meet change places no farther than this
 THERE = 80.0  # m; another track so near where AIS says may be the ship
+AGREE = 1.5  # deviations beside the place beside her echo, within which AIS may update a track
 SLOW = 12.0  # s; of who reports so seldom a place that is refused counts
 
 STATES = ('radar_only', 'ais_only', 'joined', 'mismatch')
@@ -67,16 +81,33 @@ class Joined(NamedTuple):
     state        [S]  AIS_ONLY, BOTH or APART_STATE, of STATES
     track        [S]  id of the track that is the same, or was; 0 for none
     probability  [S]  that they are the same; of a ship that is not joined of the likeliest track
+    agrees       [S]  joined, and now where she is expected beside her echo
     """
 
     state: CodeArray
     track: IntArray
     probability: Array
+    agrees: BoolArray
 
 
 def alone(ships: int) -> Joined:
     """No ship is joined."""
-    return Joined(np.full(ships, AIS_ONLY, np.int8), np.zeros(ships, np.int64), np.zeros(ships))
+    none = np.zeros(ships)
+    return Joined(np.full(ships, AIS_ONLY, np.int8), none.astype(np.int64), none, none > 0)
+
+
+def as_before(pairs: Pairs, ships: Ships) -> Joined:
+    """What each ship was when radar was last heard."""
+    row = row_of(ships.id, pairs.ship)
+    there = (row >= 0) & ~np.append(ships.lost, True)[row]
+    return _joined(take(pairs, there), row[there], len(ships.id))
+
+
+def nothing_seen() -> Seen:
+    """No tracks."""
+    ids, no = np.zeros(0, np.int64), np.zeros(0, bool)
+    pairs = np.zeros((0, 2))
+    return Seen(ids, ids, pairs, pairs, np.zeros((0, 4, 4)), no, no)
 
 
 def step(
@@ -93,18 +124,13 @@ def step(
 
     moving  of the ships at that time
     """
-    rows = _candidates(before, errors, ships, moving, seen, own)
-    ship, track = rows
-    offset = seen.position[track] - own
-    told = moving.position[ship] - own
-    differ = np.concatenate(
-        [
-            registration.corrected(errors, offset) - told,
-            registration.turned(errors, seen.velocity[track]) - moving.velocity[ship],
-        ],
-        1,
-    )
-    covariance = _covariance(ships, moving, seen, ship, track)
+    ship, track = _candidates(before, errors, ships, moving, seen, own)
+    if not errors.settled:
+        errors = _searched(errors, ships, moving, seen, own, ship, track, elapsed)
+        if errors.settled:  # all is looked at anew
+            before = take(before, before.state != CANDIDATE)
+            ship, track = _candidates(before, errors, ships, moving, seen, own)
+    offset, told, differ, covariance = _differ(errors, ships, moving, seen, own, ship, track)
     ratio, distance = _ratio(differ, covariance, errors, told, moving.told[ship])
     # Of who reports seldom, the place that was refused is the newest there is.
     pending = ships.other_time > ships.time
@@ -114,7 +140,10 @@ def step(
     pairs = remembered(before, ships.id[ship], seen.id[track], now)
     keep = np.exp(-elapsed / MEMORY)
     ratio = np.where(seen.fresh[track] | (ratio < 0), ratio, 0.5 * ratio)
-    evidence = keep * pairs.evidence + min(elapsed / INDEPENDENT, 1.0) * ratio
+    counts = np.full(len(ship), min(elapsed / INDEPENDENT, 1.0))
+    if errors.settled:
+        counts[pairs.since == now] = FIRST
+    evidence = keep * pairs.evidence + counts * ratio
     pairs = pairs._replace(evidence=np.maximum(evidence, AGAINST))
     pairs = beside(pairs, differ[:, :2], covariance, pending[ship], elapsed)
     chosen = _assigned(pairs, ship, track, len(ships.id), len(seen.id))
@@ -124,8 +153,11 @@ def step(
     maybe = differs & ~far & (pairs.state != CANDIDATE)
     differs[maybe] &= ~_something_there(moving, seen, errors, own, ship[maybe], track[maybe])
     pairs = judged(pairs, chosen, ship, track, differs, now, elapsed)
-    errors = _registered(errors, pairs, ship, offset, told, covariance, differ, moving, elapsed)
+    good = (pairs.state == JOINED) & (pairs.evidence > LEAST)
+    variance = _places(covariance)[good]
+    errors = registration.learn(errors, offset[good], told[good], variance, elapsed)
     joined = _joined(pairs, ship, len(ships.id))
+    joined.agrees[ship[good & (pairs.sure >= SURELY) & (pairs.off < AGREE)]] = True
     useful = (pairs.evidence > AGAINST) | (pairs.state != CANDIDATE)
     return take(pairs, useful), errors, joined
 
@@ -222,37 +254,61 @@ def _something_there(
     return found
 
 
-def _registered(
+def _differ(
     errors: Registration,
-    pairs: Pairs,
-    ship: IntArray,
-    offset: Array,
-    told: Array,
-    covariance: Array,
-    differ: Array,
+    ships: Ships,
     moving: Moving,
+    seen: Seen,
+    own: Array,
+    ship: IntArray,
+    track: IntArray,
+) -> tuple[Array, Array, Array, Array]:
+    """Of pairs at these rows: places [P, 2] m from own ship by radar as it is, and by AIS; by how
+    much place and velocity differ [P, 4] without the errors; and the covariance [P, 4, 4] of that,
+    but for the registration."""
+    offset = seen.position[track] - own
+    told = moving.position[ship] - own
+    differ = np.concatenate(
+        [
+            registration.corrected(errors, offset) - told,
+            registration.turned(errors, seen.velocity[track]) - moving.velocity[ship],
+        ],
+        1,
+    )
+    return offset, told, differ, _covariance(ships, moving, seen, ship, track)
+
+
+def _places(covariance: Array) -> Array:
+    """m^2 [P], each axis."""
+    found: Array = 0.5 * np.trace(covariance[:, :2, :2], axis1=1, axis2=2)
+    return found
+
+
+def _searched(
+    errors: Registration,
+    ships: Ships,
+    moving: Moving,
+    seen: Seen,
+    own: Array,
+    ship: IntArray,
+    track: IntArray,
     elapsed: float,
 ) -> Registration:
-    """The registration after this moment: by least squares, and by search at first."""
-    variance = 0.5 * np.trace(covariance[:, :2, :2], axis1=1, axis2=2)
-    if not errors.settled:
-        ways = 0.5 * np.trace(covariance[:, 2:, 2:], axis1=1, axis2=2)
-        square = (differ[:, 2:] ** 2).sum(1)
-        worth = np.where(
-            moving.told[ship],
-            -0.5 * square / ways - np.log(ways) + 0.5 * square / OTHERS**2 + 2 * np.log(OTHERS),
-            0.0,
-        ) + np.log(SPACE / (2 * np.pi))
-        errors = registration.search(errors, ship, offset, told, variance, worth, elapsed)
-    good = (pairs.state == JOINED) & (pairs.evidence > LEAST)
-    return registration.learn(errors, offset[good], told[good], variance[good], elapsed)
+    """The registration after a look at all pairs that may be."""
+    offset, told, differ, covariance = _differ(errors, ships, moving, seen, own, ship, track)
+    ways = 0.5 * np.trace(covariance[:, 2:, 2:], axis1=1, axis2=2)
+    square = (differ[:, 2:] ** 2).sum(1)
+    worth = np.where(
+        moving.told[ship],
+        0.5 * square * (1 / OTHERS**2 - 1 / ways) + 2 * np.log(OTHERS) - np.log(ways),
+        0.0,
+    ) + np.log(SPACE / (2 * np.pi))
+    return registration.search(errors, ship, offset, told, _places(covariance), worth, elapsed)
 
 
 def _joined(pairs: Pairs, ship: IntArray, ships: int) -> Joined:
     """What each ship is; the probability that of the evidence among all tracks of hers."""
-    odds = np.exp(np.minimum(pairs.evidence, 30.0))
-    total = 1.0 + np.bincount(ship, odds, ships)
-    likely = odds / total[ship]
+    likely = probability_of(pairs)
     state = np.full(ships, AIS_ONLY, np.int8)
     track, probability = np.zeros(ships, np.int64), np.zeros(ships)
     np.maximum.at(probability, ship, np.where(pairs.state == CANDIDATE, likely, 0.0))
@@ -260,7 +316,7 @@ def _joined(pairs: Pairs, ship: IntArray, ships: int) -> Joined:
         rows = (pairs.state == of).nonzero()[0]
         state[ship[rows]], track[ship[rows]] = told, pairs.track[rows]
         probability[ship[rows]] = likely[rows]
-    return Joined(state, track, probability)
+    return Joined(state, track, probability, np.zeros(ships, bool))
 
 
 def joined_to(joined: Joined, ships: Ships, tracks: IntArray) -> IntArray:

@@ -28,6 +28,7 @@ class Pairs(NamedTuple):
     sure         [P]  s that it is, or was, joined without a break
     beside       [P, 2]  m, of the echo from where AIS says, as kept so far; nan: not joined yet
     left         [P]  s since she left it
+    off          [P]  deviations from it now
     """
 
     ship: IntArray
@@ -38,12 +39,23 @@ class Pairs(NamedTuple):
     sure: Array
     beside: Array
     left: Array
+    off: Array
 
 
 def nothing() -> Pairs:
     """No pairs."""
     ids, times = np.zeros(0, np.int64), np.zeros(0)
-    return Pairs(ids, ids, times, np.zeros(0, np.int8), times, times, np.zeros((0, 2)), times)
+    return Pairs(
+        ids, ids, times, np.zeros(0, np.int8), times, times, np.zeros((0, 2)), times, times
+    )
+
+
+def probability_of(pairs: Pairs) -> Array:
+    """Of each pair [P], that it is one ship: by the evidence of all tracks that may be hers."""
+    odds = np.exp(np.minimum(pairs.evidence, 30.0))
+    _, which = np.unique(pairs.ship, return_inverse=True)
+    found: Array = odds / (1.0 + np.bincount(which, odds)[which])
+    return found
 
 
 def remembered(before: Pairs, ship: IntArray, track: IntArray, now: float) -> Pairs:
@@ -58,6 +70,7 @@ def remembered(before: Pairs, ship: IntArray, track: IntArray, now: float) -> Pa
         np.full(count, now),
         nobody,
         np.full((count, 2), np.nan),
+        nobody,
         nobody,
     )
     if not len(before.ship):
@@ -87,7 +100,7 @@ def beside(
     beside = np.where((joined & ~leaves)[:, None], moved, pairs.beside)
     gone = left >= LEFT_FOR
     evidence = np.where(gone, np.minimum(pairs.evidence, -1.0), pairs.evidence)
-    return pairs._replace(beside=beside, left=left, evidence=evidence)
+    return pairs._replace(beside=beside, left=left, evidence=evidence, off=np.sqrt(nis))
 
 
 def judged(

@@ -23,8 +23,7 @@ DOUBTED = 3.0  # deviations at which a pair counts a quarter
 BEARINGS = np.radians(np.arange(-4.0, 4.01, 0.25))
 RANGES = np.arange(-150.0, 151.0, 30.0)
 SEARCH_MEMORY = 20.0  # s
-LEAST_TIME = 20.0  # s of looks
-CLEARLY = 6.0  # log-likelihood of the best answer over all that are not beside it
+CLEARLY = 8.0  # log-likelihood of the best answer over all that are not beside it
 MOST_PAIRS = 300
 VARIANCES = np.array([RANGE**2, BEARING**2, OFFSET**2, OFFSET**2])
 FREE = np.array([16.0, 16.0, 1.0, 1.0])  # times as much, once the search has an answer
@@ -161,12 +160,12 @@ def search(
     likelihood = np.ones((which.max() + 1, *fit.shape[1:]))
     np.add.at(likelihood, which, np.exp(np.minimum(fit, 50.0)))
     keep = np.exp(-step / SEARCH_MEMORY)
-    gain = 1.0 - keep if before.looked else 1.0
+    gain = 1.0 - keep if before.score.any() else 1.0
     score = before.score + gain * (np.log(likelihood).sum(0) - before.score)
     looked = before.looked + step
     found = before._replace(score=score, looked=looked)
     best = _clear(score)
-    if best is None or looked < LEAST_TIME:
+    if best is None:
         return found
     centre = np.array([RANGES[best[1]], BEARINGS[best[0]], 0.0, 0.0])
     # About as sure as the steps of the search are fine.

@@ -7,7 +7,7 @@ import numpy as np
 from sensor_msgs.msg import PointCloud2
 
 from ..ais.reports import Reports
-from ..recording.cloud_rows import FLOAT32, FLOAT64, KINDS, UINT8, UINT16, UINT32, Wanted, rows
+from ..recording.cloud_rows import KINDS, Wanted, rows
 from ..types import BoolArray
 from . import convert
 
@@ -22,19 +22,22 @@ REPORT_TYPE = np.dtype(
     + [('name', 'u1', (NAME,)), ('call_sign', 'u1', (CALL_SIGN,))]
 )
 NUMBERS = (*('heard', 'time', 'latitude', 'longitude'), *('speed', 'course', 'heading', 'turn'))
-WANTED = tuple(
-    Wanted(
-        name,
-        {
-            datatype: KINDS[datatype]
-            for datatype in (UINT8, UINT16, UINT32, FLOAT32, FLOAT64)
-            if KINDS[datatype] == REPORT_TYPE[name].base.str[1:]
-        },
-        most=int(np.prod(REPORT_TYPE[name].shape or (1,))),
+
+
+def wanted(kind: np.dtype) -> tuple[Wanted, ...]:
+    """The fields of a cloud of such points, without z."""
+    return tuple(
+        Wanted(
+            name,
+            {code: of for code, of in KINDS.items() if of == kind[name].base.str[1:]},
+            most=int(np.prod(kind[name].shape or (1,))),
+        )
+        for name in kind.names or ()
+        if name not in ('z',)
     )
-    for name in REPORT_TYPE.names or ()
-    if name not in ('x', 'y', 'z')
-)
+
+
+WANTED = tuple(one for one in wanted(REPORT_TYPE) if one.name not in ('x', 'y'))
 
 
 def message(reports: Reports, now: float, time_ns: int) -> PointCloud2:

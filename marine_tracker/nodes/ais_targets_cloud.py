@@ -7,8 +7,9 @@ import numpy as np
 from sensor_msgs.msg import PointCloud2
 
 from ..ais.ais import LEFT_OUT, AisPicture
+from ..recording import cloud_rows
 from . import convert
-from .ais_cloud import CALL_SIGN, NAME, NONE, codes
+from .ais_cloud import CALL_SIGN, NAME, NONE, codes, wanted
 
 PASSING = ('range', 'bearing', 'course', 'speed', 'cpa', 'tcpa')  # fields of arpa.cpa.Approach
 SHIP_TYPE = np.dtype(
@@ -21,6 +22,9 @@ SHIP_TYPE = np.dtype(
     + [(name, 'u1') for name in ('lost', 'double', 'accurate', 'coarse')]
     + [('name', 'u1', (NAME,)), ('call_sign', 'u1', (CALL_SIGN,))]
 )
+
+
+WANTED = wanted(SHIP_TYPE)
 
 
 def points(picture: AisPicture) -> np.ndarray:
@@ -50,6 +54,11 @@ def points(picture: AisPicture) -> np.ndarray:
     for name, length in (('name', NAME), ('call_sign', CALL_SIGN)):
         rows[name] = codes(getattr(ships, name)[chosen], length)
     return rows
+
+
+def read(cloud: PointCloud2) -> np.ndarray:
+    """The ships of a message. ConversionError where it is none."""
+    return cloud_rows.rows(cloud, WANTED)
 
 
 def message(picture: AisPicture, time_ns: int) -> PointCloud2:

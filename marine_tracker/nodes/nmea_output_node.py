@@ -30,6 +30,7 @@ from .convert import CLOUD_REASONS, nanoseconds
 from .declare import declare
 from .diagnostics import ERROR, FAILED, OK, WARN, one_line
 from .faults import HEADER_REASONS, ConversionError
+from .nmea_output_ais import NO_SENTENCE, AisOutput, contexts
 from .nmea_output_input import (
     BAD_FIX,
     FIX_BY_ARRIVAL,
@@ -95,12 +96,17 @@ class NmeaOutputNode(RunnableNode):
                 REFUSED,
                 NO_ROOM,
                 TOO_SLOW,
+                NO_SENTENCE,
             ),
             self.tell,
         )
         # Targets of two radars, or of two runs of different nodes, are different vessels.
         self._vessels = uuid.uuid5(uuid.NAMESPACE_OID, self.get_fully_qualified_name())
 
+        self._mmsi: dict[int, int] = {}  # of the targets by their own numbers
+        self._ais = AisOutput(
+            self, self._bad, p.pass_ais, self._send, self._tell_vessels if p.signalk_udp else None
+        )
         self._topic = self.publisher(String, topics.NMEA, topics.reliable(topics.BURST))
         self._diagnostics = self.publisher(DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
         for kind, topic, callback, quality in (
@@ -158,7 +164,11 @@ class NmeaOutputNode(RunnableNode):
             return
         self._last_ns = time_ns
         self._heard[topics.TARGETS_CLOUD] = time.monotonic()
-        self._told, now = word(self._told, heard.targets, self._settings.target_numbers)
+        targets = heard.targets._replace(name=self._ais.named(heard.targets.name, heard.mmsi))
+        self._mmsi.update(zip(targets.number.tolist(), heard.mmsi.tolist()))
+        self._told, now = word(self._told, targets, self._settings.target_numbers)
+        numbers = now.numbers.tolist()
+        self._mmsi = {number: self._mmsi.get(number, 0) for number in numbers}
         self._count['targets'] = len(self._told.numbers)
         self._count['targets waiting for a number'] = now.waiting
         p, seconds = self._settings, time_ns * 1e-9
@@ -182,20 +192,19 @@ class NmeaOutputNode(RunnableNode):
             frames = self._frames(now.targets._replace(bearing=bearing), seconds, slot)
             self._send_datagrams(self._bus, [f'{frame}\r\n'.encode() for frame in frames])
         if self._signalk.destinations:
-            self._send_datagrams(
-                self._signalk,
-                [
-                    delta.encode()
-                    for delta in signalk.deltas(
-                        now.targets,
-                        now.numbers.tolist(),
-                        latitude,
-                        longitude,
-                        seconds,
-                        self._vessels,
-                    )
-                ],
-            )
+            mmsi = [self._mmsi[number] for number in numbers]
+            placed = now.targets._replace(bearing=bearing)
+            self._tell_vessels(placed, numbers, mmsi, time_ns)
+
+    def _tell_vessels(
+        self, targets: nmea.Targets, numbers: list[int], mmsi: list[int], time_ns: int
+    ) -> None:
+        """Signal K deltas of targets, or of ships of AIS."""
+        offset = targets.range[:, None] * unit_vector(targets.bearing)
+        latitude, longitude = self._own.target_places(time_ns, offset)
+        who = contexts(numbers, mmsi, self._vessels)
+        told = signalk.deltas(targets, who, latitude, longitude, time_ns * 1e-9)
+        self._send_datagrams(self._signalk, [delta.encode() for delta in told])
 
     def _on_alarms(self, message: DiagnosticArray) -> None:
         if not self._signalk.destinations:

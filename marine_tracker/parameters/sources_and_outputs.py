@@ -166,6 +166,9 @@ class NmeaOutputParameters:
         'Where targets are sent as NMEA 2000 (PGN 128520), in lines as gateways of Yacht Devices '
         'take them, a datagram each, as for udp. Needs the package nmea2000. Empty: nowhere.',
     )
+    pass_ais: bool = parameter(
+        False, 'Whether the sentences on `ais/sentences` are passed on to UDP and TCP as they came.'
+    )
     talker: str = parameter('RA', 'Talker of OSD, RSD, TTM and TLL.')
     target_numbers: int = parameter(
         99,

@@ -3,11 +3,14 @@
     joined   40 ships, 12 of them in a lane 300 m apart; 70 % have AIS, 10 % of those of class B;
              reports come up to 10 s late; the radar measures 30 m and 1 degree too much
     spoofed  four ships of such a scene tell places 1 km off, or that walk off at 5 m/s
+    fused    with AIS as another sensor of the tracks; a quarter of the runs
+    recorded spokes with the sentences of the same seconds, with --data
     speed    1,000 ships and 200 tracks; sentences; broken sentences
 
 A ship-scan counts where radar has a track of the ship, after the first minute.
 """
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,11 +20,17 @@ from ...evaluation import parallel, report
 from ...evaluation.report import Figure
 from ...evaluation.result import Picture, Progress, Result, silent
 from ...types import Array
-from . import speed
+from . import fused, recorded, speed
 from .tallies import TOLD_WITHIN, Tally, of_scene
 
 HELP = 'ships of AIS joined to radar targets, and told when they are wrong'
 RUNS = 20
+OPTIONS = {
+    'data': {
+        'metavar': 'FOLDER',
+        'help': 'folder of spokes (.npz) with sentences of the same seconds (.nmea) beside them',
+    }
+}
 SPOOFS: dict[str, dict[str, float]] = {
     '1 km off': {'shift_m': 1000.0},
     'walking off at 5 m/s': {'walk_mps': 5.0},
@@ -30,21 +39,52 @@ BINS = np.array([0.0, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98, 1.0])
 
 
 def run(
-    runs: int, seed: int, progress: Progress = silent, workers: parallel.Workers = None
+    runs: int,
+    seed: int,
+    progress: Progress = silent,
+    data: str | None = None,
+    workers: parallel.Workers = None,
 ) -> Result:
-    """Every scene `runs` times."""
+    """Every scene `runs` times; then the recordings."""
+    files = _recordings(data)
     seeds = np.random.SeedSequence([seed, 23]).generate_state(runs) % 1_000_000
     work = [
         parallel.Job(of_scene, (int(one), spoof))
         for spoof in (None, *SPOOFS.values())
         for one in seeds
     ]
+    few = max(runs // 4, 1)
+    work += [
+        parallel.Job(fused.of_scene, (int(one), estimator))
+        for estimator in fused.ESTIMATORS
+        for one in seeds[:few]
+    ]
     found = parallel.run(work, workers, progress)
+    found, off = found[: 3 * runs], found[3 * runs :]
     honest = found[:runs]
     figures = _joined(honest) + _told(found, runs)
+    for k, estimator in enumerate(fused.ESTIMATORS):
+        figures += fused.figures(estimator, off[k * few : (k + 1) * few])
     figures += speed.figures(seed)
     chance = np.concatenate([one.chance for one in honest])
-    return Result(figures, (), [Picture('join_probability', (6, 4.5), _paint(chance))])
+    pictures = [Picture('join_probability', (6, 4.5), _paint(chance))]
+    for file in files:
+        one = recorded.follow(file)
+        figures += recorded.figures(one)
+        pictures.append(recorded.picture(one))
+    return Result(figures, (), pictures)
+
+
+def _recordings(data: str | None) -> list[Path]:
+    """The files of spokes of a folder that have sentences beside them. ValueError for none."""
+    if data is None:
+        return []
+    found = [
+        file for file in sorted(Path(data).glob('*.npz')) if file.with_suffix('.nmea').exists()
+    ]
+    if not found:
+        raise ValueError(f'--data {data} has no file of spokes (.npz) with an .nmea beside it')
+    return found
 
 
 def _joined(found: list[Tally]) -> list[Figure]:
@@ -119,6 +159,6 @@ def _paint(chance: Array) -> Any:
             xlim=(0, 1.02),
             ylim=(0, 1.02),
         )
-        axis.set_title('Joined pairs and likeliest candidates; numbers of ship-scans', fontsize=10)
+        axis.set_title('Pairs of a ship and a track; numbers of pair-scans', fontsize=10)
 
     return paint

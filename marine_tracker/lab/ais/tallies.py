@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...ais import join
+from ...ais.pairs import probability_of
 from ...types import Array
 from . import traffic
 from .traffic import Moment
@@ -13,6 +14,7 @@ from .traffic import Moment
 SETTLED, REGISTERED = 60.0, 300.0  # s, from when on ships must be joined; registration be known
 ERRORS = (30.0, float(np.radians(1.0)))  # m, rad: of the radar
 TOLD_WITHIN = 60.0  # s
+BEGINS = 15.0  # s, from when on probabilities are compared with what is
 
 
 class Tally(NamedTuple):
@@ -22,7 +24,7 @@ class Tally(NamedTuple):
     mismatches  ships told wrongly to be elsewhere;  hours  ship-hours that this was looked at
     told        [K]  s from the beginning of each spoof to the mismatch; nan: never
     range, bearing  m, rad: errors of the registration at REGISTERED
-    chance      [C, 2]  probability of pairs, and whether they are the same
+    chance      [C, 2]  probability of all pairs from BEGINS on, and whether they are the same
     """
 
     right: NDArray[np.int64]
@@ -75,6 +77,8 @@ class Watch:
                 self._told.setdefault(int(number[row]), now - self._begins[number[row] - 1])
             else:
                 self._false.add((int(number[row]), int(joined.track[row])))
+        if now >= BEGINS and not spoofed.any():
+            self._compare(moment, dict(zip(ships.ships.id.tolist(), number.tolist())))
         if now < SETTLED:
             return
         whose = dict(zip(tracks.id.tolist(), moment.ship.tolist()))
@@ -86,10 +90,19 @@ class Watch:
             its = whose.get(int(joined.track[row]), 0)
             if joined.state[row] == join.BOTH and its >= 0:
                 self._counts[0 if its == ship else 1, lane] += 1
-                self._chance.append((float(joined.probability[row]), its == ship))
             elif joined.state[row] == join.AIS_ONLY and ship in have:
                 self._counts[2, lane] += 1
-                self._chance.append((float(joined.probability[row]), True))
+
+    def _compare(self, moment: Moment, number: dict[int, int]) -> None:
+        """Notes the probability of each pair, and whether ship and track are the same."""
+        tracks, pairs = moment.output.report.tracks, moment.pairs
+        whose = dict(zip(tracks.id.tolist(), moment.ship.tolist()))
+        for ship, track, likely in zip(
+            pairs.ship.tolist(), pairs.track.tolist(), probability_of(pairs).tolist()
+        ):
+            its = whose.get(track, -1)
+            if its >= 0 and ship in number:
+                self._chance.append((likely, its == number[ship]))
 
     def tally(self) -> Tally:
         """What was counted."""

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...ais.pairs import Pairs
 from ...ais.sentences import Sentences
 from ...parameters import AisParameters, TrackerParameters, from_mapping
 from ...service import Output, Service
@@ -89,11 +90,13 @@ def biased(scans: Iterator[Any], range_: float, bearing: float) -> Iterator[tupl
 
 class Moment(NamedTuple):
     """A scan: its output; truth of the ships [T, 2] m at its end, nan where none exists; which ship
-    each track is [N], of the report's tracks, 0 for none and -1 where that is not sure."""
+    each track is [N], of the report's tracks, 0 for none and -1 where that is not sure; the pairs
+    of ships and tracks with their evidence."""
 
     output: Output
     place: Array
     ship: NDArray[np.int64]
+    pairs: Pairs
 
 
 def follow(
@@ -135,7 +138,8 @@ def follow(
         truth = of.truth_at(scan.end)
         place = np.full((fleet.paths.ships - 1, 2), np.nan)
         place[truth.target - 1] = truth.position
-        each(Moment(output, place, whose(of, scan.end, output, place, errors)))
+        ship = whose(of, scan.end, output, place, errors)
+        each(Moment(output, place, ship, memory.ais.pairs))
     return service
 
 
