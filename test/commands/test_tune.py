@@ -19,7 +19,7 @@ def test_a_short_search_gives_settings_and_judges_them_on_fresh_tracks(capsys, t
                 '--evaluations',
                 '3',
                 '--tracks',
-                '70',
+                '110',
                 '--seed',
                 '2',
                 '--json',
@@ -60,7 +60,7 @@ def test_a_short_search_gives_settings_and_judges_them_on_fresh_tracks(capsys, t
     ('options', 'text'),
     [
         (('--evaluations', '0'), '--evaluations is 0; it must be at least 1'),
-        (('--tracks', '69'), '--tracks is 69; it must be at least 70'),
+        (('--tracks', '109'), '--tracks is 109; it must be at least 110'),
         (('--seed', '-1'), '--seed is -1; it must be at least 0'),
     ],
 )

@@ -235,7 +235,7 @@ def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(watch
     assert all(list(targets) == TARGETS for targets in bad)
     # What a random network says of a ship that goes straight may do.
     fallen = states(bad[-1]).count('FALLBACK')
-    assert fallen >= (4 if how == 'random' else 6)
+    assert fallen >= (3 if how == 'random' else 6)
     for values in bad[-1].values():
         if values['estimator_state'] == 'FALLBACK':
             assert (values['message'], values['level']) == ('TRACKING', DiagnosticStatus.WARN)
@@ -248,7 +248,7 @@ def test_on_bad_weights_the_targets_fall_back_and_on_good_ones_they_return(watch
     assert f'targets have fallen back: {values["fallback reason"]}' in entry.message
     alarm = here.fallback_alarm('active acknowledged')  # a caution
     assert alarm.level == DiagnosticStatus.WARN
-    assert re.fullmatch(r'[3-6] of [3-6] targets have fallen back from their filter', alarm.message)
+    assert re.fullmatch(r'[2-6] of [2-6] targets have fallen back from their filter', alarm.message)
 
     assert here.set('gwnn_weights', '').successful
     again = here.play(50)
