@@ -32,17 +32,17 @@ def limits(radar: TrackerParameters) -> Limits:
 
 def agreeing(
     pairs: Pairs, ahead: Extrapolation, lone: Plots, plots: Plots, limits: Limits
-) -> Pairs:
-    """The pairs of the gate that radial speeds do not exclude.
+) -> tuple[Pairs, float]:
+    """The pairs of the gate that radial speeds do not exclude, and what share of all they are.
 
     The rows of `pairs.track` are first those of `ahead`, the N tracks, then those of `lone`, the
     lone plots of the last scan. Of these only the radial speed is known. A plot without radial
     speed agrees with every track.
     """
     if plots.radial_speed is None:
-        return pairs
+        return pairs, 1.0
     fit = _agree(pairs.track, pairs.plot, ahead, lone, plots, plots.radial_speed, limits)
-    return take(pairs, fit)
+    return take(pairs, fit), (np.count_nonzero(fit) + 1) / (len(fit) + 1)
 
 
 def _agree(

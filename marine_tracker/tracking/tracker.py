@@ -9,17 +9,20 @@ from ..estimators import ESTIMATORS, Estimator, Velocity
 from ..geometry import to_range_bearing
 from ..parameters import TrackerParameters
 from ..types import Array, CodeArray, Extrapolation, IntArray, Plots, Scan, Tracks, append, take
-from . import clutter_map, doppler, late_plots, lifecycle, score
+from . import doppler, late_plots, lifecycle
 from .associate import associate, gain
+from .existence import EVEN
 from .expected import expect
 from .gate import gate, gate_size, split
 from .initiate import pair_up, unexplained
+from .joint import take_plots
 from .lifecycle import LOST, TENTATIVE
 from .look import look
 from .merge import duplicates
 from .noise import noise_of
 from .radars import HELD_REVOLUTIONS, held_updates, radars_of
 from .silence import unmistakable
+from .surroundings import Surroundings, learn, ratio, unknown, weigh
 from .sweep import sweep_of
 
 
@@ -27,11 +30,11 @@ class OfRadar(NamedTuple):
     """The memory of one radar.
 
     leftover  plots of its last scan that belong to no track: one may be a new target's first plot
-    clutter   the density of its false plots
+    known     of its false plots, and of how targets show
     """
 
     leftover: Plots
-    clutter: clutter_map.ClutterMap
+    known: Surroundings
 
 
 class TrackerMemory(NamedTuple):
@@ -106,7 +109,7 @@ class Tracker:
         """No tracks yet."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
-        of_radar = OfRadar(plots, clutter_map.empty())
+        of_radar = OfRadar(plots, unknown())
         return TrackerMemory(
             self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1
         )
@@ -121,10 +124,9 @@ class Tracker:
         """One antenna revolution."""
         p, of_radar = self.radars[scan.radar], memory.radars[scan.radar]
         tracks, count = memory.tracks, len(memory.tracks.id)
-        noise = noise_of(p, scan)
+        noise, speed = noise_of(p, scan), p.max_target_speed_mps
         measured = noise.locate(scan)
         plots, lone = noise.with_glint(measured), noise.with_glint(of_radar.leftover)
-        speed = p.max_target_speed_mps
 
         # extrapolate: every track to the time the beam passes it
         sweep = sweep_of(scan)
@@ -134,11 +136,12 @@ class Tracker:
         # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
         expected = expect(ahead, lone, scan, speed)
         pairs, left_out = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
-        pairs = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
+        pairs, share = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
         pairs = unmistakable(pairs, ahead, plots, tracks.last_time, scan.start, p.scan_period_s)
         pairs, starts = split(pairs, count)
 
         # associate
+        evidence = weigh(of_radar.known, pairs, share, tracks, expected, plots, p)
         worth = gain(pairs, self.gate_size)
         plot_of = associate(pairs.track, pairs.plot, worth, count, len(plots.time))
 
@@ -147,28 +150,28 @@ class Tracker:
         room = max(0, p.max_tracks - count)
         first, second = pair_up(lone, plots, starts.track, starts.plot, free, speed, room)
         free[second] = False
+        begun = take(lone, first)
         if len(first):
-            tracks = append(tracks, self._begin(take(lone, first), memory.next_id, scan.radar))
+            tracks = append(tracks, self._begin(begun, memory.next_id, scan.radar))
         plot_of = np.append(plot_of, second)
 
         # update
-        rows = (plot_of >= 0).nonzero()[0]
-        chosen = take(plots, plot_of[rows])
-        tracks = late_plots.update(self.estimator, tracks, chosen, rows, scan.radar)
+        taken = take_plots(pairs, evidence, plot_of, tracks, ahead, expected, plots, p)
+        tracks = late_plots.update(self.estimator, tracks, taken.plots, taken.rows, scan.radar)
 
         # judge: record the scan for each track, and decide its status
-        seen = look(tracks, rows, chosen, ahead, expected, noise)
-        gained = score.gained(pairs, plot_of, take(lone, first), chosen, of_radar.clutter, p)
-        elsewhere = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
-        tracks, reason = lifecycle.step(tracks, seen, gained, elsewhere, p, self.farthest, scan.end)
+        seen = look(tracks, plot_of, plots, ahead, expected, noise)
+        shown = ratio(evidence, pairs, plot_of, begun, plots, p)
+        other = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
+        rest = other, taken.sharing, p, self.farthest, scan.end
+        tracks, reason = lifecycle.step(tracks, seen, shown, *rest)
         tracks, reason = lifecycle.merge(tracks, reason, duplicates(pairs, plot_of, ahead, tracks))
         tracks, next_number = lifecycle.number(tracks, memory.next_number)
 
         # remember
-        begun = take(of_radar.leftover, first)
-        nowhere = np.delete(np.arange(len(lone.time)), first)
-        clutter = clutter_map.learn(of_radar.clutter, lone.range[nowhere], lone.bearing[nowhere])
-        of_radar = OfRadar(take(measured, free), clutter)
+        nowhere = take(lone, np.delete(np.arange(len(lone.time)), first))
+        known = learn(of_radar.known, lifecycle.sure(tracks), seen, plot_of, plots, nowhere)
+        of_radar, begun = OfRadar(take(measured, free), known), take(of_radar.leftover, first)
         alive = tracks.status != LOST
         return TrackerMemory(
             tracks if alive.all() else take(tracks, alive),
@@ -216,7 +219,7 @@ class Tracker:
             number=none,
             status=np.full(count, TENTATIVE, np.int8),
             history=none + 1,
-            score=np.zeros(count),
+            existence=np.full(count, EVEN),
             age=none + 1,
             first_time=plots.time,
             last_time=plots.time,
