@@ -86,10 +86,10 @@ def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
 
     A cell of area A with n plots in T scans, in surroundings of density l that weigh w plots, has
     the density (n + w) / (T A + w / l): the mean of a Poisson rate with a gamma prior. A small cell
-    in which plots come again and again is not of its surroundings: its own count, without the
-    first plots of one track, is then the density, if that is larger. A large cell adds at most
-    CROWD plots to its ring's mean: a crowd in one place, such as a rain cell, says nothing of the
-    other side of the ring.
+    in which plots come again and again, or in which with the eight around it they do, is not of its
+    surroundings: their count, without the first plots of one track, is then the density, if that
+    is larger. A large cell adds at most CROWD plots to its ring's mean: a crowd in one place, such
+    as a rain cell, says nothing of the other side of the ring.
     """
     scans = min(clutter.scans, MEMORY)
     shape = RINGS // LARGE_RINGS, LARGE_RINGS, _AROUND, LARGE_SECTORS
@@ -102,8 +102,18 @@ def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
     here = large[row // LARGE_RINGS, sector // LARGE_SECTORS]
     plots = scans * clutter.doubtful[cell]
     found: Array = (plots + LARGE_WEIGHS) / (scans * _AREA[row] + LARGE_WEIGHS / here)
-    again: Array = (plots - A_TRACK) / (max(scans, FEW) * _AREA[row])
-    return np.maximum(found, again)
+    often = max(scans, FEW) * _AREA[row]
+    again: Array = (plots - A_TRACK) / often
+    nearby: Array = (scans * _block(clutter.doubtful)[cell] - A_TRACK) / (9 * often)
+    return np.maximum(found, np.maximum(again, nearby))
+
+
+def _block(count: Array) -> Array:
+    """Sum [RINGS * SECTORS] over each small cell and the eight around it."""
+    grid = count.reshape(RINGS, SECTORS)
+    three = np.pad(grid + np.roll(grid, 1, 1) + np.roll(grid, -1, 1), ((1, 1), (0, 0)))
+    found: Array = (three[:-2] + three[1:-1] + three[2:]).ravel()
+    return found
 
 
 def least(range_: Array) -> Array:
