@@ -17,8 +17,8 @@ export PYTHON
 BIN := .venv/bin
 DESCRIPTION := setup.py setup.cfg pyproject.toml package.xml Makefile .ci/setup
 # What each target needs, the extras of setup.py. Every one has more than the one before.
-FOR_DEMO := ros,display
-FOR_TEST := $(FOR_DEMO),test,parallel,plot,bench,cluster
+FOR_DEMO := ros,display,record
+FOR_TEST := $(FOR_DEMO),top,test,parallel,plot,bench,cluster
 FOR_CHECK := $(FOR_TEST),dev
 # A stamp for each, and for each choice of interpreter: asking for another one makes .venv anew.
 CHOICE := $(addprefix -,$(notdir $(PYTHON)))
@@ -26,17 +26,23 @@ DEMO := .venv/.for-demo$(CHOICE)
 TEST := .venv/.for-test$(CHOICE)
 CHECK := .venv/.for-check$(CHOICE)
 
-.PHONY: demo test check api slow fuzz clean
+.PHONY: demo test nodes arithmetic check api slow fuzz clean
 
 demo: $(DEMO)
 	@exec $(BIN)/python .ci/foreground.py $(BIN)/marine_tracker demo $(ARGS)
 
-# Arithmetic on all processors, then the nodes, which run in real time and mostly wait: three files at
-# a time. Code 5: ARGS leaves no test in this half.
+# Two halves side by side: the nodes, which run in real time and mostly wait, three files at a time; the
+# arithmetic in the time that they leave, its output at its end.
 test: $(TEST)
-	$(BIN)/python -m pytest -m 'not slow and not fuzz and not nodes' -n auto --maxprocesses 4 \
+	@$(MAKE) --no-print-directory --jobs=2 --keep-going --output-sync=target nodes arithmetic
+
+# Code 5: ARGS leaves no test in this half. A `+` line is not held back.
+nodes:
+	+@$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' -n 3 --dist loadfile $(ARGS) || [ $$? = 5 ]
+
+arithmetic:
+	@nice -n 19 $(BIN)/python -m pytest -m 'not slow and not fuzz and not nodes' -n auto --maxprocesses 4 \
 	    --dist loadfile $(ARGS) || [ $$? = 5 ]
-	$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' -n 3 --dist loadfile $(ARGS) || [ $$? = 5 ]
 
 check: $(CHECK)
 	$(BIN)/ruff check

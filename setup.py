@@ -28,6 +28,8 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
         *tree('config'),
+        *tree('launch'),
+        *tree('layouts'),
     ],
     zip_safe=False,
     python_requires='>=3.11',
@@ -48,11 +50,16 @@ setup(
             'psutil>=5.9',
             'pytest>=7.4',
             'pytest-timeout>=2.2',
+            'rosbags>=0.9.20',
             'ros-jazzy-domain-coordinator',
             'setuptools>=64',
         ],
         # The PPI in a browser: node ppi_display.
         'display': ['aiohttp>=3.9'],
+        # The picture in a terminal: marine_tracker top.
+        'top': ['textual>=1.0'],
+        # Recordings of topics: node recorder, replay and score of MCAP files.
+        'record': ['mcap>=1.6', 'mcap-ros2-support>=0.6'],
         'parallel': ['pytest-xdist>=3.3'],
         # Parts of experiments on other machines: --scheduler.
         'cluster': ['distributed>=2024.1', 'threadpoolctl>=3.1'],
@@ -64,7 +71,9 @@ setup(
         'console_scripts': [
             'marine_tracker = marine_tracker.cli:main',
             'nmea_output = marine_tracker.nodes.run:nmea_output',
+            'plot_extractor = marine_tracker.nodes.run:plot_extractor',
             'ppi_display = marine_tracker.nodes.run:ppi_display',
+            'recorder = marine_tracker.nodes.run:recorder',
             'radar_simulator = marine_tracker.nodes.run:radar_simulator',
             'recording_player = marine_tracker.nodes.run:recording_player',
             'tracker = marine_tracker.nodes.run:tracker',

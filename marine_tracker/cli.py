@@ -11,7 +11,12 @@ from .processes import one_thread, stop_on_sigterm
 
 COMMANDS = (
     'demo',
+    'top',
+    'screenshots',
+    'record',
+    'recording',
     'replay',
+    'incident',
     'score',
     'bench',
     'experiments',
@@ -21,6 +26,7 @@ COMMANDS = (
     'imo',
     'soak',
     'doctor',
+    'explain',
 )
 
 DESCRIPTION = """\

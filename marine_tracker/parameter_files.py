@@ -50,6 +50,7 @@ def node_yaml(node: str) -> str:
     lines = [
         f'# Parameters of the node `{node}` at their defaults. Written by',
         f'# `{COMMAND}`.',
+        '# What comes last on the command line counts: write -p NAME:=VALUE after --params-file.',
         '/**:',
         '  ros__parameters:',
     ]

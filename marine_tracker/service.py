@@ -24,23 +24,29 @@ from .extent.hulls import Shapes
 from .geometry import heading_from
 from .parameters import ArpaParameters, TrackerParameters, from_mapping
 from .tracking.mounting import mounted
+from .tracking.revolution import Turn, report_of, whole
 from .tracking.tracker import Report, Tracker, TrackerMemory
 from .types import Extrapolation, OwnShip, Scan, take
 
 
 class ServiceMemory(NamedTuple):
-    """All that the service knows between two scans."""
+    """All that the service knows between two scans.
+
+    turns  of each radar what came of its revolution so far, where it sends sectors
+    """
 
     tracker: TrackerMemory
     extents: ExtentsMemory
     arpa: ArpaMemory
+    turns: tuple[Turn, ...]
 
 
 class Tracking(NamedTuple):
-    """What a scan did to the N tracks; lost ones and those just initiated are among them.
+    """What a scan did to the N tracks that it swept; lost ones and those just initiated are among
+    them.
 
     scan      as the tracker took it: from own ship's reference point; with extents one plot a
-              cluster
+              cluster; of a sector the plots that were decided
     report    of the tracker
     estimate  N rows, at the report's times
     shapes    N rows: sizes and headings; None with extent none
@@ -86,7 +92,46 @@ class Service:
 
     def start(self) -> ServiceMemory:
         """No tracks yet."""
-        return ServiceMemory(self.tracker.start(), self.extents.start(), self.arpa.start())
+        turns = (Turn(),) * len(self.tracker.radars)
+        return ServiceMemory(self.tracker.start(), self.extents.start(), self.arpa.start(), turns)
+
+    def take(
+        self,
+        memory: ServiceMemory,
+        scan: Scan,
+        heading: float | None = None,
+        sensors: OwnSensors = ALL_WELL,
+    ) -> tuple[ServiceMemory, Tracking | None, Output | None]:
+        """A scan or a sector: what it did to the tracks, and the output once a revolution is whole.
+
+        The parameters are those of `step`. Targets and alarms are made once a revolution. With
+        extents a cluster may lie in two sectors, so all waits for the whole revolution.
+        """
+        if scan.sector is None:
+            memory, output = self.step(memory, scan, heading, sensors)
+            return memory, Tracking(*output[:4]), output
+        if heading is None:
+            heading = heading_of(scan.own_ship)
+        turn, done = memory.turns[scan.radar], None
+        if self.extents.on:
+            turn = turn.then(scan)
+        else:
+            memory, done = self.track(memory, scan, heading)
+            turn = turn.then(done.scan, done.report)
+        if not turn.complete:
+            return _turned(memory, scan.radar, turn), done, None
+        if done is None:
+            memory, output = self.step(memory, whole(turn.scans), heading, sensors)
+            return _turned(memory, scan.radar, turn.next()), Tracking(*output[:4]), output
+        report, turn = report_of(turn, memory.tracker.tracks)
+        estimate = self.tracker.extrapolate(report.tracks, report.time)
+        memory, output = self._picture(
+            _turned(memory, scan.radar, turn),
+            Tracking(report.scan, report, estimate, None),
+            heading,
+            sensors,
+        )
+        return memory, done, output
 
     def step(
         self,
@@ -99,10 +144,20 @@ class Service:
 
         heading  rad, own ship's, true; nan where it is not known; None: see `heading_of`
         sensors  what is known of own ship beside her positions
+
+        ValueError for a sector, which `take` takes.
         """
+        if scan.sector is not None:
+            raise ValueError('the scan is a sector; Service.take takes sectors, step whole ones')
         if heading is None:
             heading = heading_of(scan.own_ship)
         memory, done = self.track(memory, scan, heading)
+        return self._picture(memory, done, heading, sensors)
+
+    def _picture(
+        self, memory: ServiceMemory, done: Tracking, heading: float, sensors: OwnSensors
+    ) -> tuple[ServiceMemory, Output]:
+        """The second half of `step`: targets and alarms."""
         fares = standing(done.report, self.tracker.estimator)
         known, picture = self.arpa.step(
             memory.arpa, done.scan, done.report, heading, fares.fallen_at, sensors
@@ -123,6 +178,8 @@ class Service:
             ahead = tracker.extrapolate(sure, 0.5 * (scan.start + scan.end))
             scan, seen = extents.reduce(memory.extents, scan, sure.id, ahead)
         tracks, report = tracker.step(memory.tracker, scan)
+        if scan.sector is not None:
+            scan = scan._replace(plots=report.scan.plots)
         estimate = tracker.extrapolate(report.tracks, report.time)
         known, shapes = memory.extents, None
         if seen is not None:
@@ -136,11 +193,18 @@ class Service:
 
     def adopt(self, memory: ServiceMemory, previous: 'Service') -> ServiceMemory:
         """The memory of another service, made fit for this one; no track is lost."""
-        return ServiceMemory(
-            self.tracker.adopt(memory.tracker, previous.tracker),
-            self.extents.adopt(memory.extents, previous.extents),
-            memory.arpa,
+        return memory._replace(
+            tracker=self.tracker.adopt(memory.tracker, previous.tracker),
+            extents=self.extents.adopt(memory.extents, previous.extents),
+            turns=self.start().turns,
         )
+
+
+def _turned(memory: ServiceMemory, radar: int, turn: Turn) -> ServiceMemory:
+    """The memory with what came of the radar's revolution so far."""
+    turns = list(memory.turns)
+    turns[radar] = turn
+    return memory._replace(turns=tuple(turns))
 
 
 def service_for(values: Mapping[str, Any], **changes: Any) -> Service:

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 FloatArray = NDArray[np.floating[Any]]  # of float32 as well, for the trained networks
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+StrengthArray = NDArray[np.unsignedinteger[Any]]  # of radar video, uint8 or uint16
 CodeArray = NDArray[np.int8]  # one of a few named numbers, such as Tracks.status
 Numbers = Sequence[float] | Array
 HISTORY = 20  # scans of hits and misses that a track remembers, bits of Tracks.history
@@ -60,14 +61,23 @@ class PolarPlots(NamedTuple):
     covariance: Array | None = None
 
 
+class Sector(NamedTuple):
+    """A part of a revolution: where the beam began, rad, and how far it turned clockwise, rad, more
+    than 0 and at most a whole turn."""
+
+    bearing: float
+    angle: float
+
+
 class Scan(NamedTuple):
-    """The plots of one antenna revolution and own ship's motion during it.
+    """The plots of one antenna revolution, or a part of one, and own ship's motion during it.
 
     start, end  s, the time of the revolution; equal where a recording stamps all plots alike
     plots       M plots, in any order
     own_ship    K samples that cover the revolution as well as is known
     radar       which of the tracker's radars it comes from, counted from 0
     antenna     the same K samples of the antenna; None: it is at own ship's reference point
+    sector      the part of a revolution that was swept; None: a whole one. Parts follow one another
     """
 
     start: float
@@ -76,11 +86,49 @@ class Scan(NamedTuple):
     own_ship: OwnShip
     radar: int = 0
     antenna: OwnShip | None = None
+    sector: Sector | None = None
 
     @property
     def measured_from(self) -> OwnShip:
         """Where the plots were measured from."""
         return self.own_ship if self.antenna is None else self.antenna
+
+
+class Sweep(NamedTuple):
+    """Spokes as a radar sends them, S of them, not yet placed.
+
+    time      [S]     s, when the beam passed
+    angle     [S]     rad, clockwise from own ship's bow
+    heading   [S]     rad, true, as the radar tells it; nan where it does not
+    range     [S]     m, of the end of the last sample; samples are even from 0 on
+    strength  [S, B]  uint8 or uint16, the radar's own scale: higher is stronger, 0 is nothing
+    """
+
+    time: Array
+    angle: Array
+    heading: Array
+    range: Array
+    strength: StrengthArray
+
+
+class Spokes(NamedTuple):
+    """Radar video of a sector: echo strengths along S directions, in the order of the beam.
+
+    A sector is any number of spokes. Sample b of a spoke lies from b to b + 1 range steps.
+
+    time        [S]     s, when the beam passed
+    bearing     [S]     rad, clockwise from true north, by the heading of that moment; nan where
+                        no heading was known
+    range_step  [S]     m, depth of a sample
+    strength    [S, B]  uint8 or uint16, the radar's own scale: higher is stronger, 0 is nothing
+    own_ship    K samples that cover the sector as well as is known
+    """
+
+    time: Array
+    bearing: Array
+    range_step: Array
+    strength: StrengthArray
+    own_ship: OwnShip
 
 
 class Truth(NamedTuple):
@@ -142,7 +190,7 @@ class Tracks(NamedTuple):
 
     id          [N]  unique from initiation on, never used again
     number      [N]  the ARPA's target number, given at confirmation; 0 while tentative
-    status      [N]  one of tracking.lifecycle.TENTATIVE, CONFIRMED, COASTING, LOST
+    status      [N]  one of tracking.lifecycle.TENTATIVE, CONFIRMED, COASTING, LOST, STATIONARY
     history     [N]  bits: bit k tells whether the track had a plot k scans ago
     existence   [N]  probability that there is a target
     age         [N]  scans since its first plot in which the track could be seen

@@ -2,9 +2,12 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+
+from marine_tracker.types import OwnShip, Spokes
 
 CHECKOUT = Path(__file__).resolve().parents[1]
 
@@ -70,3 +73,76 @@ def condition():
         return offset + gain @ (measured - centre), weight @ source @ weight.T - gain @ cross.T
 
     return solve
+
+
+AT_REST = OwnShip(np.array([0.0]), np.zeros((1, 2)), np.zeros((1, 2)), np.array([0.0]))
+DB_STEP = {4: 3.5, 8: 0.35, 16: 0.0015}
+
+
+def make_video(
+    echoes=(),
+    spokes=900,
+    samples=400,
+    range_step=12.0,
+    beam=2.4,
+    pulse=30.0,
+    bits=8,
+    floor=0.25,
+    period=2.5,
+    seed=5,
+    noise=None,
+):
+    """A revolution of spokes with point echoes (range m, bearing deg, peak SNR dB).
+
+    floor  of the scale, where the mean of the noise lies; noise: its power, else exponential
+    """
+    random = np.random.default_rng(seed)
+    angle = np.arange(spokes) * (2 * np.pi / spokes)
+    middle = (np.arange(samples) + 0.5) * range_step
+    shape = (spokes, samples)
+    field = random.standard_normal(shape) + 1j * random.standard_normal(shape)
+    field *= np.sqrt(0.5)
+    for range_, bearing, snr in echoes:
+        off = np.mod(angle - np.radians(bearing) + np.pi, 2 * np.pi) - np.pi
+        two_way = 2.0 ** (-4 * (off / np.radians(beam)) ** 2)
+        gate = 2.0 ** (-2 * ((middle - range_) / pulse) ** 2)
+        phase = np.exp(2j * np.pi * random.random(spokes))
+        field += 10 ** (snr / 20) * (two_way * phase)[:, None] * gate
+    power = np.abs(field) ** 2
+    if noise is not None:
+        power = power - 0.0 + (noise(random, shape) - 1.0).clip(0)
+    full = 2**bits - 1
+    value = floor * full + 10 * np.log10(power) / DB_STEP[bits]
+    strength = np.clip(np.floor(value), 0, full).astype(np.uint8 if bits <= 8 else np.uint16)
+    time = np.arange(spokes) * (period / spokes)
+    return Spokes(time, angle, np.full(spokes, range_step), strength, AT_REST)
+
+
+def cut(spokes, size):
+    """The spokes in sectors of this many."""
+    for first in range(0, len(spokes.time), size):
+        part = slice(first, first + size)
+        yield Spokes(
+            spokes.time[part],
+            spokes.bearing[part],
+            spokes.range_step[part],
+            spokes.strength[part].copy(),
+            spokes.own_ship,
+        )
+
+
+def turned(spokes, revolutions, period=2.5):
+    """The same revolution again and again."""
+    return Spokes(
+        np.concatenate([spokes.time + k * period for k in range(revolutions)]),
+        np.tile(spokes.bearing, revolutions),
+        np.tile(spokes.range_step, revolutions),
+        np.tile(spokes.strength, (revolutions, 1)),
+        spokes.own_ship,
+    )
+
+
+@pytest.fixture(scope='session')
+def pictures():
+    """Radar video: make a revolution, cut it into sectors, turn it again and again."""
+    return SimpleNamespace(make=make_video, cut=cut, turned=turned)

@@ -22,7 +22,7 @@ BASE = {
     'tables',
 }
 CORE = BASE | {'gaussian', 'networks', 'estimators', 'tracking', 'extent'}
-SOURCES = {'simulation', 'recording'}
+SOURCES = {'simulation', 'recording', 'video'}
 SERVICE = CORE | {'arpa', 'service'}
 MAY_IMPORT = {
     'config': set(),
@@ -37,6 +37,7 @@ MAY_IMPORT = {
     'parameter_files': BASE,
     'simulation': BASE,
     'recording': BASE,
+    'video': BASE,
     'gaussian': BASE,
     'networks': BASE,
     'estimators': BASE | {'gaussian', 'networks'},

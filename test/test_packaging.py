@@ -22,6 +22,8 @@ MANIFEST = ET.parse(ROOT / 'package.xml').getroot()
 ROSDEP_KEY = {
     'aiohttp': 'python3-aiohttp',
     'hypothesis': 'python3-hypothesis',
+    'mcap': 'python3-mcap',
+    'mcap-ros2-support': 'python3-mcap-ros2-support',
     'numpy': 'python3-numpy',
     'psutil': 'python3-psutil',
     'pynmea2': 'python3-pynmea2',
@@ -31,6 +33,7 @@ ROSDEP_KEY = {
     'PyWavelets': 'python3-pywavelets',
     'rich': 'python3-rich',
     'ruamel.yaml': 'python3-ruamel.yaml',
+    'rosbags': 'python3-rosbags-pip',
     'ros-jazzy-domain-coordinator': 'domain_coordinator',
     'scipy': 'python3-scipy',
     'setuptools': 'python3-setuptools',
@@ -123,8 +126,8 @@ def test_requirements_of_setup_py_and_package_xml_agree(requirements):
     def keys(names):
         return {ROSDEP_KEY[name] for name in names}
 
-    # With pip the display is an extra; ROS packages have none.
-    assert keys(requirements[''] | requirements['display']) == {
+    # With pip display and recordings are extras; ROS packages have none.
+    assert keys(requirements[''] | requirements['display'] | requirements['record']) == {
         key for key in manifest('exec_depend') if key.startswith('python3-')
     }
     assert keys(requirements['test']) == manifest('test_depend')
@@ -153,12 +156,18 @@ def test_every_ros_package_imported_is_in_package_xml():
 
 def test_every_rosdep_key_of_our_own_has_a_rule_for_debian_and_ubuntu():
     rules = read_yaml('rosdep.yaml')
-    assert set(rules) == {'python3-pywavelets'} <= manifest('exec_depend')
+    lacking = {'python3-mcap', 'python3-mcap-ros2-support', 'python3-pywavelets'}
+    assert set(rules) == lacking <= manifest('exec_depend')
     assert all({'debian', 'ubuntu'} <= set(rule) for rule in rules.values())
 
 
 def test_all_configuration_is_installed(installed):
-    shipped = {file.relative_to(ROOT) for file in (ROOT / 'config').rglob('*') if file.is_file()}
+    shipped = {
+        file.relative_to(ROOT)
+        for folder in ('config', 'launch', 'layouts')
+        for file in (ROOT / folder).rglob('*')
+        if file.is_file()
+    }
     share = installed / 'share' / 'marine_tracker'
     assert shipped
     assert {file.relative_to(share) for file in share.rglob('*') if file.is_file()} == (
@@ -188,8 +197,10 @@ def test_executables_stand_where_ros2_run_looks(installed, distribution):
     names = {
         'marine_tracker',
         'nmea_output',
+        'plot_extractor',
         'ppi_display',
         'radar_simulator',
+        'recorder',
         'recording_player',
         'tracker',
     }

@@ -6,15 +6,16 @@ A click acquires any track near it, tentative ones too. Such a target is shown a
 by its track's id, because it gets a number only when the tracker confirms it (targets.label).
 
 A target ends when its track is lost or moves out of range; when the operator cancels it; when it
-enters an exclusion zone, unless it was acquired by hand; or when it is displaced because there are
-too many targets (capacity.py). If its track is merged into another, that track becomes the target.
+enters an exclusion zone, or its track turns out to be one of a crowd of places where plots always
+are, unless it was acquired by hand; or when it is displaced because there are too many targets
+(capacity.py). If its track is merged into another, that track becomes the target.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..tracking.lifecycle import LOST
+from ..tracking.lifecycle import LOST, STATIONARY
 from ..types import Array, BoolArray, CodeArray, IntArray, append, row_of, take
 from .capacity import make_room
 from .situation import Situation
@@ -155,13 +156,14 @@ def step(
     how, since, events = carry_over(
         state.targets, situation, settings.click_radius, settings.brief, now
     )
+    how[(how == AUTOMATIC) & (situation.status == STATIONARY)] = -1
     before = how >= 0
     barred = _bar(state.barred, settings, situation, events, now)
 
     clicks, clicked, lapsed = _answer_clicks(state.clicks, settings, situation, how, now)
     how[clicked] = MANUAL
-    candidate = (how < 0) & (situation.status != LOST) & (situation.number > 0)
-    candidate &= ~situation.excluded
+    candidate = (how < 0) & ~np.isin(situation.status, (LOST, STATIONARY))
+    candidate &= (situation.number > 0) & ~situation.excluded
     if settings.automatic != EVERYWHERE:
         candidate &= situation.guarded & (settings.automatic == ZONES)
     candidate[row_of(situation.id, barred.id)] = False

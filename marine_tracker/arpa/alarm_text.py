@@ -61,6 +61,17 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
     if kind == alarms.SWAP_RISK:
         other = f'TT{third:02.0f}' if third else 'a track that is not confirmed'
         return f'{name} may be swapped with {other}, at {where}'
+    if kind == alarms.STATIONARY_DANGER and not first:  # over: of what is gone nothing is known
+        return 'nothing stationary in the way'
+    if kind == alarms.STATIONARY_DANGER:
+        when = f'in {fifth / 60:.1f} min' if math.isfinite(fifth) else 'at an unknown time'
+        at = f'{second / NAUTICAL_MILE:.2f} NM'
+        if math.isfinite(third):
+            at += f', {round(math.degrees(third), 1) % 360:05.1f} deg'
+        return (
+            f'{first:.0f} stationary in the way: the first {when}, '
+            f'CPA {fourth / NAUTICAL_MILE:.2f} NM, now at {at}'
+        )
     if kind == alarms.OWN_SPEED:
         return f"own ship's speed as told is {first / KNOT:.1f} kn off the way of her positions"
     silent = f'for {first:.0f} s' if math.isfinite(first) else 'so far'

@@ -18,16 +18,18 @@ alerts.py has the states of an alert. These are the kinds and their causes:
     fallback         at least a share of the confirmed targets have fallen back from their filter
     swap risk        the gate of a target overlaps that of another track
     own speed        what is told of own ship's velocity is not the way that her positions make
+    stationary danger    own ship will pass stationary objects (stationary.py) within the limits;
+                     one alert for all of them
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..tracking.lifecycle import CONFIRMED, LOST
+from ..tracking.lifecycle import CONFIRMED, LOST, STATIONARY
 from ..types import Array, CodeArray, IntArray, row_of, take
 from . import alerts as machine
-from . import encounters
+from . import encounters, sounding
 from .acquisition import Acquisition, how_acquired
 from .alerts import KEEP, OFF, ON, VALUES, Alerts, Causes, Rule
 from .situation import Limits, Situation
@@ -47,6 +49,7 @@ NAMES = (
     'swap risk',
     'own speed doubtful',
     'log missing',
+    'stationary danger',
 )
 (
     DANGER,
@@ -61,6 +64,7 @@ NAMES = (
     SWAP_RISK,
     OWN_SPEED,
     LOG_MISSING,
+    STATIONARY_DANGER,
 ) = range(len(NAMES))
 PRIORITY = (
     'alarm',
@@ -75,10 +79,17 @@ PRIORITY = (
     'caution',
     'warning',
     'warning',
+    'warning',
 )
-CAUTION = np.array([priority == 'caution' for priority in PRIORITY])
+PRIORITIES = ('alarm', 'warning', 'caution')
+RANK = np.array([PRIORITIES.index(priority) for priority in PRIORITY])
+WARNING, CAUTION = RANK == 1, RANK == 2
 MOMENTARY = np.arange(len(NAMES)) == LOST_TARGET
 REMEMBERED = np.arange(len(NAMES)) == DANGER
+# Categories of MSC.302: A is judged by the picture, B needs none. C, beyond the bridge, are none.
+BY_PICTURE = (DANGER, LOST_TARGET, NEW_TARGET, SWAP_RISK)
+CATEGORY = tuple('A' if kind in BY_PICTURE else 'B' for kind in range(len(NAMES)))
+IDENTIFIER = tuple(10001 + kind for kind in range(len(NAMES)))  # makers' own begin at 10000
 NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level that keeps an alert
 APART = 1.44  # overlap of gates (see swap_risk) that ends a swap risk
 
@@ -112,12 +123,16 @@ class Tracking(NamedTuple):
     fallen    confirmed targets that have fallen back from their filter
     overlap   [N]  of the gates and
     other     [N]  row of the track they overlap with, as swap_risk gives them
+    in_the_way  of stationary objects, as Stationary.way tells it
+    nearly    stationary objects are nearly dangerous
     """
 
     capacity: int
     fallen: int
     overlap: Array
     other: IntArray
+    in_the_way: tuple[float, ...] = (0.0, np.nan, np.nan, np.nan, np.nan)
+    nearly: bool = False
 
 
 class Silence(NamedTuple):
@@ -154,7 +169,8 @@ def step(
     numbered = (target & (situation.number > 0)).nonzero()[0]
     confirmed = int((target & (situation.status == CONFIRMED)).sum())
     alerts = encounters.marked(alerts, alerts.kind == DANGER, situation, settings.limits, now)
-    danger = np.minimum(situation.danger, np.where(situation.status == CONFIRMED, ON, KEEP))
+    plotted = np.isin(situation.status, (CONFIRMED, STATIONARY))
+    danger = np.minimum(situation.danger, np.where(plotted, ON, KEEP))
     danger = encounters.level(
         danger, alerts, alerts.kind == DANGER, situation, settings.limits, now
     )
@@ -179,6 +195,11 @@ def step(
             _single(fallen, max(settings.fallback_share * confirmed, 1), fallen, confirmed),
         ),
         (SWAP_RISK, 0, _of_tracks(situation, numbered, swap, partner)),
+        (
+            STATIONARY_DANGER,
+            0,
+            _causes(tracking.in_the_way[0] > 0, *tracking.in_the_way, keep=tracking.nearly),
+        ),
         *_in_guard_zones(alerts, situation, acquisition, zones),
     ]
     return _advance(alerts, causes, settings, now)
@@ -211,13 +232,14 @@ def acknowledge(
     kind: int | None = None,
     number: int | None = None,
     duration: float = 0.0,
+    instance: int | None = None,
 ) -> tuple[Alerts, Alerts]:
     """The operator has seen one alert, all of a kind, all of a target, or all (alerts.py).
 
     duration  s, after which it must be acknowledged again; 0: not before its cause has ended
     """
     until = now + duration if duration > 0 else np.inf
-    return machine.acknowledge(alerts, now, MOMENTARY, kind, number, until, REMEMBERED)
+    return machine.acknowledge(alerts, now, MOMENTARY, kind, number, until, REMEMBERED, instance)
 
 
 def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
@@ -238,18 +260,22 @@ def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
 def _advance(
     alerts: Alerts, causes: list[Named], settings: AlarmSettings, now: float
 ) -> tuple[Alerts, Alerts]:
-    """Each kind and zone separately. Those without causes here do not change."""
+    """Each kind and zone separately; then what the time brings to all."""
     by_kind, parts, changes = rules(settings), [], [machine.begin()]
+    first = 1 + int(alerts.instance.max(initial=0))
     rest = np.ones(len(alerts.kind), bool)
     for kind, zone, cause in causes:
         rows = (alerts.kind == kind) & (alerts.zone == zone)
         if not rows.any() and not (cause.level == ON).any():
             continue
         rest &= ~rows
-        part, changed = machine.advance(take(alerts, rows), kind, zone, cause, by_kind[kind], now)
+        rule = by_kind[kind]
+        part, changed = machine.advance(take(alerts, rows), kind, zone, cause, rule, now, first)
+        first = max(first, 1 + int(part.instance.max(initial=0)))
         parts.append(part)
         changes.append(changed)
-    return _join([take(alerts, rest), *parts]), _join(changes)
+    alerts, loud = sounding.pass_time(_join([take(alerts, rest), *parts]), WARNING, now)
+    return alerts, _join([*changes, loud])
 
 
 def _in_guard_zones(
@@ -259,7 +285,7 @@ def _in_guard_zones(
     cancelled = acquisition.barred.id[acquisition.barred.cancelled]
     rows = (
         (situation.number > 0)
-        & (situation.status != LOST)
+        & ~np.isin(situation.status, (LOST, STATIONARY))
         & ~situation.excluded
         & ~np.isin(situation.id, cancelled)
     ).nonzero()[0]

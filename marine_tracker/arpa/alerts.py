@@ -7,6 +7,9 @@ States and transitions are those of bridge alert management (IEC 62923-1):
     active acknowledged     -- cause gone --> normal
     rectified               -- acknowledged --> normal, -- cause back --> active unacknowledged
 
+An active unacknowledged alert may be silenced for a time (sounding.py): active silenced. In all
+else that is as before.
+
 There is hysteresis in time and in value. A cause must last for a time before it raises an alert,
 and it must be gone for a time before the alert ends. Between the level that raises and the level
 that ends there is a middle level: it does neither, and it does not interrupt either.
@@ -27,8 +30,18 @@ import numpy as np
 
 from ..types import Array, BoolArray, CodeArray, IntArray, append, row_of, take
 
-NORMAL, ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED = range(4)
-STATES = ('normal', 'active unacknowledged', 'active acknowledged', 'rectified unacknowledged')
+STATES = (
+    'normal',
+    'active unacknowledged',
+    'active acknowledged',
+    'rectified unacknowledged',
+    'active silenced',
+)
+(NORMAL, ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED, ACTIVE_SILENCED) = (
+    range(len(STATES))
+)
+ACTIVE = (ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, ACTIVE_SILENCED)
+WAITING = (ACTIVE_UNACKNOWLEDGED, ACTIVE_SILENCED)  # active, for somebody to acknowledge
 VALUES = 5  # numbers that an alert has for its text
 # Levels of a cause: clearly gone, gone, not enough to raise, there, worse than acknowledged.
 CLEAR, OFF, KEEP, ON, WORSE = range(-1, 4)
@@ -51,6 +64,11 @@ class Alerts(NamedTuple):
                       acknowledged, or needs no acknowledgement. In state NORMAL: a cause that comes
                       back is acknowledged already
     mark      [A, 2]  what would be clearly worse, see encounters.py; nan: not checked yet
+    instance  [A]     number of the alert, from 1 on, that no other has as long as it lives
+    raised    [A]     s, when it was last normal no more; nan: not yet
+    seen      [A]     s, when it was last acknowledged since then; nan: not yet
+    sounded   [A]     s, when it last began to sound; nan: it never did
+    sounds    [A]     how often it has begun to sound
     """
 
     kind: CodeArray
@@ -64,6 +82,11 @@ class Alerts(NamedTuple):
     values: Array
     until: Array
     mark: Array
+    instance: IntArray
+    raised: Array
+    seen: Array
+    sounded: Array
+    sounds: IntArray
 
 
 class Causes(NamedTuple):
@@ -109,21 +132,36 @@ def begin() -> Alerts:
     ids, times, kinds = np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int8)
     pairs = np.zeros((0, 2))
     return Alerts(
-        kinds, ids, ids, ids, kinds, times, times, pairs, np.zeros((0, VALUES)), times, pairs
+        kinds,
+        ids,
+        ids,
+        ids,
+        kinds,
+        times,
+        times,
+        pairs,
+        np.zeros((0, VALUES)),
+        times,
+        pairs,
+        ids,
+        times,
+        times,
+        times,
+        ids,
     )
 
 
 def advance(
-    alerts: Alerts, kind: int, zone: int, causes: Causes, rule: Rule, now: float
+    alerts: Alerts, kind: int, zone: int, causes: Causes, rule: Rule, now: float, first: int = 1
 ) -> tuple[Alerts, Alerts]:
     """The alerts, all of this kind and zone, after a check of their causes; and those that changed.
 
-    A change to NORMAL is only in the changed rows.
+    New ones get the instances from `first` on. A change to NORMAL is only in the changed rows.
     """
     row = row_of(causes.id, alerts.id)
     level = np.append(causes.level, OFF)[row]  # -1, gone away: the last
     gone = row < 0
-    active = (alerts.state == ACTIVE_UNACKNOWLEDGED) | (alerts.state == ACTIVE_ACKNOWLEDGED)
+    active = np.isin(alerts.state, ACTIVE)
     known = ~np.isnan(alerts.until)  # acknowledged
     worse = known & (level == WORSE)
     calls = np.where(
@@ -142,7 +180,7 @@ def advance(
     over = known & (now >= alerts.until)
     raised = ACTIVE_ACKNOWLEDGED if rule.caution else ACTIVE_UNACKNOWLEDGED
     again = np.where(known & ~worse, ACTIVE_ACKNOWLEDGED, raised)
-    ended = np.where(alerts.state == ACTIVE_UNACKNOWLEDGED, RECTIFIED_UNACKNOWLEDGED, NORMAL)
+    ended = np.where(np.isin(alerts.state, WAITING), RECTIFIED_UNACKNOWLEDGED, NORMAL)
     idle = (alerts.state == RECTIFIED_UNACKNOWLEDGED) | (active & rule.momentary)
     state = np.select(
         [
@@ -155,9 +193,7 @@ def advance(
     ).astype(np.int8)
     changed = state != alerts.state
     forgotten = (not rule.remembered) | gone | over | (due & ~active & (level == CLEAR))
-    told = alerts._replace(
-        state=state,
-        since=np.where(changed, now, alerts.since),
+    told = in_state(alerts, state, now)._replace(
         turn=np.where(changed | (due & ~active), np.nan, turn),
         until=np.where(
             np.where(state == NORMAL, forgotten, state == ACTIVE_UNACKNOWLEDGED),
@@ -173,20 +209,27 @@ def advance(
 
     new = ((causes.level >= ON) & (row_of(alerts.id, causes.id) < 0)).nonzero()[0]
     at_once = rule.raise_after <= 0
-    count = len(new)
+    count, unknown = len(new), np.full(len(new), np.nan)
     begun = Alerts(
         np.full(count, kind, np.int8),
         np.full(count, zone),
         causes.id[new],
         causes.number[new],
-        np.full(count, raised if at_once else NORMAL, np.int8),
+        np.full(count, NORMAL, np.int8),
         np.full(count, now),
         np.full(count, np.nan if at_once else now),
         causes.position[new],
         causes.values[new],
-        np.full(count, np.nan),
+        unknown,
         np.full((count, 2), np.nan),
+        first + np.arange(count),
+        unknown,
+        unknown,
+        unknown,
+        np.zeros(count, np.int64),
     )
+    if at_once:
+        begun = in_state(begun, np.full(count, raised, np.int8), now)
     everything = append(told, begun)
     return (
         take(everything, _alive(everything)),
@@ -202,8 +245,9 @@ def acknowledge(
     number: int | None = None,
     until: float = np.inf,
     remembered: BoolArray | None = None,
+    instance: int | None = None,
 ) -> tuple[Alerts, Alerts]:
-    """Acknowledges the alerts of this kind and target number for the operator; None means all.
+    """Acknowledges the alerts of this kind, target number, instance for the operator; None: all.
 
     momentary   [kinds]  kinds whose cause does not last
     until       s, when the acknowledgement ends if the cause lasts; inf: not before the cause ends
@@ -211,21 +255,21 @@ def acknowledge(
     kind
 
     Returns the alerts and those that changed. An alert that is acknowledged already does not
-    change. But if its target is named, it is then acknowledged until `until`. ValueError if kind or
-    number are given and there is no such alert.
+    change. But if its target is named, it is then acknowledged until `until`. ValueError if one of
+    the three is given and there is no such alert.
     """
-    chosen = alerts.state != NORMAL
-    for value, column in ((kind, alerts.kind), (number, alerts.number)):
+    chosen, what = alerts.state != NORMAL, []
+    for name, value, column in (
+        ('kind', kind, alerts.kind),
+        ('target', number, alerts.number),
+        ('instance', instance, alerts.instance),
+    ):
         if value is not None:
             chosen &= column == value
-    if not chosen.any() and (kind is not None or number is not None):
-        what = [
-            f'{name} {value}'
-            for name, value in (('kind', kind), ('target', number))
-            if value is not None
-        ]
+            what.append(f'{name} {value}')
+    if not chosen.any() and what:
         raise ValueError(f'there is no alert of {" and ".join(what)} to acknowledge')
-    active = chosen & (alerts.state == ACTIVE_UNACKNOWLEDGED)
+    active = chosen & np.isin(alerts.state, WAITING)
     rectified = chosen & (alerts.state == RECTIFIED_UNACKNOWLEDGED)
     ends = rectified | (active & momentary[alerts.kind])
     kept = active & ~momentary[alerts.kind]
@@ -236,6 +280,7 @@ def acknowledge(
         alerts._replace(
             until=np.where(kept | longer, until, alerts.until),
             mark=np.where(kept[:, None], np.nan, alerts.mark),
+            seen=np.where(active | rectified, now, alerts.seen),
         ),
         np.where(ends, NORMAL, np.where(active, ACTIVE_ACKNOWLEDGED, alerts.state)),
         now,
@@ -256,13 +301,44 @@ def dismiss(alerts: Alerts, ids: IntArray, now: float) -> tuple[Alerts, Alerts]:
 
 def _change(alerts: Alerts, state: CodeArray, now: float) -> tuple[Alerts, Alerts]:
     changed = state != alerts.state
-    alerts = alerts._replace(
-        state=state.astype(np.int8), since=np.where(changed, now, alerts.since)
-    )
+    alerts = in_state(alerts, state, now)
     return take(alerts, _alive(alerts)), take(alerts, changed)
+
+
+def in_state(alerts: Alerts, state: CodeArray, now: float) -> Alerts:
+    """The alerts in the states [A]; of those that change, what began at `now` s is noted."""
+    changed = state != alerts.state
+    begins, sounds = changed & (alerts.state == NORMAL), changed & (state == ACTIVE_UNACKNOWLEDGED)
+    return alerts._replace(
+        state=state.astype(np.int8),
+        since=np.where(changed, now, alerts.since),
+        raised=np.where(begins, now, alerts.raised),
+        seen=np.where(begins, np.nan, alerts.seen),
+        sounded=np.where(sounds, now, alerts.sounded),
+        sounds=alerts.sounds + sounds,
+    )
 
 
 def _alive(alerts: Alerts) -> BoolArray:
     """Mask of the rows to keep: not normal, about to be raised, or acknowledged."""
     found: BoolArray = (alerts.state != NORMAL) | np.isfinite(alerts.turn) | ~np.isnan(alerts.until)
     return found
+
+
+class Raised:
+    """Which of the alerts that change are new: raised, and not raised already."""
+
+    def __init__(self) -> None:
+        self._standing: set[tuple[int, ...]] = set()  # kind, zone and id of those not normal
+
+    def rows(self, changed: Alerts) -> list[int]:
+        """The rows of the new ones among the alerts that changed in a scan."""
+        new = []
+        keys = zip(changed.kind.tolist(), changed.zone.tolist(), changed.id.tolist())
+        for row, (key, state) in enumerate(zip(keys, changed.state.tolist())):
+            if state == NORMAL:
+                self._standing.discard(key)
+            elif key not in self._standing:
+                self._standing.add(key)
+                new.append(row)
+        return new

@@ -23,7 +23,7 @@ from ..types import (
     row_of,
     take,
 )
-from . import acquisition, alarms, alerts, motion, past_positions, situation, zones
+from . import acquisition, alarms, alerts, motion, past_positions, situation, stationary, zones
 from .acquisition import Acquisition
 from .alerts import Alerts
 from .anchor import at_anchor, harmless
@@ -32,6 +32,7 @@ from .motion import Motion
 from .own_motion import lately, own_motion, sea_stabilised
 from .past_positions import PastPositions
 from .stabilisation import ALL_WELL, NONE, OwnSensors, Stabilisation, stabilisation
+from .stationary import Stationary
 from .swap_risk import swap_risk
 from .targets import Events, Targets
 
@@ -69,6 +70,7 @@ class Picture(NamedTuple):
     alerts    those that are not normal
     changed   the alerts that changed in this scan, also those that became normal
     stabilised   the reference of courses and speeds
+    fixed        stationary objects, which are no targets
     """
 
     time: float
@@ -85,6 +87,7 @@ class Picture(NamedTuple):
     alerts: Alerts
     changed: Alerts
     stabilised: Stabilisation
+    fixed: Stationary
 
 
 class Arpa:
@@ -151,6 +154,7 @@ class Arpa:
 
         # cpa: how the tracks pass own ship
         own, no_danger = self._anchored(samples, moving, own, now, sensors)
+        rest = stationary.look(report.places, own, self.limits, now)
         moving, own, against = self._stabilised(moving, own, sensors, tracks)
         passing = self._approach(moving, own, memory.acquisition, tracks)
         seen = situation.look(
@@ -159,12 +163,11 @@ class Arpa:
 
         # acquisition: which of them are targets
         acquired, events = acquisition.step(memory.acquisition, self.acquisition, seen, now)
-        targets = _shown(acquired, memory.acquisition, tracks)
-        row = row_of(tracks.id, targets.id)
+        targets, row = _shown(acquired, memory.acquisition, tracks)
 
         # alarms: those after the scan, and those that changed
         swap = self._swap_risk(tracks, remembered, passing, own, now, radar)
-        tracking = alarms.Tracking(p.max_targets, _fallen(fallen, acquired, tracks), *swap)
+        tracking = alarms.Tracking(p.max_targets, _fell(fallen, acquired, tracks), *swap, *rest.way)
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
         )
@@ -173,7 +176,7 @@ class Arpa:
         moving, passing = take(moving, row), take(passing, row)
         told = no_danger[row], seen.danger[row], swap[0][row], events, *alarm, against
         known = ArpaMemory(samples, remembered, acquired, alarm[0], past)
-        return known, Picture(now, own, row, targets, moving, passing, past, *told)
+        return known, Picture(now, own, row, targets, moving, passing, past, *told, rest)
 
     def _stabilised(
         self, moving: Motion, own: OwnMotion, sensors: OwnSensors, tracks: Tracks
@@ -231,14 +234,16 @@ class Arpa:
         return overlap, other
 
 
-def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> Targets:
-    """The targets in the order of their numbers, including those that were lost in this scan."""
+def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> tuple[Targets, IntArray]:
+    """The targets in the order of their numbers, including those that were lost in this scan; and
+    their rows [T] in the tracks."""
     lost = np.isin(before.targets.id, tracks.id[tracks.status == LOST])
     targets = append(acquired.targets, take(before.targets, lost))
-    return take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+    targets = take(targets, np.lexsort((targets.id, targets.number, targets.number == 0)))
+    return targets, row_of(tracks.id, targets.id)
 
 
-def _fallen(fallen: Mask, acquired: Acquisition, tracks: Tracks) -> int:
+def _fell(fallen: Mask, acquired: Acquisition, tracks: Tracks) -> int:
     """Number of confirmed targets that have fallen back; `fallen` [N] for the tracks, or one for
     all.
     """

@@ -93,6 +93,13 @@ def safe_courses(
     return SafeCourses(COURSES, probability, cpa, nearest, safe, _sectors(safe))
 
 
+def check_limits(cpa_limit: float, tcpa_limit: float) -> None:
+    """ValueError for a limit, m or s, that is not above 0; inf is no limit."""
+    for name, limit, unit in (('CPA', cpa_limit, 'm'), ('TCPA', tcpa_limit, 's')):
+        if not limit > 0:
+            raise ValueError(f'{name} limit is {limit:g} {unit}; it must be above 0')
+
+
 def _approaches(
     motion: Motion,
     own: OwnMotion,
@@ -102,9 +109,7 @@ def _approaches(
     tcpa_limit: float,
 ) -> TrialApproach:
     """[C, N] of each course and target."""
-    for name, limit, unit in (('CPA', cpa_limit, 'm'), ('TCPA', tcpa_limit, 's')):
-        if not limit > 0:
-            raise ValueError(f'{name} limit is {limit:g} {unit}; it must be above 0')
+    check_limits(cpa_limit, tcpa_limit)
     path = paths(own, trial, courses)
     known = np.flatnonzero(np.isfinite(motion.position).all(1))
     count = max(AT_ONCE // (path.time.shape[1] * max(len(known), 1)), 1)
@@ -167,7 +172,7 @@ def _nearest(
     fastest = np.sqrt(np.where(length > 0, squared, 0.0).max(-1))
     moves = np.where(gone, np.hypot(moving[..., 0], moving[..., 1]), fastest) >= LEAST_SPEED
     covariance = motion.covariance + own.covariance + HAIR * np.eye(4)
-    c, n = np.nonzero(moves & _may_meet(before, moving, covariance, cpa_limit))
+    c, n = np.nonzero(moves & may_meet(before, moving, covariance, cpa_limit))
     danger = np.zeros(shape)
     danger[c, n] = danger_probability(
         before[c, n], moving[c, n], covariance[n], cpa_limit, tcpa_limit
@@ -181,7 +186,7 @@ def _dot(first: Array, second: Array) -> Array:
     return found
 
 
-def _may_meet(position: Array, velocity: Array, covariance: Array, cpa_limit: float) -> BoolArray:
+def may_meet(position: Array, velocity: Array, covariance: Array, cpa_limit: float) -> BoolArray:
     """Whether [C, N] a target may pass within the limit, with a margin of 6 deviations of all
     errors.
 

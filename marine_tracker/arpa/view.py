@@ -13,11 +13,12 @@ from ..tracking.lifecycle import CONFIRMED
 from ..tracking.tracker import Report
 from ..types import Array, BoolArray, CodeArray, IntArray, take
 from . import alarms
-from .alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
+from .alerts import ACTIVE
 from .arpa import Picture
 from .cpa import Approach
 from .motion import Motion
 from .stabilisation import NONE
+from .stationary import Stationary
 from .targets import label
 
 
@@ -50,6 +51,7 @@ class View(NamedTuple):
     age         [N]  s since the first plot
     account     state of the estimator for them, N rows; without words if it gives none
     hulls       their sizes, N rows; None with extent none
+    fixed       stationary objects, which are no targets
     """
 
     name: list[str]
@@ -71,6 +73,7 @@ class View(NamedTuple):
     age: Array
     account: Account
     hulls: HullView | None = None
+    fixed: Stationary | None = None
 
 
 def view(
@@ -82,9 +85,7 @@ def view(
     """
     targets, alerts = picture.targets, picture.alerts
     tracks = take(report.tracks, picture.row)
-    active = (alerts.kind == alarms.DANGER) & np.isin(
-        alerts.state, (ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED)
-    )
+    active = (alerts.kind == alarms.DANGER) & np.isin(alerts.state, ACTIVE)
     return View(
         label(targets.id, tracks.number),
         targets.id,
@@ -105,6 +106,7 @@ def view(
         picture.time - tracks.first_time,
         estimator.account(tracks.state) if estimator.account else no_account(len(tracks.id)),
         None if shapes is None else _hulls(picture, take(shapes, picture.row)),
+        picture.fixed,
     )
 
 

@@ -6,13 +6,17 @@ time, one process, the same run: the ratio holds on any machine, the times do no
 measured if it is installed (extra `bench`). The estimator's own part of the step is shown too.
 `--estimator all` measures every estimator. The memory is that of the whole process, with the
 traffic and Stone Soup.
+
+`--display` measures the picture instead: frames a second in a headless browser, processor time of
+the display node, load time of the page, bytes to a viewer; 200 targets, 1,000 plots in a scan.
 """
 
 from argparse import ArgumentParser, Namespace
 
 from ..estimators import ESTIMATORS
-from ..evaluation import benchmark, report
+from ..evaluation import benchmark, report, video_benchmark
 from ..processes import keep_freed_memory, peak_memory_mb
+from . import bench_display
 
 HELP = 'measure the cost of a scan, compared with Stone Soup'
 PLAIN, ALL = 'cs_kalman', 'all'
@@ -21,6 +25,8 @@ DEMANDED = {200: 300.0, 1000: 400.0}
 MOST_TARGETS = 1000  # the two limits below hold up to this number
 MOST_ESTIMATOR_MS = 40.0  # for extrapolation and update by any estimator
 MOST_RATIO = 10.0  # ratio of a scan's cost to that with cs_kalman
+MOST_VIDEO_MS = 100.0  # CPU time of a revolution of radar video
+MOST_LATENCY = 0.125  # of a revolution, from the beam to the plot
 MANY_TARGETS = 50000  # the two limits below hold for this number
 MOST_SCAN_MS, MOST_MB = 1000.0, 1000.0  # CPU time of a scan; memory of the process
 
@@ -46,17 +52,30 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         '--scans', type=int, default=10, metavar='N', help='scans measured (default 10)'
     )
+    parser.add_argument(
+        '--video',
+        action='store_true',
+        help='instead: plots out of radar video, 2,048 spokes of 1,024 samples a revolution',
+    )
     parser.add_argument('--alone', action='store_true', help='leave Stone Soup out')
+    parser.add_argument('--display', action='store_true', help='the picture, and nothing else')
     parser.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
     report.add_arguments(parser)
 
 
 def run(args: Namespace) -> int:
     """Prints the table. Returns 1 if a ratio misses its limit."""
+    if args.display:
+        title = f'picture of {bench_display.SHIPS} ships, seed {args.seed}'
+        return report.publish(
+            title, bench_display.figures(args.seed), args.json, {'seed': args.seed}
+        )
     for name, least in (('tracks', 1), ('clutter', 0), ('scans', 1)):
         if getattr(args, name) < least:
             raise ValueError(f'--{name} is {getattr(args, name)}; it must be at least {least}')
     keep_freed_memory()
+    if args.video:
+        return _video(args)
     names = list(ESTIMATORS) if args.estimator == ALL else [args.estimator]
     results = benchmark.benchmark(
         args.tracks,
@@ -95,6 +114,21 @@ def run(args: Namespace) -> int:
             'seed': args.seed,
         },
     )
+
+
+def _video(args: Namespace) -> int:
+    """The cost of a revolution of radar video."""
+    found = video_benchmark.benchmark(args.scans, args.seed)
+    figures = [
+        report.at_most('video: CPU time of a revolution', 1e3 * found.cpu_s, MOST_VIDEO_MS, 'ms'),
+        report.at_most(
+            'video: from beam to plot, 99 %', found.latency, MOST_LATENCY, 'revolutions'
+        ),
+        report.Figure('video: plots a revolution', found.plots, ''),
+        report.Figure('greatest memory', peak_memory_mb(), 'MB'),
+    ]
+    title = f'radar video, {args.scans} revolutions, seed {args.seed}'
+    return report.publish(title, figures, args.json, {'scans': args.scans, 'seed': args.seed})
 
 
 def _figures(name: str, results: dict[str, benchmark.Result], targets: int):

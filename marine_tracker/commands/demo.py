@@ -2,6 +2,9 @@
 
 The address of the PPI is printed. On a desktop the page opens by itself.
 
+In the page another scenario or recording and another rate can be chosen, with the token, which
+stands in the address: simulator or player and tracker are started anew behind it.
+
 Ends with Ctrl-C, after --duration, or when the recording or scenario has ended.
 """
 
@@ -12,41 +15,15 @@ import sys
 import threading
 import time
 from argparse import ArgumentParser, Namespace
-from pathlib import Path
-from typing import Any
 
 from ..estimators import ESTIMATORS
-from ..parameters import (
-    EXTENTS,
-    RadarSimulatorParameters,
-    RecordingPlayerParameters,
-    TrackerParameters,
-    from_mapping,
-)
+from ..parameters import EXTENTS
 from ..processes import closing, end_in_time
-from . import demo_page
-from .node_processes import Child, children_of
+from . import demo_page, demo_plan, demo_table, tracker_options
+from .node_processes import Child, Children, children_of
 
 HELP = 'watch simulated or recorded radar being tracked, over ROS 2'
 
-COLUMNS = (
-    ('target', 'name'),
-    ('status', 'status'),
-    ('range NM', 'range_nm'),
-    ('bearing', 'bearing_deg'),
-    ('course', 'course_deg'),
-    ('speed kn', 'speed_kn'),
-    ('CPA NM', 'cpa_nm'),
-    ('TCPA min', 'tcpa_min'),
-    ('hits in 10', 'hits_in_10'),
-    ('estimator', 'estimator'),
-)
-SIZES = (('length m', 'length_m'), ('heading', 'heading_deg'))  # with extents, before the last
-TO_THE_LEFT = ('name', 'status', 'estimator')
-STYLES = {'COASTING': 'yellow', 'LOST': 'bright_black'}
-DANGEROUS = 'bold red'
-MOST_ALARMS = 8  # listed below the table on a terminal; others are only counted
-PLAIN_EVERY_S = 2.0  # s between two tables if there is no terminal
 PPI = 'ppi_display'
 
 
@@ -59,7 +36,17 @@ def add_arguments(parser: ArgumentParser) -> None:
         metavar='NAME',
         help='a shipped scenario or a scenario file (default: %(default)s)',
     )
-    source.add_argument('--recording', metavar='FOLDER', help='a recorded folder instead')
+    source.add_argument(
+        '--recording',
+        metavar='FOLDER',
+        help='a recording instead: a folder, a file of spokes (.npz), or of topics (.mcap)',
+    )
+    tracker_options.add_video_arguments(parser, heading=False)
+    parser.add_argument(
+        '--recordings',
+        metavar='FOLDER',
+        help='where recordings lie that the page offers (default: beside that of --recording)',
+    )
     parser.add_argument(
         '--rate',
         type=float,
@@ -102,9 +89,12 @@ def run(args: Namespace) -> int:
 
 
 def _demo(args, stop: threading.Event) -> int:
-    source, source_parameters, tracker_parameters = _parameters(args)
+    offers = demo_plan.offers(args.scenario, args.recording, args.recordings)
+    shown = offers.shown(args.scenario, args.recording, args.rate)
+    plan = demo_plan.plan(args, offers, shown)
     try:
         from ..nodes import domain
+        from ..nodes.demo_choice import DemoChoice
         from ..nodes.targets_listener import TargetsListener
     except ModuleNotFoundError as error:
         print(
@@ -120,81 +110,74 @@ def _demo(args, stop: threading.Event) -> int:
             number = context.enter_context(domain.free_domain())
         domain.set_local(os.environ, number)
         last = context.enter_context(contextlib.ExitStack())
-        nodes = {'tracker': tracker_parameters, source: source_parameters}
+        nodes = dict(plan.nodes)
         if demo_page.wanted(args.no_display):
-            nodes[PPI] = {
-                'address': f'127.0.0.1:{demo_page.free_port()}',
-                'use_sim_time': args.rate != 1,
-            }
+            nodes[PPI] = {'address': f'127.0.0.1:{demo_page.free_port()}'}
         children = context.enter_context(children_of(nodes))
         listener = TargetsListener()
         last.callback(listener.close)  # after the children have ended: it may hang
-        title = Path(args.recording).name if args.recording else args.scenario
-        return _watch(listener, children, stop, title, args.duration, number)
+        choice = DemoChoice(
+            listener, offers, shown, lambda asked: demo_plan.plan(args, offers, asked)
+        )
+        began = time.monotonic()
+        with demo_table.display() as show:
+            watch = _Watch(listener, children, stop, show, began, args.duration)
+            while True:
+                code = watch.until_ended(f'{plan.title}, ROS domain {number}', choice)
+                if code is not None:
+                    break
+                children.end(*plan.nodes)
+                plan = demo_plan.plan(args, offers, choice.take())
+                listener.forget()
+                children.start(plan.nodes)
+        if watch.failed:
+            _tell_why(watch.failed)
+        return code
 
 
-def _parameters(args) -> tuple[str, dict[str, Any], dict[str, Any]]:
-    """The source node's name and parameters, and the tracker's. ValueError if one is wrong."""
-    source: str
-    if args.recording:
-        from ..recording import csv_folder
+class _Watch:
+    """Shows the targets. failed: the node that ended the demo by failing."""
 
-        source = 'recording_player'
-        given = {'folder': os.path.abspath(args.recording), 'rate': args.rate}
-        from_mapping(RecordingPlayerParameters, given)
-        for_tracker = dict(csv_folder.read(args.recording).tracker_parameters)
-    else:
-        from ..simulation import scenario
+    def __init__(self, listener, children: Children, stop, show, began: float, duration) -> None:
+        self._listener, self._children, self._stop = listener, children, stop
+        self._show, self._began, self._duration = show, began, duration
+        self._told = not any(child.name == PPI for child in children)
+        self._again = False  # the page was started a second time
+        self.failed: Child | None = None
 
-        source = 'radar_simulator'
-        name = args.scenario
-        given = {
-            'scenario': os.path.abspath(name) if os.path.isfile(name) else name,
-            'rate': args.rate,
-            'seed': args.seed,
-        }
-        from_mapping(RadarSimulatorParameters, given)
-        for_tracker = dict(scenario.load(name).tracker_parameters())
-    if args.estimator:
-        for_tracker['estimator'] = args.estimator
-    if args.extent:
-        for_tracker['extent'] = args.extent
-    checked = from_mapping(TrackerParameters, for_tracker)
-    for_tracker = {name: getattr(checked, name) for name in for_tracker}  # ints become floats
-    if args.rate != 1:
-        for_tracker['use_sim_time'] = True
-    return source, given, for_tracker
-
-
-def _watch(listener, children, stop, title: str, duration: float | None, domain: int) -> int:
-    """Shows the targets until the end. Returns the exit code."""
-    began, ended = time.monotonic(), None
-    page = next((child for child in children if child.name == PPI), None)
-    with _display() as show:
-        while not stop.is_set() and ended is None:
-            if duration is not None and time.monotonic() - began >= duration:
+    def until_ended(self, title: str, choice) -> int | None:
+        """The exit code at the end; None where something else was chosen."""
+        while not self._stop.is_set():
+            if self._duration is not None and time.monotonic() - self._began >= self._duration:
                 break
-            listener.spin(0.1)
-            if page and (address := demo_page.address_of(page)):
-                page = None
-                demo_page.show(address)
-            show(listener.picture, f'{title}, ROS domain {domain}')
-            ended = next((child for child in children if child.process.poll() is not None), None)
-        if ended is None:
-            return 0
-        if ended.process.returncode == 0 and ended.name != 'tracker':
-            _drain(listener, show, f'{title}, ended')
-            return 0
-    _tell_why(ended)
-    return 1
+            self._listener.spin(0.1)
+            if choice.changed:
+                return None
+            if not self._told:
+                page = next(child for child in self._children if child.name == PPI)
+                if address := demo_page.address_of(page):
+                    self._told = True
+                    demo_page.show(address)
+            self._show(self._listener.picture, title)
+            ended = next((one for one in self._children if one.process.poll() is not None), None)
+            if ended and ended.name == PPI and not self._told and not self._again:
+                # The port was free a moment ago: somebody else was quicker.
+                self._again = True
+                self._children.end(PPI)
+                self._children.start({PPI: {'address': '127.0.0.1:0'}})
+            elif ended:
+                return self._end(ended, title.partition(',')[0])
+        return 0
 
-
-def _drain(listener, show, title: str) -> None:
-    """Takes in what is still on its way after the source has ended."""
-    until = time.monotonic() + 0.5
-    while time.monotonic() < until:
-        listener.spin(0.1)
-    show(listener.picture, title)
+    def _end(self, ended: Child, title: str) -> int:
+        if ended.process.returncode or ended.name == 'tracker':
+            self.failed = ended
+            return 1
+        until = time.monotonic() + 0.5  # what is still on its way after the source has ended
+        while time.monotonic() < until:
+            self._listener.spin(0.1)
+        self._show(self._listener.picture, f'{title}, ended')
+        return 0
 
 
 def _tell_why(child: Child) -> None:
@@ -206,116 +189,4 @@ def _tell_why(child: Child) -> None:
         *said,
         sep='\n  ',
         file=sys.stderr,
-    )
-
-
-@contextlib.contextmanager
-def _display():
-    """A function that shows a picture: live on a terminal, else as plain tables."""
-    if not sys.stdout.isatty():
-        yield _plain()
-        return
-    from rich.console import Console
-    from rich.live import Live
-
-    console = Console()
-    with Live(console=console, auto_refresh=False) as live:
-        last: list[Any] = []
-
-        def show(picture, title):
-            if last[:1] != [(picture, title)]:
-                live.update(_rich_table(picture, title, console.height), refresh=True)
-                last[:] = [(picture, title)]
-
-        yield show
-
-
-def _plain():
-    """Shows a picture as lines: once a scan, and not faster than people can read."""
-    last = {'scans': 0, 'at': -PLAIN_EVERY_S}
-
-    def show(picture, title):
-        now = time.monotonic()
-        if picture.scans == last['scans'] or now - last['at'] < PLAIN_EVERY_S:
-            return
-        last.update(scans=picture.scans, at=now)
-        columns = _columns(picture)
-        lines = [
-            f'{_clock(picture)}  {title}  {_facts(picture)}',
-            '  '.join(f'{head:>10}' for head, _ in columns),
-        ]
-        lines += [
-            '  '.join([*(f'{target.get(key, ""):>10}' for _, key in columns), target['danger']])
-            for target in picture.targets
-        ]
-        print('\n'.join([*lines, *picture.alarms]), flush=True)
-
-    return show
-
-
-def _columns(picture):
-    """Heads and keys of the columns for these targets."""
-    told = picture.targets and SIZES[0][1] in picture.targets[0]
-    return (*COLUMNS[:-1], *SIZES, COLUMNS[-1]) if told else COLUMNS
-
-
-def _rich_table(picture, title: str, height: int):
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table
-    from rich.text import Text
-
-    below = picture.alarms[:MOST_ALARMS]
-    if len(picture.alarms) > MOST_ALARMS:
-        below += (f'and {len(picture.alarms) - MOST_ALARMS} more alarms',)
-    caption = Text('\n').join(
-        [
-            *(Text(line, DANGEROUS) for line in below),
-            Text(_facts(picture)),
-            *map(Text, picture.warnings),
-            Text('Ctrl-C ends'),
-        ]
-    )
-    table = Table(
-        title=Text(f'{title}   {_clock(picture)}', 'table.title'),
-        title_justify='left',
-        caption=caption,
-        caption_justify='left',
-        box=SIMPLE_HEAD,
-        padding=0,
-    )
-    columns = _columns(picture)
-    for head, key in columns:
-        table.add_column(
-            head,
-            justify='left' if key in TO_THE_LEFT else 'right',
-            min_width=8 if key == 'status' else None,
-        )  # TRACKING in full
-    room = max(height - 8 - len(below) - len(picture.warnings), 1)
-    # If there is not enough room for all, the dangerous ones are shown.
-    shown = (
-        picture.targets
-        if len(picture.targets) <= room
-        else sorted(picture.targets, key=lambda target: not target['danger'])[:room]
-    )
-    for target in shown:
-        table.add_row(
-            *(Text(target.get(key, '')) for _, key in columns),
-            style=DANGEROUS if target['danger'] else STYLES.get(target['status']),
-        )
-    if len(picture.targets) > room:
-        table.add_row(f'and {len(picture.targets) - room} more')
-    return table
-
-
-def _clock(picture) -> str:
-    return time.strftime('%H:%M:%S', time.gmtime(picture.time)) if picture.scans else '--:--:--'
-
-
-def _facts(picture) -> str:
-    if not picture.scans:
-        return 'waiting for the first revolution'
-    count = len(picture.targets)
-    return (
-        f'{count} target{"" if count == 1 else "s"}, {picture.plots} plots a scan, '
-        f'own ship {picture.own_ship}'
     )

@@ -37,6 +37,7 @@ OPTIONAL = {
     'matplotlib': ('matplotlib', 'to draw plots'),
     'stonesoup': ('stonesoup', 'bench compares with it'),
     'distributed': ('distributed', 'to run experiments on a cluster'),
+    'textual': ('textual', 'the picture in a terminal: top'),
 }
 SHIPPED = ('tracker.yaml', 'scenarios', 'fastdds_local.xml')
 PROFILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'

@@ -25,15 +25,33 @@ class Child(NamedTuple):
     log: IO[bytes]
 
 
+class Children(list[Child]):
+    """The nodes that run as processes; which they are may change."""
+
+    def __init__(self, logs: contextlib.ExitStack) -> None:
+        super().__init__()
+        self._logs = logs
+
+    def start(self, nodes: dict[str, dict[str, Any]]) -> None:
+        """Nodes by name with their parameters."""
+        for name, parameters in nodes.items():
+            self.append(_start(name, parameters, self._logs))
+
+    def end(self, *names: str) -> None:
+        """The nodes of these names."""
+        ending = [child for child in self if child.name in names]
+        _end(ending)
+        self[:] = [child for child in self if child not in ending]
+
+
 @contextlib.contextmanager
-def children_of(nodes: dict[str, dict[str, Any]]) -> Iterator[list[Child]]:
+def children_of(nodes: dict[str, dict[str, Any]]) -> Iterator[Children]:
     """The nodes, by name with their parameters, as processes. All end with the context, and this
     process is to end soon after them (processes.closing)."""
     with contextlib.ExitStack() as logs:
-        children: list[Child] = []
+        children = Children(logs)
         try:
-            for name, parameters in nodes.items():
-                children.append(_start(name, parameters, logs))
+            children.start(nodes)
             yield children
         finally:
             closing()

@@ -22,7 +22,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         'source',
         metavar='SOURCE',
         nargs='+',
-        help='folder of a recording, name of a shipped scenario, or scenario file; '
+        help='folder of a recording, file of spokes (.npz), name of a shipped scenario, or '
+        'scenario file; '
         'several of one scene, each by a radar of its own, are fused',
     )
     parser.add_argument(
@@ -36,6 +37,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument('--seed', type=int, default=1, help='seed of a scenario (default: 1)')
     tracker_options.add_arguments(parser)
+    tracker_options.add_video_arguments(parser)
 
 
 def run(args: Namespace) -> int:
@@ -43,7 +45,7 @@ def run(args: Namespace) -> int:
     if args.seed < 0:
         raise ValueError(f'--seed is {args.seed}; it must not be negative')
     keep_freed_memory()
-    source = fuse(args.source, args.seed)
+    source = fuse(args.source, args.seed, tracker_options.video(args))
     for remark in source.remarks:
         print(remark, file=sys.stderr)
     parameters = tracker_options.parameters(args, source.tracker_parameters)
@@ -56,10 +58,13 @@ def run(args: Namespace) -> int:
         if args.alarms:
             alarm_file = stack.enter_context(written(args.alarms, newline=''))
         summary = write_tracks(Service(parameters), scans, file, alarm_file)
+    for remark in source.told():
+        print(remark, file=sys.stderr)
     left_out = f', {summary.left_out} pairs left out' if summary.left_out else ''
+    at_rest = f', {summary.stationary} stationary objects' if summary.stationary else ''
     print(
         f'{summary.scans} scans, {summary.confirmed} tracks confirmed, '
-        f'{summary.cpu_ms:.2f} ms CPU a scan{left_out}',
+        f'{summary.moving} of them moving{at_rest}, {summary.cpu_ms:.2f} ms CPU a scan{left_out}',
         file=sys.stderr if args.out == '-' else sys.stdout,
     )
     if parameters.estimator in WANT_DOPPLER and not summary.doppler:

@@ -149,6 +149,8 @@ def _conditions(loaded):
             else ''
         )
     )
+    if len(loaded.fixed.place):
+        yield f'fixed things that often give a plot: {len(loaded.fixed.place)}'
     if loaded.in_cells:
         hulls = np.isfinite(loaded.fleet.hulls.beam).sum()
         yield f'seen as cells: {hulls} hulls, {len(loaded.shores)} shores'

@@ -63,6 +63,7 @@ def draw(loaded: Scenario, file: Place) -> None:
         )
     for shore in loaded.shores:
         axes.plot(*(shore.corners.T / NAUTICAL_MILE), color='0.45', linewidth=2)
+    axes.plot(*(loaded.fixed.place.T / NAUTICAL_MILE), '.', color='0.6', markersize=2)
     axes.plot(*own.T, color='black', linewidth=2)
     axes.plot(*own[0], 'o', color='black', markersize=7, fillstyle='none')
     low, high = (edge(own[[0, -1]], axis=0) for edge in (np.min, np.max))

@@ -15,7 +15,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import AsyncIterator
+import time
+from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,7 @@ class Page:
 
     errors    what went wrong in it: exceptions, errors on its console, files that did not load
     requests  addresses that it asked for
+    frames    what it looked like, while `Page.startScreencast` is on: images, encoded
     """
 
     def __init__(self, socket: aiohttp.ClientWebSocketResponse) -> None:
@@ -43,6 +45,7 @@ class Page:
         self._count = 0
         self.errors: list[str] = []
         self.requests: list[str] = []
+        self.frames: list[bytes] = []
         self._listener = asyncio.ensure_future(self._listen())
 
     async def _listen(self) -> None:
@@ -60,17 +63,30 @@ class Page:
                     self.errors.append(about['entry']['text'])
                 case 'Network.requestWillBeSent':
                     self.requests.append(about['request']['url'])
+                case 'Page.screencastFrame':
+                    self.frames.append(base64.b64decode(about['data']))
+                    seen = {'sessionId': about['sessionId']}
+                    await self._say('Page.screencastFrameAck', seen)
 
-    async def call(self, method: str, **parameters: Any) -> dict[str, Any]:
-        """A command of the DevTools protocol; its result. RuntimeError where it fails."""
+    async def _say(self, method: str, parameters: dict[str, Any]) -> asyncio.Future[dict[str, Any]]:
+        """Send a command; its answer is to be waited for, or not."""
         self._count += 1
         number = self._count
         self._answers[number] = answer = asyncio.get_running_loop().create_future()
         await self._socket.send_json({'id': number, 'method': method, 'params': parameters})
-        heard = await asyncio.wait_for(answer, START_S)
+        return answer
+
+    async def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """A command of the DevTools protocol; its result. RuntimeError where it fails."""
+        heard = await asyncio.wait_for(await self._say(method, parameters), START_S)
         if 'error' in heard:
             raise RuntimeError(f'{method}: {heard["error"]["message"]}')
         return heard['result']
+
+    async def open(self, address: str) -> None:
+        """Go to an address; waits until it has loaded."""
+        await self.call('Page.navigate', url=address)
+        await self.until("location.href != 'about:blank' && document.readyState == 'complete'")
 
     async def evaluate(self, expression: str) -> Any:
         """The value of a JavaScript expression, waited for. RuntimeError where it throws."""
@@ -99,14 +115,19 @@ class Page:
                 'Input.dispatchMouseEvent', type=kind, x=x, y=y, button='left', clickCount=1
             )
 
+    async def key(self, key: str) -> None:
+        """A key, pressed and let go."""
+        for kind in ('keyDown', 'keyUp'):
+            await self.call('Input.dispatchKeyEvent', type=kind, key=key)
+
     async def screenshot(self) -> bytes:
         """The window as PNG."""
         return base64.b64decode((await self.call('Page.captureScreenshot', format='png'))['data'])
 
 
-@contextlib.asynccontextmanager
-async def open_page(address: str, width: int = 1280, height: int = 800) -> AsyncIterator[Page]:
-    """The page in a browser of its own, with nothing kept from before. OSError without one."""
+@contextlib.contextmanager
+def running(width: int = 1280, height: int = 800) -> Iterator[int]:
+    """A browser with nothing kept from before; the port of its DevTools. OSError without one."""
     browser = program()
     if browser is None:
         raise OSError(f'none of {", ".join(PROGRAMS)} is installed')
@@ -129,29 +150,7 @@ async def open_page(address: str, width: int = 1280, height: int = 800) -> Async
             stderr=subprocess.DEVNULL,
         )
         try:
-            port = await _port(Path(profile) / 'DevToolsActivePort', process)
-            async with aiohttp.ClientSession() as session:
-                async with session.get(f'http://127.0.0.1:{port}/json/list') as response:
-                    found = await response.json()
-                target = next(one for one in found if one['type'] == 'page')
-                async with session.ws_connect(
-                    target['webSocketDebuggerUrl'], max_msg_size=0
-                ) as socket:
-                    page = Page(socket)
-                    for domain in ('Runtime', 'Log', 'Network', 'Page'):
-                        await page.call(f'{domain}.enable')
-                    await page.call(
-                        'Emulation.setDeviceMetricsOverride',
-                        width=width,
-                        height=height,
-                        deviceScaleFactor=1,
-                        mobile=False,
-                    )
-                    await page.call('Page.navigate', url=address)
-                    await page.until(
-                        "location.href != 'about:blank' && document.readyState == 'complete'"
-                    )
-                    yield page
+            yield _port(Path(profile) / 'DevToolsActivePort', process)
         finally:
             process.terminate()
             try:
@@ -161,12 +160,48 @@ async def open_page(address: str, width: int = 1280, height: int = 800) -> Async
                 process.wait()
 
 
-async def _port(file: Path, process: subprocess.Popen) -> int:
-    until = asyncio.get_running_loop().time() + START_S
-    while asyncio.get_running_loop().time() < until and process.poll() is None:
+@contextlib.asynccontextmanager
+async def open_tab(
+    port: int, address: str, width: int = 1280, height: int = 800
+) -> AsyncIterator[Page]:
+    """The page in a tab of its own of a browser that runs (running)."""
+    async with aiohttp.ClientSession(f'http://127.0.0.1:{port}') as session:
+        async with session.put('/json/new?about:blank') as response:
+            tab = await response.json()
+        try:
+            async with session.ws_connect(tab['webSocketDebuggerUrl'], max_msg_size=0) as socket:
+                page = Page(socket)
+                for domain in ('Runtime', 'Log', 'Network', 'Page'):
+                    await page.call(f'{domain}.enable')
+                await page.call(
+                    'Emulation.setDeviceMetricsOverride',
+                    width=width,
+                    height=height,
+                    deviceScaleFactor=1,
+                    mobile=False,
+                )
+                await page.open(address)
+                yield page
+        finally:
+            with contextlib.suppress(aiohttp.ClientError):
+                async with session.get(f'/json/close/{tab["id"]}'):
+                    pass
+
+
+@contextlib.asynccontextmanager
+async def open_page(address: str, width: int = 1280, height: int = 800) -> AsyncIterator[Page]:
+    """The page in a browser of its own. OSError without one."""
+    with running(width, height) as port:
+        async with open_tab(port, address, width, height) as page:
+            yield page
+
+
+def _port(file: Path, process: subprocess.Popen) -> int:
+    until = time.monotonic() + START_S
+    while time.monotonic() < until and process.poll() is None:
         if file.exists() and (lines := file.read_text().splitlines()):
             return int(lines[0])
-        await asyncio.sleep(0.1)
+        time.sleep(0.05)
     raise OSError('the browser did not start')
 
 

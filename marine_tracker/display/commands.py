@@ -1,13 +1,26 @@
 """What a viewer may ask for, read from its messages; whatever is wrong is named in one line."""
 
 import json
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
-LONGEST = 2000  # characters of a message from a viewer
+from . import zone_fields
+
+LONGEST = 8000  # characters of a message from a viewer: a zone of 200 corners
+LONGEST_WORD = 300
 FAR_M = 1e6  # m from the origin of `map`: nobody clicks further away
 
-# Of each command its fields: lowest and highest value; whole numbers are ints here.
-FIELDS: dict[str, dict[str, tuple[float, float]]] = {
+
+def _word(command: str, field: str, value: Any) -> str:
+    if not isinstance(value, str) or len(value) > LONGEST_WORD:
+        raise ValueError(f'{command} needs {field}, a text of at most {LONGEST_WORD} characters')
+    return value
+
+
+# Of each command its fields: lowest and highest value, where whole numbers are ints; or a function
+# of command, field and value, that gives the value or raises ValueError.
+Field = tuple[float, float] | Callable[[str, str, Any], Any]
+FIELDS: dict[str, dict[str, Field]] = {
     'acquire': {'x': (-FAR_M, FAR_M), 'y': (-FAR_M, FAR_M)},
     'cancel': {'number': (1, 2**32 - 1)},
     'cancel_all': {},
@@ -15,9 +28,16 @@ FIELDS: dict[str, dict[str, tuple[float, float]]] = {
     'acknowledge_all': {},
     'trial': {'course_deg': (0.0, 360.0), 'speed_kn': (0.0, 100.0), 'delay_min': (0.0, 60.0)},
     'trial_off': {},
+    'acknowledge_alert': {'instance': (1, 2**32 - 1)},
+    'silence': {},
     'limits': {'cpa_nm': (0.01, 20.0), 'tcpa_min': (0.1, 120.0)},
+    'watch': {'areas': (0, 1)},
+    'explain': {'x': (-FAR_M, FAR_M), 'y': (-FAR_M, FAR_M)},
+    'zone_put': {'zone': zone_fields.zone, 'was': zone_fields.name},
+    'zone_delete': {'name': zone_fields.name},
+    'show': {'scenario': _word, 'recording': _word, 'rate': (0.01, 1000.0)},
 }
-LOGIN = 'login'
+LOGIN, WATCH = 'login', 'watch'
 
 
 class Command(NamedTuple):
@@ -53,8 +73,14 @@ def parse(text: str) -> Command:
         if field not in wanted:
             raise ValueError(f'{name} has no field {field[:40]!r}')
     return Command(
-        name, number, {field: _number(name, field, given, *wanted[field]) for field in wanted}
+        name, number, {field: _value(name, field, given, wanted[field]) for field in wanted}
     )
+
+
+def _value(name: str, field: str, given: dict[str, Any], about: Field) -> Any:
+    if callable(about):
+        return about(name, field, given.get(field))
+    return _number(name, field, given, *about)
 
 
 def _number(name: str, field: str, given: dict[str, Any], low: float, high: float) -> float:

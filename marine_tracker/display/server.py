@@ -2,11 +2,13 @@
 
     server = DisplayServer('127.0.0.1:8080', on_command)
     server.publish('own', {'x': 1.0})      # from any thread; never waits for a viewer
+    server.publish('spokes', {...}, part=7)    # one of several parts of a kind, here a sector
     server.close()
 
 All runs in a thread of its own. Every message to a viewer is a JSON object with `kind` and `now`,
 the server's steady clock in s: a page reckons ages with it, whatever its own clock says. A new
-viewer gets the newest message of each kind at once.
+viewer gets the newest message of each kind, and of each of its parts, at once; of a kind ON_DEMAND
+once it asks for it.
 """
 
 import asyncio
@@ -18,6 +20,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
 from importlib import resources
+from socket import SO_SNDBUF, SOL_SOCKET
 from typing import Any
 
 from aiohttp import WSMsgType, web
@@ -29,6 +32,12 @@ from .viewers import Mailbox
 MOST_VIEWERS = 50
 PULSE_S = 1.0  # between two signs of life: a page that hears none for 3 s shows a red cross
 APART_S = 0.05  # least time between two messages to one viewer
+# Of what was sent, so much waits in this machine for a viewer that reads slowly: a second of a slow
+# network, not the megabytes that a system allows.
+SEND_BUFFER = 64 * 1024
+MOST_PARTS = 512  # of one kind
+AREAS = 'areas'
+ON_DEMAND = (AREAS,)
 START_S = 10.0
 ANSWER_S = 5.0
 TYPES = {
@@ -38,6 +47,12 @@ TYPES = {
     'svg': 'image/svg+xml',
     'txt': 'text/plain',
 }
+# A page that says no. Text alone would be black on white, at night too.
+REFUSED = (
+    '<!doctype html><html lang="en"><meta charset="utf-8"><meta name="color-scheme" content="dark">'
+    '<title>PPI</title>'
+    '<body bgcolor="#000000" text="#6e5f58"><p>{}</p></body></html>\n'
+)
 HEADERS = {
     'Content-Security-Policy': (  # the icons of OpenBridge have style attributes
         "default-src 'self'; style-src-attr 'unsafe-inline'; frame-ancestors 'none'; "
@@ -123,13 +138,28 @@ class DisplayServer:
         """Messages that a newer one replaced before the present viewers had taken them."""
         return sum(viewer.replaced for viewer in tuple(self._viewers))
 
-    def publish(self, kind: str, values: Mapping[str, Any]) -> None:
-        """To all viewers; values must be plain: None where there is no number."""
+    def publish(self, kind: str, values: Mapping[str, Any], part: int | None = None) -> None:
+        """To all viewers; values must be plain: None where there is no number.
+
+        A newer message takes the place of one of its kind and part that a viewer still waits for:
+        with a part for each sector, who has caught up has one whole turn. ValueError for more than
+        MOST_PARTS.
+        """
+        if part is not None and not 0 <= part < MOST_PARTS:
+            raise ValueError(f'part is {part}; it must be from 0 to {MOST_PARTS - 1}')
         now = time.monotonic()
         text = json.dumps(
             {'kind': kind, 'now': round(now, 3), **values}, allow_nan=False, separators=(',', ':')
         )
-        self._in_loop(self._put, kind, text)
+        self._in_loop(self._put, kind if part is None else f'{kind} {part}', text)
+
+    def wanted(self, kind: str) -> int:
+        """How many viewers have asked for a kind that comes on demand."""
+        return sum(kind in viewer.wants for viewer in tuple(self._viewers))
+
+    def forget(self, *kinds: str) -> None:
+        """The newest messages of these kinds: a viewer who comes later does not get them."""
+        self._in_loop(self._drop, kinds)
 
     def close(self) -> None:
         """All viewers are let go."""
@@ -147,7 +177,18 @@ class DisplayServer:
     def _put(self, kind: str, text: str) -> None:
         self._latest[kind] = text
         for viewer in self._viewers:
-            viewer.put(kind, text)
+            if kind not in ON_DEMAND or kind in viewer.wants:
+                viewer.put(kind, text)
+
+    def _watch(self, viewer: Mailbox, kinds: Mapping[str, Any]) -> None:
+        """What this viewer wants of the kinds on demand; nobody needs permission to look."""
+        viewer.wants = {kind for kind, on in kinds.items() if on}
+        for kind in viewer.wants & self._latest.keys():
+            viewer.put(kind, self._latest[kind])
+
+    def _drop(self, kinds: tuple[str, ...]) -> None:
+        for name in [name for name in self._latest if name.split(' ')[0] in kinds]:
+            del self._latest[name]
 
     def _run(self, started: threading.Event) -> None:
         asyncio.set_event_loop(self.loop)
@@ -176,8 +217,7 @@ class DisplayServer:
                 self.port = runner.addresses[0][1]
             started.set()
             while not self._stop.is_set():
-                pulse = _text('pulse', viewers=len(self._viewers), utc=time.time())
-                self._put('pulse', pulse)
+                self._put('pulse', self._pulse())
                 try:
                     await asyncio.wait_for(self._stop.wait(), PULSE_S)
                 except TimeoutError:
@@ -187,12 +227,15 @@ class DisplayServer:
         finally:
             await runner.cleanup()
 
+    def _pulse(self) -> str:
+        return _text('pulse', viewers=len(self._viewers), utc=time.time())
+
     async def _file(self, request: web.Request) -> web.Response:
         if not access.host_trusted(request.host, self._names):
-            raise web.HTTPForbidden(text='this name is not one of this machine\n')
+            raise _refusal(web.HTTPForbidden, 'This name is not one of this machine.')
         found = self._files.get(request.match_info['name'] or 'index.html')
         if found is None:
-            raise web.HTTPNotFound(headers=HEADERS)
+            raise _refusal(web.HTTPNotFound, 'There is no such page here.')
         body, kind = found
         return web.Response(body=body, content_type=kind, charset='utf-8', headers=HEADERS)
 
@@ -203,16 +246,20 @@ class DisplayServer:
             and access.origin_trusted(origin, request.host)
         ):
             self.counts[FOREIGN] += 1
-            raise web.HTTPForbidden(text='pages of other servers are refused\n')
+            raise _refusal(web.HTTPForbidden, 'Pages of other servers are refused.')
         if len(self._sockets) >= MOST_VIEWERS:
             self.counts[FULL] += 1
-            raise web.HTTPServiceUnavailable(text=f'{MOST_VIEWERS} viewers are the most\n')
+            raise _refusal(web.HTTPServiceUnavailable, f'{MOST_VIEWERS} viewers are the most.')
         # No heartbeat: who reads nothing for minutes is slow, not gone. TCP itself finds who is.
         socket = web.WebSocketResponse(max_msg_size=4 * commands.LONGEST, compress=False)
         await socket.prepare(request)
+        if request.transport and (pipe := request.transport.get_extra_info('socket')):
+            pipe.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)
         viewer = Mailbox()
+        viewer.answer(self._pulse())  # first: all that comes after it is as old as it is
         for kind, text in self._latest.items():
-            viewer.put(kind, text)
+            if kind not in ON_DEMAND:
+                viewer.put(kind, text)
         self._viewers.add(viewer)
         self._sockets.add(socket)
         sender = asyncio.ensure_future(_send(socket, viewer))
@@ -240,6 +287,10 @@ class DisplayServer:
                     viewer.answer(
                         _text('role', id=number, commands=may_command, why=_why(near, may_command))
                     )
+                    continue
+                if command.name == commands.WATCH:
+                    self._watch(viewer, command.values)
+                    viewer.answer(_text('answer', id=number, ok=True, text=''))
                     continue
             except ValueError as error:
                 self.counts[BAD] += 1
@@ -281,6 +332,10 @@ async def _send(socket: web.WebSocketResponse, viewer: Mailbox) -> None:
 
 def _text(kind: str, **values: Any) -> str:
     return json.dumps({'kind': kind, 'now': round(time.monotonic(), 3), **values})
+
+
+def _refusal(kind: type[web.HTTPException], why: str) -> web.HTTPException:
+    return kind(text=REFUSED.format(why), content_type='text/html', headers=HEADERS)
 
 
 def _static_files() -> dict[str, tuple[bytes, str]]:

@@ -14,6 +14,7 @@ class Mailbox:
     connection stays. Answers to its commands wait in order, the oldest falls out.
 
     replaced  how many messages a newer one has replaced
+    wants     kinds that come on demand, and that this viewer asked for
     """
 
     def __init__(self) -> None:
@@ -21,6 +22,7 @@ class Mailbox:
         self._answers: deque[str] = deque(maxlen=MOST_ANSWERS)
         self._filled = asyncio.Event()
         self.replaced = 0
+        self.wants: set[str] = set()
 
     def put(self, kind: str, text: str) -> None:
         """A state of this kind, to be sent."""

@@ -14,38 +14,27 @@ from ..arpa.alarm_text import parts, text
 from ..arpa.situation import DANGERS
 from ..arpa.targets import label
 from ..geometry import NAUTICAL_MILE
-from ..recording import csv_folder, track_file
+from ..recording import csv_folder, spokes_file, track_file
 from ..recording.csv_folder import Recording
+from ..recording.mcap_name import is_mcap
 from ..recording.track_file import TargetColumns, TrackRows
 from ..service import Output, Service, service_for
 from ..simulation import radar, scenario
 from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
 from ..tracking.radars import fused, merged
 from ..types import Scan
-from . import metrics, screened
+from . import metrics, screened, video_source
+from .source import Source
+from .video_source import DEFAULT_VIDEO, VideoOptions
 
 NAMES = np.array(STATUS_NAMES)
 ALARM_COLUMNS = ('time_s', 'alarm', 'target', 'where', 'priority', 'state', 'text')
 
 
-class Source(NamedTuple):
-    """Scans to track.
-
-    scans               (number, scan) in time order
-    total               how many; None where it is not known
-    tracker_parameters  those that belong to the radar and its waters
-    remarks             what people should know of the files that were read
-    """
-
-    scans: Iterable[tuple[int, Scan]]
-    total: int | None
-    tracker_parameters: dict[str, Any]
-    remarks: tuple[str, ...] = ()
-
-
 class Summary(NamedTuple):
     """Number of scans; number of tracks ever confirmed; the service's mean CPU time a scan in ms;
-    whether any plots had radial speeds; pairs left out in crowds (tracking/pair_budget.py).
+    whether any plots had radial speeds; pairs left out in crowds (tracking/pair_budget.py); tracks
+    ever confirmed that surely moved; stationary objects ever shown (tracking/at_rest.py).
     """
 
     scans: int
@@ -53,32 +42,40 @@ class Summary(NamedTuple):
     cpu_ms: float
     doppler: bool
     left_out: int
+    moving: int
+    stationary: int
 
 
-def open_source(name: str, seed: int = 1) -> Source:
-    """A recording if `name` is a folder, else a scenario run with `seed`.
+def open_source(name: str, seed: int = 1, video: VideoOptions = DEFAULT_VIDEO) -> Source:
+    """A recording if `name` is a folder, a file of spokes or an MCAP file, else a scenario run with
+    `seed`.
 
-    ValueError if it is neither, or has an error.
+    video  how plots are taken out of spokes
+    ValueError if it is none of these, or has an error.
     """
-    if Path(name).is_dir():
+    if spokes_file.is_spokes_file(name):
+        return video_source.open_recording(name, video)
+    if Path(name).is_dir() or is_mcap(name):
         recording, remarks = screened.read(name)
         numbers = recording.numbers.tolist()
         return Source(
             zip(numbers, recording.scans), len(numbers), recording.tracker_parameters, remarks
         )
     chosen = scenario.load(name)
+    if chosen.radar.video is not None:
+        return video_source.open_scenario(chosen, seed, video)
     simulated = enumerate(scan for scan, _ in radar.simulate(chosen, seed))
     return Source(simulated, None, chosen.tracker_parameters(), chosen.fleet.remarks)
 
 
-def fuse(names: Sequence[str], seed: int = 1) -> Source:
+def fuse(names: Sequence[str], seed: int = 1, video: VideoOptions = DEFAULT_VIDEO) -> Source:
     """The sources of one scene combined, each as a radar of its own. A single source is returned as
     it is.
 
     Scans are numbered in the order of their ends. Each scenario has its own noise: seeds count up
     from `seed`.
     """
-    sources = [open_source(name, seed + k) for k, name in enumerate(names)]
+    sources = [open_source(name, seed + k, video) for k, name in enumerate(names)]
     if len(sources) == 1:
         return sources[0]
     radars = [f'radar_{k}' for k in range(1, len(sources) + 1)]
@@ -110,6 +107,8 @@ def write_tracks(
     One row a track; in `alarm_file` one row for each alert that changes.
     """
     confirmed: set[int] = set()
+    moved: set[int] = set()
+    stationary: set[int] = set()
     count, cpu, doppler, left_out = 0, 0.0, False, 0
     memory = service.start()
     track_file.write_header(file)
@@ -136,9 +135,13 @@ def write_tracks(
         if alarm_file:
             _write_alarms(alarm_file, service, output)
         confirmed.update(tracks.id[tracks.status == CONFIRMED].tolist())
+        moved.update(memory.tracker.ground.moving.tolist())
+        stationary.update(output.picture.fixed.shown.number.tolist())
         count += 1
         doppler |= scan.plots.radial_speed is not None
-    return Summary(count, len(confirmed), 1e3 * cpu / max(count, 1), doppler, left_out)
+    cpu_ms = 1e3 * cpu / max(count, 1)
+    moving = len(confirmed & moved)
+    return Summary(count, len(confirmed), cpu_ms, doppler, left_out, moving, len(stationary))
 
 
 def target_columns(output: Output) -> TargetColumns:

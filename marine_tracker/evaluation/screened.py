@@ -7,12 +7,20 @@ import numpy as np
 from ..parameters import TrackerParameters, from_mapping
 from ..recording import csv_folder
 from ..recording.csv_folder import Recording
+from ..recording.mcap_name import is_mcap
 from ..tracking import intake, own_ship
 from ..types import Array, OwnShip, PolarPlots, Scan, take
 
 
 def read(folder: str | Path) -> tuple[Recording, tuple[str, ...]]:
-    """A recording without what the live screen rejects, and in a line what that was, if any."""
+    """A recording without what the live screen rejects, and in a line what that was, if any.
+
+    folder  of CSV files; or an MCAP file, or a folder of those
+    """
+    if is_mcap(folder):
+        from . import recorded_topics  # needs packages of the extra `record`
+
+        return recorded_topics.read(folder)
     recording, counts = screened(csv_folder.read(folder))
     if not counts:
         return recording, ()

@@ -10,7 +10,10 @@ from types import ModuleType
 from . import marine_table
 from .alarms import alarms
 from .alpha_beta import alpha_beta
+from .clutter import clutter
 from .compare import compare
+from .crossings import crossings
+from .danger_areas import danger_areas
 from .dense import dense
 from .extended import extended
 from .gwnn import gwnn, monte_carlo
@@ -18,6 +21,7 @@ from .gwnn_paper import gwnn_paper
 from .hulls import hulls
 from .rough_nn import rough_nn
 from .two_radars import two_radars
+from .video import video
 from .wavelet import wavelet
 
 EXPERIMENTS: dict[str, ModuleType] = {
@@ -34,4 +38,8 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'compare': compare,
     'dense': dense,
     'alarms': alarms,
+    'video': video,
+    'danger_areas': danger_areas,
+    'clutter': clutter,
+    'crossings': crossings,
 }

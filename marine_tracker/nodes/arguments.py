@@ -11,8 +11,10 @@ from ..files import shortened
 ABOUT = {
     'tracker': 'Tracks targets on radar plots and tells their approach.',
     'radar_simulator': 'Plays a scenario as a radar and own ship would see it.',
-    'recording_player': 'Plays a recorded folder.',
+    'plot_extractor': 'Takes plots out of radar video.',
+    'recording_player': 'Plays a recorded folder, or a file of spokes.',
     'nmea_output': 'Sends targets and own ship as NMEA 0183 and Signal K.',
+    'recorder': 'Records the topics of the service into MCAP files.',
     'ppi_display': 'Serves the radar picture (PPI) as a page for a browser.',
 }
 

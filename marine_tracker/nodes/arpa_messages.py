@@ -2,12 +2,14 @@
 trial.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 from ..arpa import alarm_text, alarms, alerts
+from ..arpa.alarms import PLOTS_MISSING
 from ..arpa.alerts import NORMAL, Alerts
 from ..arpa.arpa import Arpa, Picture
 from ..arpa.own_path import TrialManoeuvre, countdown
@@ -17,6 +19,7 @@ from ..arpa.targets import label
 from ..arpa.trial_manoeuvre import safe_courses, trial_approach
 from ..arpa.zones import Zones
 from ..geometry import KNOT, NAUTICAL_MILE
+from ..types import take
 from . import diagnostics
 from .diagnostics import ERROR, OK, WARN
 from .targets_message import degrees, figure
@@ -29,59 +32,88 @@ def alarms_message(
     shown: Alerts, zones: Zones, radars: Sequence[str], now: float, time_ns: int, hardware_id: str
 ) -> DiagnosticArray:
     """The alerts, in the order of their rows; now s, in the same time as theirs."""
-    targets = [
-        name if id else '' for id, name in zip(shown.id.tolist(), label(shown.id, shown.number))
-    ]
-    return diagnostics.array(
-        time_ns,
-        [
-            _alert(kind, target, part, state, age, left, position, text, hardware_id)
-            for kind, target, part, state, age, left, position, text in zip(
-                shown.kind.tolist(),
-                targets,
-                alarm_text.parts(shown, zones, radars),
-                shown.state.tolist(),
-                (now - shown.since).tolist(),
-                ((shown.until - now) / 60).tolist(),
-                shown.position.tolist(),
-                alarm_text.text(shown, zones, radars),
-            )
-        ],
-    )
+    return diagnostics.array(time_ns, _entries(shown, zones, radars, now, hardware_id, _present))
 
 
-def _alert(
-    kind: int,
-    target: str,
-    part: str,
-    state: int,
-    age: float,
-    left: float,
-    position: Sequence[float],
-    text: str,
+def alarms_past_message(
+    settled: Alerts, zones: Zones, radars: Sequence[str], now: float, time_ns: int, hardware_id: str
+) -> DiagnosticArray:
+    """Those that are settled, the newest first: each with its times, s ago."""
+    newest_first = take(settled, slice(None, None, -1))
+    entries = _entries(newest_first, zones, radars, now, hardware_id, _past)
+    return diagnostics.array(time_ns, entries)
+
+
+Row = dict[str, Any]
+
+
+def _entries(
+    shown: Alerts,
+    zones: Zones,
+    radars: Sequence[str],
+    now: float,
     hardware_id: str,
-) -> DiagnosticStatus:
-    what, priority = alarms.NAMES[kind], alarms.PRIORITY[kind]
-    of_radar = kind == alarms.PLOTS_MISSING
-    where = f' {"of" if of_radar else "in"} {part}' if part else ''
-    name = (f'{target}: ' if target else '') + what + where
+    values: Callable[[Row, float], dict[str, str]],
+) -> list[DiagnosticStatus]:
+    columns = {name: getattr(shown, name).tolist() for name in shown._fields}
+    names = label(shown.id, shown.number)
+    columns['target'] = [name if id else '' for id, name in zip(columns['id'], names)]
+    columns['part'] = alarm_text.parts(shown, zones, radars)
+    columns['text'] = alarm_text.text(shown, zones, radars)
+    rows = (dict(zip(columns, row)) for row in zip(*columns.values()))
+    return [_alert(row, hardware_id, values(row, now)) for row in rows]
+
+
+def _alert(row: Row, hardware_id: str, values: dict[str, str]) -> DiagnosticStatus:
+    kind = row['kind']
+    what, priority, of_radar = alarms.NAMES[kind], alarms.PRIORITY[kind], kind == PLOTS_MISSING
+    where = f' {"of" if of_radar else "in"} {row["part"]}' if row['part'] else ''
     return diagnostics.status(
-        name,
+        (f'{row["target"]}: ' if row['target'] else '') + what + where,
         hardware_id,
-        OK if state == NORMAL else LEVEL[priority],
-        text,
+        OK if row['state'] == NORMAL else LEVEL[priority],
+        row['text'],
         {
             'kind': what,
             'priority': priority,
-            'state': alerts.STATES[state],
-            'target': target,
-            'zone': '' if of_radar else part,
-            'in_state_s': figure(age, 0),
-            'acknowledged_for_min': figure(left, 1),
-            'east_m': figure(position[0], 0),
-            'north_m': figure(position[1], 0),
+            'category': alarms.CATEGORY[kind],
+            'identifier': alarms.IDENTIFIER[kind],
+            'instance': row['instance'],
+            'state': alerts.STATES[row['state']],
+            'target': row['target'],
+            'zone': '' if of_radar else row['part'],
+            **values,
         },
     )
+
+
+def _present(row: Row, now: float) -> dict[str, str]:
+    return {
+        'in_state_s': figure(now - row['since'], 0),
+        'raised_s': figure(now - row['raised'], 0),
+        'sounds': str(row['sounds']),
+        'acknowledged_for_min': figure((row['until'] - now) / 60, 1),
+        'east_m': figure(row['position'][0], 0),
+        'north_m': figure(row['position'][1], 0),
+    }
+
+
+def _past(row: Row, now: float) -> dict[str, str]:
+    return {
+        'raised_s': figure(now - row['raised'], 0),
+        'acknowledged_s': figure(now - row['seen'], 0),
+        'ended_s': figure(now - row['since'], 0),
+    }
+
+
+def lacking(picture: Picture) -> str:
+    """What own ship lacks for a trial or for areas of danger; '' where nothing."""
+    own = picture.own
+    if not own.velocity.any() and np.isnan(own.heading):
+        return 'own ship lies still, heading unknown'
+    if not own.north or picture.stabilised.reference == NONE:
+        return "own ship's course and speed are not known"
+    return ''
 
 
 def trial_message(
@@ -93,14 +125,10 @@ def trial_message(
     target follows. If own ship's course at the start of the turn is unknown, T says so.
     """
     p, limits, own = arpa.parameters, arpa.limits, picture.own
-    lacking = ''
-    if not own.velocity.any() and np.isnan(own.heading):
-        lacking = 'own ship lies still, heading unknown'
-    elif not own.north or picture.stabilised.reference == NONE:
-        lacking = "own ship's course and speed are not known"
-    if lacking:
+    why_not = lacking(picture)
+    if why_not:
         return diagnostics.array(
-            time_ns, [diagnostics.status(TRIAL, hardware_id, WARN, f'no TRIAL: {lacking}', {})]
+            time_ns, [diagnostics.status(TRIAL, hardware_id, WARN, f'no TRIAL: {why_not}', {})]
         )
     trial = countdown(
         TrialManoeuvre(

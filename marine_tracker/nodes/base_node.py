@@ -2,16 +2,18 @@
 
 import functools
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.lifecycle import LifecycleNodeMixin, LifecycleState, TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
@@ -19,8 +21,10 @@ from rclpy.timer import Timer
 from . import diagnostics, topics
 from .diagnostics import FAILED, Tally, one_line
 
+State = tuple[bytes, str, Mapping[str, Any]]  # level, message and values on /diagnostics
 
-class RunnableNode(Node):
+
+class RunnableNode(LifecycleNodeMixin, Node):
     """A node as run.py expects it. Its constructor raises ValueError if it cannot start.
 
     An exception never leaves a callback of its subscriptions, timers, services and parameters,
@@ -28,12 +32,14 @@ class RunnableNode(Node):
     counted.
 
     failures  the counted exceptions, for /diagnostics
+    idle      managed, and not active: nothing is heard, nothing is done
     """
 
     def __init__(self, name: str, **node_arguments: Any) -> None:
         self.failures = Tally((), self.tell)
-        self._to_failures: Publisher | None = None
-        super().__init__(name, **node_arguments)
+        self.idle = self._begun = False
+        Node.__init__(self, name, **node_arguments)
+        self._begun = True  # what rclpy makes for itself never rests
 
     @property
     def done(self) -> bool:
@@ -42,6 +48,26 @@ class RunnableNode(Node):
 
     def close(self) -> None:
         """Sends the last messages. Called before the executor stops."""
+
+    # -- managed ---------------------------------------------------------------------------------
+
+    def manage(self) -> None:
+        """From now on a lifecycle node: it waits until somebody configures and activates it."""
+        self.idle = True
+        LifecycleNodeMixin.__init__(self)
+        # rclpy lets a transition that is not possible end the executor.
+        change = self._service_change_state
+        change.callback = self._guarded(change.callback, _not_done, busy=False)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """It works."""
+        self.idle = False
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """It waits, with all that it knows."""
+        self.idle = True
+        return super().on_deactivate(state)
 
     # -- callbacks, guarded ----------------------------------------------------------------------
 
@@ -74,18 +100,26 @@ class RunnableNode(Node):
 
     def add_on_set_parameters_callback(self, callback: Callable[..., SetParametersResult]) -> None:
         """As in rclpy. If the callback fails, the change is refused."""
-        super().add_on_set_parameters_callback(self._guarded(callback, _refused))
+        super().add_on_set_parameters_callback(self._guarded(callback, _refused, busy=False))
 
     def add_post_set_parameters_callback(self, callback: Callable[..., None]) -> None:
         """As in rclpy."""
-        super().add_post_set_parameters_callback(self._guarded(callback))
+        super().add_post_set_parameters_callback(self._guarded(callback, busy=False))
 
-    def _guarded(self, callback: Callable, otherwise: Callable = lambda error, *_: None):
-        """The callback; if it raises, otherwise(error, *its arguments) is returned."""
+    def _guarded(
+        self, callback: Callable, otherwise: Callable = lambda error, *_: None, busy: bool = True
+    ):
+        """The callback; if it raises, otherwise(error, *its arguments) is returned.
+
+        busy  whether it rests while the node is idle
+        """
         name = getattr(getattr(callback, 'func', callback), '__name__', 'a callback')
+        busy = busy and self._begun
 
         @functools.wraps(callback)
         def run_guarded(*arguments):
+            if self.idle and busy:
+                return otherwise(ValueError('the node is not active'), *arguments)
             try:
                 return callback(*arguments)
             except Exception as error:
@@ -113,36 +147,42 @@ class RunnableNode(Node):
 
     @property
     def hardware_id(self) -> str:
-        """The radar that the node belongs to, as in radar_1/radar."""
-        return f'{self.get_namespace()}/radar'.strip('/')
+        """The node that tells it, as in radar_1/tracker."""
+        return self.label
 
-    def watch_failures(self, clock: Clock) -> None:
-        """For a node with nothing else on /diagnostics: publishes failures if there are any."""
-        self.create_timer(1.0, self._tell_failures, clock=clock)
-
-    def _tell_failures(self) -> None:
-        counts = self.failures.counts
-        if not counts:
-            return
-        if self._to_failures is None:
-            self._to_failures = self.publisher(
-                DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
-            )
-        fresh = self.failures.fresh(time.monotonic())
-        self._to_failures.publish(
-            diagnostics.array(
-                self.get_clock().now().nanoseconds,
-                [
-                    diagnostics.status(
-                        f'{self.label}: callbacks',
-                        self.hardware_id,
-                        diagnostics.ERROR if fresh else diagnostics.OK,
-                        'lately: ' + ', '.join(fresh) if fresh else 'they work again',
-                        {FAILED: sum(counts.values()), **counts},
-                    )
-                ],
-            )
+    def watch(self, clock: Clock, task: str, state: Callable[[], State]) -> None:
+        """Tells the state of a task on /diagnostics each second, or that callbacks fail."""
+        publisher = self.publisher(DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
+        self.create_timer(
+            1.0, functools.partial(self._tell_state, publisher, task, state), clock=clock
         )
+
+    def _tell_state(self, publisher: Publisher, task: str, state: Callable[[], State]) -> None:
+        level, message, values = state()
+        fresh, counts = self.failures.fresh(time.monotonic()), self.failures.counts
+        if fresh:
+            level, message = diagnostics.ERROR, 'lately: ' + ', '.join(fresh)
+        values = {**values, FAILED: sum(counts.values()), **counts}
+        status = diagnostics.status(
+            f'{self.label}: {task}', self.hardware_id, level, message, values
+        )
+        publisher.publish(diagnostics.array(self.get_clock().now().nanoseconds, [status]))
+
+    # -- under two names -------------------------------------------------------------------------
+
+    def publisher_of_both(
+        self, kind: type[Any], topic: str, quality: QoSProfile
+    ) -> Callable[[Any], None]:
+        """Publishes on the topic and on `~/topic`: the second is of this node alone, where others
+        use the first name as well."""
+        both = [self.publisher(kind, name, quality) for name in (topic, f'~/{topic}')]
+
+        def publish(message: Any) -> None:
+            data = serialize_message(message)  # once: the dear part
+            for publisher in both:
+                publisher.publish(data)
+
+        return publish
 
     # -- without event handlers ------------------------------------------------------------------
 
@@ -187,6 +227,8 @@ def _refused(error: Exception, changed: list) -> SetParametersResult:
 
 def _not_done(error: Exception, request, response: Any) -> Any:
     """Every request gets a response. If the response has a field for a reason, it is filled."""
-    if hasattr(response, 'success') and hasattr(response, 'message'):
-        response.success, response.message = False, _why(error)
+    if hasattr(response, 'success'):
+        response.success = False
+    if hasattr(response, 'message'):
+        response.message = _why(error)
     return response

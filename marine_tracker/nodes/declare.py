@@ -77,12 +77,13 @@ def follow(
     node: Node, kinds: Sequence[type], make: Callable[..., M], apply: Callable[[M], None]
 ) -> None:
     """After each change of live parameters, calls `apply` with the result of `make`, one object a
-    kind.
+    kind, and logs what was changed.
 
     A change that a dataclass or `make` refuses with a ValueError is refused with that reason.
     `make` must have no side effect, because another callback may still refuse the same change.
     """
     made: list[M] = []  # of the last change that was accepted here
+    changes: list[str] = []  # and what it changes
     names = [field.name for kind in kinds for field in dataclasses.fields(kind)]
 
     def values(changed: list[Parameter]) -> dict[str, Any]:
@@ -90,7 +91,12 @@ def follow(
         return now | {p.name: p.value for p in changed if p.name in now}
 
     def validate(changed: list[Parameter]) -> SetParametersResult:
-        if any(parameter.name in names for parameter in changed):
+        mine = [parameter for parameter in changed if parameter.name in names]
+        if mine:
+            changes[:] = [
+                one_line(f'{new.name} {node.get_parameter(new.name).value} -> {new.value}')
+                for new in mine
+            ]
             try:
                 made[:] = [make(*from_mappings(kinds, values(changed)))]
             except ValueError as error:
@@ -100,6 +106,7 @@ def follow(
     def changed(changed: list[Parameter]) -> None:
         if any(parameter.name in names for parameter in changed):
             apply(made.pop())
+            node.get_logger().info('parameters changed: ' + ', '.join(changes))
 
     node.add_on_set_parameters_callback(validate)
     node.add_post_set_parameters_callback(changed)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
+from ..tracking.lifecycle import STATIONARY
 from .diagnostics import one_line
 
 LEVELS = {
@@ -62,31 +63,70 @@ def plain(values: np.ndarray, digits: int) -> list[float | None]:
 
 
 def targets(rows: np.ndarray) -> dict[str, list]:
-    """The columns of `targets_cloud` that the page shows."""
+    """The columns of `targets_cloud` that the page shows, without stationary objects."""
+    rows = rows[~_fixed(rows)]
     return {name: rows[name].tolist() for name in WHOLE} | {
         name: plain(rows[name], digits) for name, digits in COLUMNS.items()
     }
 
 
+def stationary(rows: np.ndarray) -> list[list[float | None]]:
+    """[number, x, y] of each stationary object in `targets_cloud`."""
+    fixed = rows[_fixed(rows)]
+    places = zip(plain(fixed['x'], 1), plain(fixed['y'], 1))
+    return [[number, x, y] for number, (x, y) in zip(fixed['number'].tolist(), places)]
+
+
+def _fixed(rows: np.ndarray) -> np.ndarray:
+    """Mask [T] of the rows that are no target, but a stationary object."""
+    return (rows['status'] == STATIONARY) & (rows['id'] == 0)
+
+
 def alarms(message: DiagnosticArray) -> list[dict[str, Any]]:
-    """The alerts that are not normal, as the topic `alarms` has them."""
+    """The alerts that are not normal, in the order of the topic `alarms`."""
     found = []
     for entry in message.status[:MOST_ALARMS]:
-        values = _values(entry)
+        values = values_of(entry)
         if values.get('state', 'normal') == 'normal':
             continue
-        number = NUMBER.fullmatch(values.get('target', ''))
+        target = NUMBER.fullmatch(values.get('target', ''))
         found.append(
             {
                 'name': one_line(entry.name),
                 'text': one_line(entry.message),
                 'kind': values.get('kind', ''),
                 'priority': values.get('priority', ''),
+                'category': values.get('category', ''),
+                'identifier': values.get('identifier', ''),
+                'instance': int(number(values.get('instance')) or 0),
+                'sounds': int(number(values.get('sounds')) or 0),
                 'state': values['state'],
-                'number': int(number[1]) if number else 0,
-                'in_state_s': _number(values.get('in_state_s')),
-                'x': _number(values.get('east_m')),
-                'y': _number(values.get('north_m')),
+                'number': int(target[1]) if target else 0,
+                'in_state_s': number(values.get('in_state_s')),
+                'x': number(values.get('east_m')),
+                'y': number(values.get('north_m')),
+            }
+        )
+    return found
+
+
+def alarms_past(message: DiagnosticArray) -> list[dict[str, Any]]:
+    """The alerts that are settled, the newest first; times in s since 1970."""
+    stamp = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
+    found = []
+    for entry in message.status[:MOST_ALARMS]:
+        values = values_of(entry)
+        times = {}
+        for name in ('raised', 'acknowledged', 'ended'):
+            ago = number(values.get(f'{name}_s'))
+            times[name] = None if ago is None else round(stamp - ago)
+        found.append(
+            {
+                'name': one_line(entry.name),
+                'text': one_line(entry.message),
+                'priority': values.get('priority', ''),
+                'instance': int(number(values.get('instance')) or 0),
+                **times,
             }
         )
     return found
@@ -97,25 +137,25 @@ def trial(message: DiagnosticArray) -> dict[str, Any]:
     if not message.status:
         return {'on': False}
     first, *others = message.status
-    about = _values(first)
+    about = values_of(first)
     return {
         'on': True,
         'text': one_line(first.message),
-        'course_deg': _number(about.get('course_deg')),
-        'speed_kn': _number(about.get('speed_kn')),
-        'countdown_min': _number(about.get('countdown_min')),
+        'course_deg': number(about.get('course_deg')),
+        'speed_kn': number(about.get('speed_kn')),
+        'countdown_min': number(about.get('countdown_min')),
         'safe_deg': [
             [int(a), int(b)] for a, b in SECTOR.findall(about.get('safe_courses_deg', ''))
         ],
         'targets': [
             {
                 'name': one_line(entry.name),
-                'cpa_nm': _number(values.get('cpa_nm')),
-                'tcpa_min': _number(values.get('tcpa_min')),
-                'danger_probability': _number(values.get('danger_probability')),
+                'cpa_nm': number(values.get('cpa_nm')),
+                'tcpa_min': number(values.get('tcpa_min')),
+                'danger_probability': number(values.get('danger_probability')),
                 'danger': entry.level == DiagnosticStatus.ERROR,
             }
-            for entry, values in ((entry, _values(entry)) for entry in others)
+            for entry, values in ((entry, values_of(entry)) for entry in others)
         ],
     }
 
@@ -126,17 +166,19 @@ def health(message: DiagnosticArray) -> dict[str, dict[str, str]]:
         one_line(entry.name): {
             'level': LEVELS.get(entry.level, 'error'),
             'text': one_line(entry.message),
-            'estimator': _values(entry).get('estimator', ''),
+            'estimator': values_of(entry).get('estimator', ''),
         }
         for entry in message.status
     }
 
 
-def _values(entry: DiagnosticStatus) -> dict[str, str]:
+def values_of(entry: DiagnosticStatus) -> dict[str, str]:
+    """Its keys and values, each one line."""
     return {pair.key: one_line(pair.value) for pair in entry.values}
 
 
-def _number(text: str | None) -> float | None:
+def number(text: str | None) -> float | None:
+    """The number that a text is; None where it is none, or not finite."""
     try:
         value = float(text or '')
     except ValueError:

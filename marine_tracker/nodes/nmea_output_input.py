@@ -1,7 +1,6 @@
-"""What nmea_output hears: targets as readable text, own ship, and where on earth that is."""
+"""What nmea_output hears: targets as numbers, own ship, and where on earth that is."""
 
 import math
-import re
 import time
 from collections.abc import Callable
 from typing import NamedTuple
@@ -9,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
-from sensor_msgs.msg import NavSatFix, NavSatStatus
+from sensor_msgs.msg import NavSatFix, NavSatStatus, PointCloud2
 
 from ..arpa.nmea import (
     ACQUIRING,
@@ -24,13 +23,18 @@ from ..arpa.nmea import (
     Targets,
     as_acquired,
 )
+from ..arpa.signalk import Alert
 from ..arpa.stabilisation import CURRENT, HAND, LOG, POSITIONS
+from ..arpa.targets import MANUAL as MANUALLY
+from ..arpa.targets import label
 from ..files import shown
 from ..geodesy import LocalFrame
-from ..geometry import AT_REST, KNOT, NAUTICAL_MILE, on_deck, to_range_bearing
-from ..tracking import own_ship
+from ..geometry import AT_REST, KNOT, on_deck, to_range_bearing
+from ..tracking import lifecycle, own_ship
 from ..types import Array
+from . import targets_cloud
 from .convert import heading_of_odometry, nanoseconds, odometry_to_own_ship
+from .diagnostics import one_line
 from .faults import NO_STAMP, ConversionError, check_frame
 from .topics import FRAME
 
@@ -38,68 +42,59 @@ BAD_FIX = 'fixes without a position'
 FIX_BY_ARRIVAL = 'fixes with stamps far from those of own ship: paired as they arrived'
 TIME_BY_ARRIVAL = 'own ship told for stamps far from hers: as she was last'
 LOST_AFTER = 6  # timeouts without a fix: nobody knows where she is
-NAMED = re.compile(r'(TT|Q)([0-9]{1,9})')
-LONGEST_NAME = 80  # characters; no sentence holds more
-STATUS = {'LOST': LOST, 'ACQUIRING': ACQUIRING}  # all others are tracked
-FIGURES = {
-    'range_nm': NAUTICAL_MILE,
-    'bearing_deg': math.radians(1),
-    'speed_kn': KNOT,
-    'course_deg': math.radians(1),
-    'cpa_nm': NAUTICAL_MILE,
-    'tcpa_min': 60.0,
-}
+FIGURES = ('range', 'bearing', 'speed', 'course', 'cpa', 'tcpa')
 
 
-def read_targets(message: DiagnosticArray) -> Targets:
-    """The targets of a message on `targets`, with their own numbers; nan for what it lacks.
+class Heard(NamedTuple):
+    """Of a message on `targets_cloud`.
 
-    TT07 has the number 7; Q123, which is being acquired and has none yet, -123. Entries that are
-    no target are passed over. Names are cut to LONGEST_NAME: all rows of an array of texts take
-    the room of the longest.
+    targets    with their own numbers: TT07 has 7; Q123, which is being acquired, -123
+    relative   whether bearings count from the bow, without a heading
+    reference  number of the stationary target that tells the motion of the ground, 0 for none
     """
-    rows = []
+
+    targets: Targets
+    relative: bool
+    reference: int
+
+
+def read_targets(message: PointCloud2) -> Heard:
+    """The targets as numbers; nan for what is not known. ConversionError if it cannot be read."""
+    rows = targets_cloud.read(message)
+    number, id_ = (rows[name].astype(np.int64) for name in ('number', 'id'))
+    figures = {name: np.where(np.isfinite(rows[name]), rows[name], np.nan) for name in FIGURES}
+    bow = rows['relative_bearing']
+    from_bow = np.isnan(figures['bearing']) & np.isfinite(bow)
+    figures['bearing'] = np.where(from_bow, bow, figures['bearing'])
+    status = np.full(len(rows), TRACKING)
+    status[rows['status'] == lifecycle.TENTATIVE] = ACQUIRING
+    status[rows['status'] == lifecycle.LOST] = LOST
+    by_hand = rows['acquired'] == MANUALLY
+    targets = Targets(
+        np.where(number > 0, number, -id_),
+        status,
+        np.where(by_hand, MANUAL, AUTOMATIC),
+        np.array(label(id_, number), str),
+        *figures.values(),
+    )
+    fixed = number[rows['reference'] > 0]
+    return Heard(as_acquired(targets), bool(from_bow.any()), int(fixed[-1]) if len(fixed) else 0)
+
+
+def read_alerts(message: DiagnosticArray) -> list[Alert]:
+    """The alerts of a message on `alarms`."""
+    found = []
     for entry in message.status:
-        named = NAMED.fullmatch(entry.name)
-        if named is None:
-            continue
         values = {pair.key: pair.value for pair in entry.values}
-        rows.append(
-            (
-                int(named[2]) * (1 if named[1] == 'TT' else -1),
-                STATUS.get(entry.message, TRACKING),
-                MANUAL if values.get('acquired') == MANUAL else AUTOMATIC,
-                values.get('name', '')[:LONGEST_NAME] or entry.name,
-                *(_figure(values.get(key, ''), unit) for key, unit in FIGURES.items()),
+        found.append(
+            Alert(
+                one_line(entry.name),
+                one_line(entry.message),
+                values.get('priority', ''),
+                values.get('state', ''),
             )
         )
-        if not values.get('bearing_deg'):  # without a heading: from the bow
-            bearing = _figure(values.get('relative_bearing_deg', ''), FIGURES['bearing_deg'])
-            rows[-1] = (*rows[-1][:5], bearing, *rows[-1][6:])
-    number, status, acquired, name, *figures = zip(*rows) if rows else ((),) * 10
-    return as_acquired(
-        Targets(
-            np.array(number, np.int64),
-            np.array(status, 'U1'),
-            np.array(acquired, 'U1'),
-            np.array(name, str),
-            *(np.array(column, float) for column in figures),
-        )
-    )
-
-
-def frame_of(message: DiagnosticArray) -> tuple[bool, int]:
-    """Of a message on `targets`: whether bearings count from the bow, without a heading; and the
-    number of the stationary target that tells the motion of the ground, 0 for none.
-    """
-    relative, reference = False, 0
-    for entry in message.status:
-        values = {pair.key: pair.value for pair in entry.values}
-        relative |= bool(values.get('relative_bearing_deg')) and not values.get('bearing_deg')
-        found = NAMED.fullmatch(entry.name)
-        if values.get('reference') and found:
-            reference = int(found[2])
-    return relative, reference
+    return found
 
 
 def own_ship_told(message: DiagnosticArray, own: OwnShipData) -> OwnShipData:

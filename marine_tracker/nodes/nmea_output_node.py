@@ -1,8 +1,8 @@
-"""NMEA 0183 out: `targets` and own ship as sentences on the topic `nmea`, over UDP and TCP.
+"""NMEA 0183 out: targets and own ship as sentences on the topic `nmea`, over UDP and TCP.
 
-Each message on `targets` gives own ship's sentences first, then one TTM for each target, all for
-the moment of its stamp. Between scans, own ship's sentences are sent alone. A target that was lost
-or has gone is sent once more as lost. A slow receiver never delays the others.
+Each message on `targets_cloud` gives own ship's sentences first, then one TTM for each target, all
+for the moment of its stamp. Between scans, own ship's sentences are sent alone. A target that was
+lost or has gone is sent once more as lost. A slow receiver never delays the others.
 """
 
 import time
@@ -13,7 +13,7 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from sensor_msgs.msg import NavSatFix
+from sensor_msgs.msg import NavSatFix, PointCloud2
 from std_msgs.msg import String
 
 from ..arpa import nmea, nmea_fields, signalk
@@ -25,7 +25,7 @@ from ..tracking import clocks, own_ship
 from ..tracking.own_velocity import POSITIONS, TWIST
 from . import diagnostics, topics
 from .base_node import RunnableNode
-from .convert import nanoseconds
+from .convert import CLOUD_REASONS, nanoseconds
 from .declare import declare
 from .diagnostics import ERROR, FAILED, OK, WARN, one_line
 from .faults import HEADER_REASONS, ConversionError
@@ -34,9 +34,9 @@ from .nmea_output_input import (
     FIX_BY_ARRIVAL,
     TIME_BY_ARRIVAL,
     OwnShipInput,
-    frame_of,
     named,
     own_ship_told,
+    read_alerts,
     read_origin,
     read_targets,
 )
@@ -74,15 +74,16 @@ class NmeaOutputNode(RunnableNode):
         self._udp, self._signalk = Datagrams('udp', p.udp), Datagrams('signalk_udp', p.signalk_udp)
         self._tcp = Clients('tcp', p.tcp)
         self._told = nothing_told()
-        self._heard = {topics.ODOMETRY: -np.inf, topics.TARGETS: -np.inf}  # s of the wall
+        self._heard = {topics.ODOMETRY: -np.inf, topics.TARGETS_CLOUD: -np.inf}  # s of the wall
         self._state, self._state_heard = DiagnosticArray(), -np.inf
         self._said_own = -np.inf
-        self._last_ns: int | None = None  # stamp of the last `targets`
+        self._last_ns: int | None = None  # stamp of the last targets
         self._count = {'targets': 0, 'targets waiting for a number': 0, 'sentences': 0}
         self._bad = diagnostics.Tally(
             (
                 *map(named, own_ship.OWN_REASONS),
                 *HEADER_REASONS,
+                *CLOUD_REASONS,
                 BAD_FIX,
                 FIX_BY_ARRIVAL,
                 TIME_BY_ARRIVAL,
@@ -102,7 +103,8 @@ class NmeaOutputNode(RunnableNode):
             (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort()),
             (DiagnosticArray, topics.OWN_SHIP_STATE, self._on_state, topics.best_effort(1)),
-            (DiagnosticArray, topics.TARGETS, self._on_targets, topics.latched()),
+            (PointCloud2, topics.TARGETS_CLOUD, self._on_targets, topics.latched(10)),
+            (DiagnosticArray, topics.ALARMS, self._on_alarms, topics.latched(10)),
         ):
             self.create_subscription(kind, topic, callback, quality)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -141,25 +143,25 @@ class NmeaOutputNode(RunnableNode):
         simulated = self.get_parameter('use_sim_time').value and now_ns
         return now_ns * 1e-9 if simulated else clocks.steady(), now_ns
 
-    def _on_targets(self, message: DiagnosticArray) -> None:
+    def _on_targets(self, message: PointCloud2) -> None:
         try:
             time_ns = nanoseconds(message.header.stamp)
+            heard = read_targets(message)
         except ConversionError as error:
             self._bad.add(error.reason, time.monotonic(), detail=str(error))
             return
         if time_ns == self._last_ns:  # the same once more
             return
         self._last_ns = time_ns
-        self._heard[topics.TARGETS] = time.monotonic()
-        self._told, now = word(self._told, read_targets(message), self._settings.target_numbers)
+        self._heard[topics.TARGETS_CLOUD] = time.monotonic()
+        self._told, now = word(self._told, heard.targets, self._settings.target_numbers)
         self._count['targets'] = len(self._told.numbers)
         self._count['targets waiting for a number'] = now.waiting
         p, seconds = self._settings, time_ns * 1e-9
         lines = self._own_ship(time_ns)
         if 'OSD' in self._wanted:
             lines.append(nmea.osd(self._as_told(self._own_data(time_ns)), p.talker))
-        relative, reference = frame_of(message)
-        slot = self._told.slots.get(reference, 0)
+        relative, slot = heard.relative, self._told.slots.get(heard.reference, 0)
         if 'RSD' in self._wanted:
             up = nmea.HEAD_UP if relative else nmea.NORTH_UP
             lines.append(nmea.rsd(p.range_scale_nm * NAUTICAL_MILE, up, talker=p.talker))
@@ -187,6 +189,14 @@ class NmeaOutputNode(RunnableNode):
                     )
                 ],
             )
+
+    def _on_alarms(self, message: DiagnosticArray) -> None:
+        if not self._signalk.destinations:
+            return
+        alerts = read_alerts(message)
+        seconds = self._arrival()[1] * 1e-9
+        told = signalk.notifications(alerts, self.get_name(), seconds)
+        self._send_datagrams(self._signalk, [delta.encode() for delta in told])
 
     # -- out -----------------------------------------------------------------------------------
 
@@ -247,7 +257,10 @@ class NmeaOutputNode(RunnableNode):
         wall = time.monotonic()
         worries = [
             f'nothing on {topic}: {then}'
-            for topic, then in ((topics.ODOMETRY, 'RMC void, no HDT'), (topics.TARGETS, 'no TTM'))
+            for topic, then in (
+                (topics.ODOMETRY, 'RMC void, no HDT'),
+                (topics.TARGETS_CLOUD, 'no TTM'),
+            )
             if wall - self._heard[topic] > SILENT_S
         ]
         if not worries and self._own.anchor is None:

@@ -3,7 +3,7 @@
 Commands come as topics and services. A service answers if a command is not possible. For a topic
 this is logged once and counted on /diagnostics; a click that finds no track is counted too.
 Commands take effect at the next scan. `alarms` is published on change: every alert that is not
-normal, and those that have just become normal.
+normal, and those that have just become normal. `alarms_past` has the last that are settled.
 
 Time is that of the plots' stamps. It stops at the end of the last scan. If the next scan is late,
 it continues with the wall clock, so that messages in the meantime have a stamp.
@@ -19,17 +19,19 @@ from geometry_msgs.msg import PointStamped
 from std_msgs.msg import UInt32
 from std_srvs.srv import SetBool, Trigger
 
-from ..arpa import acquisition, alarms, alerts
+from ..arpa import acquisition, alarms, alert_list, alerts, sounding
 from ..arpa.acquisition import Acquisition
 from ..arpa.alerts import NORMAL, Alerts
 from ..arpa.arpa import Arpa, Picture
 from ..arpa.targets import EVENTS, NO_ROOM, NOTHING_THERE, Events
-from ..service import Output, Service
+from ..service import Output, Service, Tracking
 from ..types import Array, Scan, append, take
 from . import diagnostics, topics
-from .arpa_messages import alarms_message, trial_message
+from .alarm_log import AlarmLog
+from .arpa_messages import alarms_message, alarms_past_message, trial_message
 from .base_node import RunnableNode
 from .diagnostics import Tally, answered
+from .explanations import Explanations
 from .own_sensors import SensorsInput
 
 REFUSED = 'commands refused'
@@ -53,10 +55,12 @@ class Operator:
         self.sensors = sensors
         self.service = service
         self.memory = service.start()
+        self._settled = alerts.begin()
         self._trial_since: float | None = None  # s, when the trial manoeuvre was switched on
         self.refused = Tally((REFUSED,), node.tell)
         # Of the wall, s: when each was last heard, and between the last plots of each radar.
         self._heard_plots = [time.monotonic()] * len(self.arpa.radars)
+        self._revolved = list(self._heard_plots)
         self._spacing = [
             deque([radar.parameters.scan_period_s], maxlen=9) for radar in self.arpa.radars
         ]
@@ -64,17 +68,26 @@ class Operator:
         self._end, self._end_ns = 0.0, 0  # s, and stamp, of the last scan's end
         self.picture: Picture | None = None
 
-        self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched(10))
+        self._to_alarms = node.publisher(DiagnosticArray, topics.ALARMS, topics.latched())
+        self._to_past = node.publisher(DiagnosticArray, topics.ALARMS_PAST, topics.latched())
+        self._alarm_log = AlarmLog(node.get_logger())
         self._to_trial = node.publisher(DiagnosticArray, topics.TRIAL, topics.latched())
         for kind, topic, callback in (
             (PointStamped, topics.ACQUIRE, self._on_acquire),
             (PointStamped, topics.CLICKED_POINT, self._on_acquire),
             (UInt32, topics.CANCEL, self._on_cancel),
+            (UInt32, f'~/{topics.CANCEL}', self._on_cancel),
             (UInt32, topics.ACKNOWLEDGE_TARGET, self._on_acknowledge_target),
+            (UInt32, topics.ACKNOWLEDGE_ALERT, self._on_acknowledge_alert),
         ):
             node.subscription(kind, topic, callback, topics.reliable())
-        node.create_service(Trigger, topics.CANCEL_ALL, self._on_cancel_all)
-        node.create_service(Trigger, topics.ACKNOWLEDGE, self._on_acknowledge)
+        for own in ('', '~/'):
+            node.create_service(Trigger, own + topics.CANCEL_ALL, self._on_cancel_all)
+            node.create_service(Trigger, own + topics.ACKNOWLEDGE, self._on_acknowledge)
+            node.create_service(Trigger, own + topics.SILENCE, self._on_silence)
+        self._explanations = Explanations(
+            node, lambda: (self.service, self.memory, self._since_end()), self._point, hardware_id
+        )
         node.create_service(SetBool, topics.TRIAL_MANOEUVRE, self._on_trial)
 
     # -- in ------------------------------------------------------------------------------------
@@ -89,20 +102,26 @@ class Operator:
         self.memory = service.adopt(self.memory, self.service)
         self.service = service
 
-    def step(self, scan: Scan, end_ns: int, fallback: str) -> Output:
-        """One scan, which ends at the stamp end_ns; fallback: of own ship's place in it.
+    def step(self, scan: Scan, end_ns: int, fallback: str) -> tuple[Tracking | None, Output | None]:
+        """One scan or sector, which ends at the stamp end_ns, as Service.take; fallback: of own
+        ship's place in it.
 
-        The alarms that changed are published, and the trial manoeuvre while it is on.
+        Once a revolution the alarms that changed are published, and the trial manoeuvre while it is
+        on.
         """
         wall = time.monotonic()
-        if self._scanned[scan.radar]:
-            self._spacing[scan.radar].append(wall - self._heard_plots[scan.radar])
-        self._heard_plots[scan.radar], self._scanned[scan.radar] = wall, True
         heading, sensors = self.sensors.told(self.arpa.parameters, self.arpa.radars, fallback)
-        self.memory, output = self.service.step(self.memory, scan, heading, sensors)
+        self.memory, done, output = self.service.take(self.memory, scan, heading, sensors)
+        self._heard_plots[scan.radar] = wall
+        if output is None:
+            return done, None
+        if self._scanned[scan.radar]:
+            self._spacing[scan.radar].append(wall - self._revolved[scan.radar])
+        self._revolved[scan.radar], self._scanned[scan.radar] = wall, True
         if scan.end >= self._end or self.picture is None:  # of a slow radar they come later
             self._end, self._end_ns = scan.end, end_ns
         self.picture = output.picture
+        self._explanations.take(output)
         self._publish_alarms(self.picture.changed)
         self._tell_of_clicks(self.picture.events)
         if self._trial_since is not None:
@@ -111,7 +130,7 @@ class Operator:
                     self.arpa, self.picture, scan.end - self._trial_since, end_ns, self._hardware_id
                 )
             )
-        return output
+        return done, output
 
     def watch(self, speed_off: float) -> None:
         """To be called every second: are heading, position and plots still heard?
@@ -166,13 +185,13 @@ class Operator:
             return point
         if frame != topics.OWN_SHIP_FRAME:
             raise ValueError(
-                f'the point to acquire is in frame {frame!r}; it must be '
+                f'the point is in frame {frame!r}; it must be '
                 f'{topics.FRAME} or {topics.OWN_SHIP_FRAME}'
             )
         heading = self.sensors.heading
         if self.picture is None or not np.isfinite(heading):
             raise ValueError(
-                f'a point in {topics.OWN_SHIP_FRAME} cannot be acquired before '
+                f'a point in {topics.OWN_SHIP_FRAME} cannot be taken before '
                 "plots came, or without own ship's heading"
             )
         ahead = np.array([np.sin(heading), np.cos(heading)])
@@ -203,17 +222,30 @@ class Operator:
         return f'{self._acknowledge()} alerts acknowledged'
 
     def _on_acknowledge_target(self, message: UInt32) -> None:
+        self._acknowledge_one(number=message.data)
+
+    def _on_acknowledge_alert(self, message: UInt32) -> None:
+        self._acknowledge_one(instance=message.data)
+
+    def _acknowledge_one(self, **which: int) -> None:
         try:
-            self._acknowledge(message.data)
+            self._acknowledge(**which)
         except ValueError as error:
             self._refuse(str(error))
 
-    def _acknowledge(self, number: int | None = None) -> int:
+    @answered
+    def _on_silence(self, _: Trigger.Request) -> str:
+        found, changed = sounding.silence(self.memory.arpa.alerts, self._now())
+        self._put(alerts=found)
+        self._publish_alarms(changed)
+        return f'{len(changed.kind)} alerts silenced for {sounding.SILENT:.0f} s'
+
+    def _acknowledge(self, **which: int) -> int:
         found, changed = alarms.acknowledge(
             self.memory.arpa.alerts,
             self._now(),
-            number=number,
             duration=60 * self.arpa.parameters.acknowledge_for_min,
+            **which,
         )
         self._put(alerts=found)
         self._publish_alarms(changed)
@@ -247,16 +279,13 @@ class Operator:
             shown = append(
                 take(present, present.state != NORMAL), take(changed, changed.state == NORMAL)
             )
-            self._to_alarms.publish(
-                alarms_message(
-                    shown,
-                    self.arpa.zones,
-                    [radar.name for radar in self.arpa.radars],
-                    self._now(),
-                    self._stamp(),
-                    self._hardware_id,
-                )
-            )
+            radars = [radar.name for radar in self.arpa.radars]
+            self._alarm_log.tell(changed, self.arpa.zones, radars)
+            about = self.arpa.zones, radars, self._now(), self._stamp(), self._hardware_id
+            self._to_alarms.publish(alarms_message(alert_list.in_order(shown, alarms.RANK), *about))
+            if (changed.state == NORMAL).any():
+                self._settled = alert_list.settled(self._settled, changed)
+                self._to_past.publish(alarms_past_message(self._settled, *about))
 
     def _stamp(self) -> int:
         """ns of now; of the node's clock before the first scan."""

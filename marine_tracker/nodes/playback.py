@@ -13,6 +13,7 @@ time never runs slower, and a node that starts late leaves out what is past.
 """
 
 import itertools
+import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -25,11 +26,13 @@ from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
 
 from ..geodesy import LocalFrame
 from ..service import heading_of
-from ..types import OwnShip, Scan, Truth, take
+from ..types import OwnShip, PolarPlots, Scan, Sweep, Truth, take
 from . import convert, topics
-from .base_node import RunnableNode
+from .base_node import RunnableNode, State
 from .convert import OdometryPool
+from .diagnostics import FRESH_S, OK, WARN
 from .readable_plots import plots_to_readable
+from .spokes import sweep_to_cloud
 
 FIRST_S = 1.0  # s, where simulated time begins
 TICK_S = 0.05  # longest wait between two looks at the time
@@ -38,15 +41,21 @@ LAG_S = 0.5  # further behind than this, time runs slower
 LISTENER_S = 3.0  # longest wait for the first listener ...
 SETTLE_S = 0.5  # ... and for it to know us, too, on every topic
 OWN_SHIP_PERIOD_S = 0.1  # of simulated time, and at most
+NO_PLOTS = PolarPlots(np.empty(0), np.empty(0), np.empty(0), np.empty(0))
 OWN_SHIP_PER_S = 25.0  # samples in a second of the wall
 
 
 class Revolution(NamedTuple):
-    """scan and truth, and the own-ship samples that become known up to its end."""
+    """A revolution or a sector of one: scan, truth, and own-ship samples that become known up to
+    its end.
+
+    sweep  of a radar that gives video: spokes instead of the scan's plots, any number of them
+    """
 
     scan: Scan
     truth: Truth
     own_ship: OwnShip
+    sweep: Sweep | None = None
 
 
 def own_ship_period(rate: float) -> float:
@@ -87,24 +96,31 @@ class Playback:
         if self._next is None:
             raise ValueError('there is no revolution to play')
         first = self._next
-        self._first = min(float(first.own_ship.time[0]), first.scan.start)
+        self._first = min([*first.own_ship.time[:1].tolist(), first.scan.start])
         self._sample = 0  # of the next revolution's own-ship samples
         reliable = topics.reliable
-        self._plots = node.publisher(PointCloud2, topics.PLOTS, reliable())
+        video = first.sweep is not None
+        self._plots = node.publisher(
+            PointCloud2,
+            topics.SPOKES if video else topics.PLOTS,
+            topics.best_effort(topics.SPOKES_DEPTH) if video else reliable(topics.SECTORS),
+        )
         self._readable = node.publisher(PointCloud, topics.PLOTS_READABLE, reliable())
         self._odometry = node.publisher(Odometry, topics.ODOMETRY, reliable())
         self._truth = node.publisher(Odometry, topics.TRUTH, reliable(topics.BURST))
         self._fix = node.publisher(NavSatFix, topics.FIX, reliable()) if origin else None
-        self._clock = node.publisher(ClockMessage, '/clock', reliable(1)) if rate != 1 else None
+        self._clock = node.publisher(ClockMessage, topics.CLOCK, reliable(1)) if rate != 1 else None
         self._pool = OdometryPool()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._created = self._wall()
         self._heard: float | None = None
         self._told_waiting = False
         self._start_ns: int | None = None  # stamp of the time _first
+        self._scans, self._slowed = 0, 0  # published; times that it could not keep the rate
+        self._slow = -math.inf  # s of the wall, the last time
         self._anchor = (0.0, self._first)  # a moment of the wall and the time it stands for
         self._timer = node.create_timer(TICK_S, self._tick, clock=self._steady)
-        node.watch_failures(self._steady)
+        node.watch(self._steady, 'playback', self._state)
 
     def close(self) -> None:
         """Stop, and see that what was published arrives."""
@@ -130,10 +146,24 @@ class Playback:
             return
         if now - due > LAG_S * self.rate and not self.begin_at:
             self._anchor = (self._elapsed(), due)
+            self._slowed, self._slow = self._slowed + 1, self._wall()
         self._publish_clock(min(now, due))
         wait = (due - self._now()) / self.rate
         self._timer.timer_period_ns = int(1e9 * min(max(wait, 1e-3), TICK_S))
         self._timer.reset()
+
+    def _state(self) -> State:
+        """For /diagnostics."""
+        level, message = OK, f'plays at rate {self.rate:g}'
+        if self._start_ns is None:
+            message = 'waits for a listener'
+            if self._told_waiting:
+                level, message = WARN, 'use_sim_time is set and /clock is silent'
+        elif self._wall() - self._slow < FRESH_S:
+            level, message = WARN, f'slower than the rate of {self.rate:g}: the machine is too slow'
+        elif self.done:
+            message = 'has ended'
+        return level, message, {'scans': self._scans, 'times too slow': self._slowed}
 
     def _begin(self) -> bool:
         """Whether time runs now; sets the stamp of the first moment."""
@@ -208,8 +238,11 @@ class Playback:
             return
         scan, truth = revolution.scan, revolution.truth
         start_ns = self._stamp(scan.start)
-        self._plots.publish(convert.plots_to_cloud(scan, start_ns))
-        if self._readable.get_subscription_count():
+        if revolution.sweep is not None:
+            self._plots.publish(sweep_to_cloud(revolution.sweep, scan.start, start_ns))
+        else:
+            self._plots.publish(convert.plots_to_cloud(scan, start_ns))
+        if revolution.sweep is None and self._readable.get_subscription_count():
             self._readable.publish(plots_to_readable(scan, start_ns))
         if self._truth.get_subscription_count():
             exact = np.zeros((len(truth.time), 4, 4))
@@ -223,6 +256,7 @@ class Playback:
                 self._truth.publish(message)
         self._next = next(self._revolutions, None)
         self._sample = 0
+        self._scans += 1
 
     def _publish_own_ship(self, sample: OwnShip) -> None:
         stamp, position = self._stamp(sample.time[0]), sample.position[0]
@@ -250,14 +284,15 @@ def _repeat(make: Callable[[], Iterator[Revolution]]) -> Iterator[Revolution]:
 
 def _moved(revolution: Revolution, shift: float) -> Revolution:
     """The same at another time, s later."""
-    scan, truth, own_ship = revolution
+    scan, truth, own_ship, sweep = revolution
     return Revolution(
-        Scan(
-            scan.start + shift,
-            scan.end + shift,
-            scan.plots._replace(time=scan.plots.time + shift),
-            scan.own_ship._replace(time=scan.own_ship.time + shift),
+        scan._replace(
+            start=scan.start + shift,
+            end=scan.end + shift,
+            plots=scan.plots._replace(time=scan.plots.time + shift),
+            own_ship=scan.own_ship._replace(time=scan.own_ship.time + shift),
         ),
         truth._replace(time=truth.time + shift),
         own_ship._replace(time=own_ship.time + shift),
+        None if sweep is None else sweep._replace(time=sweep.time + shift),
     )

@@ -9,6 +9,7 @@ import queue
 import time
 from collections import deque
 from concurrent.futures import Future
+from functools import partial
 from statistics import median
 from typing import Any
 
@@ -21,19 +22,22 @@ from sensor_msgs.msg import NavSatFix, PointCloud2
 from ..display.commands import Command
 from ..display.server import DisplayServer
 from ..display.trails import Trails
-from ..geometry import unit_vector
 from ..parameters import PpiDisplayParameters
 from . import convert, diagnostics, display_messages, targets_cloud, topics
 from .base_node import RunnableNode
 from .convert import ConversionError
 from .declare import declare
 from .diagnostics import FAILED, OK, WARN, Tally
-from .display_commands import TrackerCommands
+from .display_commands import LIMITS, TrackerCommands
+from .display_danger_areas import DangerAreas
+from .display_demo import SHOW, DemoLink
+from .display_own import OwnShipHeard
+from .display_own_ship import OwnWay, ship
+from .display_spokes import DisplaySpokes
+from .display_tracker import radars_told, zones_told
 
-FIX_S = 10.0  # a position that is older is not shown
 OWN_EVERY_S = 0.1  # between two positions of own ship sent to the page
-SAMPLES = 400  # of own ship, to place plots by
-BAD_TARGETS, BAD_OWN, BAD_FIX = 'targets not read', 'own ship not finite', 'fixes not finite'
+BAD_TARGETS, BAD_OWN, BAD_FIX = 'targets not read', 'own ship not finite', 'fixes without a place'
 
 
 class PpiDisplayNode(RunnableNode):
@@ -43,35 +47,46 @@ class PpiDisplayNode(RunnableNode):
         super().__init__('ppi_display', **node_arguments)
         (p,) = declare(self, PpiDisplayParameters)
         self._bad = Tally((*convert.CLOUD_REASONS, BAD_TARGETS, BAD_OWN, BAD_FIX), self.tell)
-        self._commands = TrackerCommands(self, p.tracker)
+        self._demo = DemoLink(self)
+        self._shown: dict[str, Any] = {}  # by the demo, where there is one
         self._waiting: queue.SimpleQueue[tuple[Command, Future[str]]] = queue.SimpleQueue()
         self._wake = self.create_guard_condition(self._guarded(self._run_commands))
-        self._own: deque[tuple[int, float, float]] = deque(maxlen=SAMPLES)  # ns, m, m
+        self._commands = TrackerCommands(self, p.tracker, self._wake.trigger)
+        self._own = OwnShipHeard()
         self._own_told = -math.inf  # s of the wall
-        self._fix: tuple[float, float] | None = None
-        self._fixed = -math.inf  # s of the wall, when it was heard
+        self._plots_topic = p.plots_topic  # of a tracker with one radar
+        self._plots: dict[str, Any] = {}  # the subscriptions, by topic
         self._trails = Trails()
         self._scanned: deque[float] = deque(maxlen=6)  # s of the wall
         self._health: dict[str, dict[str, str]] = {}
-        self._limits: dict[str, float] = {}
+        self._told: dict[str, dict[str, Any]] = {}  # of the tracker's parameters, to the page
         self._alarmed = False
         self.server = DisplayServer(
             p.address, self._on_command, p.remote_commands, p.token or None, p.names.split()
         )
+        self._given = p
+        self._ship: dict[str, Any] = {}
+        self._way = OwnWay()
+        self._areas = DangerAreas(self, self.server)
+        DisplaySpokes(self, self.server, self._own, self._bad)
         for kind, topic, callback, quality in (
             (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort(1)),
-            (PointCloud2, p.plots_topic, self._on_plots, topics.best_effort()),
             (PointCloud2, topics.TARGETS_CLOUD, self._on_targets, topics.latched()),
             (DiagnosticArray, topics.ALARMS, self._on_alarms, topics.latched()),
+            (DiagnosticArray, topics.ALARMS_PAST, self._on_alarms_past, topics.latched()),
+            (DiagnosticArray, topics.OWN_SHIP_STATE, self._way.hear, topics.latched()),
             (DiagnosticArray, topics.TRIAL, self._on_trial, topics.latched()),
             (DiagnosticArray, topics.DIAGNOSTICS, self._on_diagnostics, topics.reliable()),
         ):
             self.subscription(kind, topic, callback, quality)
+        self._hear_radars([self._plots_topic])
         self._to_diagnostics = self.publisher(
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        if p.managed:
+            self.manage()
         # Printed, not logged: the log is kept on disk and published, and this holds the token.
         print(f'ppi_display: {self.server.url}', flush=True)
 
@@ -82,72 +97,56 @@ class PpiDisplayNode(RunnableNode):
     # -- in ------------------------------------------------------------------------------------
 
     def _on_odometry(self, message: Odometry) -> None:
-        position, velocity = convert.odometry_to_own_ship(message)
         wall = time.monotonic()
-        if not np.isfinite(position).all():
+        if not self._own.hear(message):
             self._bad.add(BAD_OWN, wall)
-            return
-        time_ns = convert.nanoseconds(message.header.stamp)
-        if self._own and time_ns < self._own[-1][0]:  # time went back: another run
-            self._own.clear()
-        self._own.append((time_ns, *position.tolist()))
-        if wall - self._own_told < OWN_EVERY_S:
-            return
-        self._own_told = wall
-        heading = convert.heading_of_odometry(message)
-        x, y, vx, vy = display_messages.plain(np.hstack([position, velocity]), 3)
-        fresh = wall - self._fixed < FIX_S
-        latitude, longitude = (self._fix if fresh else None) or (None, None)
-        self.server.publish(
-            'own',
-            {
-                'at': wall,
-                'time': time_ns * 1e-9,
-                'x': x,
-                'y': y,
-                'vx': vx,
-                'vy': vy,
-                'heading': heading if np.isfinite(heading) else None,
-                'latitude': latitude,
-                'longitude': longitude,
-            },
-        )
+        elif wall - self._own_told >= OWN_EVERY_S:
+            self._own_told = wall
+            own = self._own.plain(wall)
+            self.server.publish('own', {**own, **self._way.told(own['vx'], own['vy'])})
 
     def _on_fix(self, message: NavSatFix) -> None:
-        if math.isfinite(message.latitude) and math.isfinite(message.longitude):
-            self._fix = message.latitude, message.longitude
-            self._fixed = time.monotonic()
-        else:
-            self._fix = None
-            self._bad.add(BAD_FIX, time.monotonic())
+        wall = time.monotonic()
+        if not self._own.hear_fix(message, wall):
+            self._bad.add(BAD_FIX, wall)
 
-    def _on_plots(self, message: PointCloud2) -> None:
+    def _on_plots(self, radar: int, message: PointCloud2) -> None:
         if not self.server.viewers:
             return
         try:
             plots = convert.cloud_to_plots(message)
+            stamp_ns = convert.nanoseconds(message.header.stamp)
         except ConversionError as error:
             self._bad.add(error.reason, time.monotonic(), detail=str(error))
             return
-        if not self._own:
+        position = self._own.place(plots, stamp_ns, radar)
+        if position is None:
             return
-        # Each at its own bearing from where own ship was when the beam passed it.
-        samples = np.array(self._own)
-        when = convert.nanoseconds(message.header.stamp) - samples[0, 0] + plots.time * 1e9
-        since = samples[:, 0] - samples[0, 0]
-        own = np.stack([np.interp(when, since, samples[:, k]) for k in (1, 2)], 1)
-        position = own + plots.range[:, None] * unit_vector(plots.bearing)
         good = np.isfinite(position).all(1)
         self.server.publish(
-            'plots',
+            _kind_of(radar),
             {
                 'at': time.monotonic(),
-                'stamp': convert.nanoseconds(message.header.stamp) * 1e-9,
+                'stamp': stamp_ns * 1e-9,
+                'radar': radar,
                 'x': display_messages.plain(position[good, 0], 0),
                 'y': display_messages.plain(position[good, 1], 0),
                 'amplitude': display_messages.plain(plots.amplitude[good], 0),
             },
         )
+
+    def _hear_radars(self, radars: list[str]) -> None:
+        """Listen to the plots of the tracker's radars, on these topics."""
+        if list(self._plots) == radars:
+            return
+        for old in self._plots.values():
+            self.destroy_subscription(old)
+        self._plots = {
+            topic: self.subscription(
+                PointCloud2, topic, partial(self._on_plots, place), topics.best_effort()
+            )
+            for place, topic in enumerate(radars)
+        }
 
     def _on_targets(self, message: PointCloud2) -> None:
         wall = time.monotonic()
@@ -167,11 +166,13 @@ class PpiDisplayNode(RunnableNode):
                 'time': seconds,
                 'period': median(gaps) if gaps else None,
                 'columns': display_messages.targets(rows),
+                'fixed': display_messages.stationary(rows),
             },
         )
-        own = self._own[-1][1:] if self._own else None
+        rows = rows[rows['id'] > 0]
+        own = self._own.position
         position = np.stack([rows['x'], rows['y']], 1).astype(float)
-        if own and self._trails.add(seconds, own, rows['id'], position):
+        if own is not None and self._trails.add(seconds, own, rows['id'], position):
             self.server.publish('trails', self._trails.plain())
 
     def _on_alarms(self, message: DiagnosticArray) -> None:
@@ -180,7 +181,11 @@ class PpiDisplayNode(RunnableNode):
 
     def _on_trial(self, message: DiagnosticArray) -> None:
         self._alarmed = True
-        self.server.publish('trial', display_messages.trial(message))
+        trial = display_messages.trial(message)
+        self.server.publish('trial', {'at': time.monotonic(), **trial})
+
+    def _on_alarms_past(self, message: DiagnosticArray) -> None:
+        self.server.publish('alarms_past', {'alarms': display_messages.alarms_past(message)})
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for name, about in display_messages.health(message).items():
@@ -198,14 +203,23 @@ class PpiDisplayNode(RunnableNode):
 
     def _run_commands(self) -> None:
         while not self._waiting.empty():
-            self._commands.run(*self._waiting.get())
+            command, answer = self._waiting.get()
+            to = self._demo.choose if command.name == SHOW else self._commands.run
+            to(command, answer)
+        self._commands.go_on()
 
     # -- how it fares ----------------------------------------------------------------------------
 
     def _on_second(self) -> None:
         self._run_commands()
-        self._commands.ask_limits(self._hear_limits)
+        self._commands.ask(self._hear_parameters)
+        self._demo.ask(self._hear_demo)
         self._forget()
+        self._areas.look()
+        about = ship(self._given, self)
+        if about != self._ship:
+            self._ship = about
+            self.server.publish('ship', about)
         wall = time.monotonic()
         fresh = self._bad.fresh(wall)
         values = {
@@ -235,7 +249,31 @@ class PpiDisplayNode(RunnableNode):
             self.server.publish('alarms', {'alarms': []})
             self.server.publish('trial', {'on': False})
 
-    def _hear_limits(self, limits: dict[str, float]) -> None:
-        if limits != self._limits:
-            self._limits = limits
-            self.server.publish('limits', limits)
+    def _hear_parameters(self, values: dict[str, Any]) -> None:
+        """The tracker's parameters: what changed goes to the page."""
+        topics_of, self._own.radars = radars_told(values, self._plots_topic)
+        self._hear_radars(topics_of)
+        for kind, told in (
+            ('limits', {name: values[name] for name in LIMITS}),
+            ('zones', zones_told(values)),
+        ):
+            if told != self._told.get(kind):
+                self._told[kind] = told
+                self.server.publish(kind, told)
+
+    def _hear_demo(self, shown: dict[str, Any]) -> None:
+        if shown == self._shown:
+            return
+        if shown.get('run') != self._shown.get('run'):  # what was seen so far is of another run
+            self._trails = Trails()
+            self._own.begin_anew()
+            self._scanned.clear()
+            plots = (_kind_of(radar) for radar in range(len(self._plots)))
+            self.server.forget('targets', 'trails', 'spokes', *plots)
+        self._shown = shown
+        self.server.publish('demo', {'demo': shown})
+
+
+def _kind_of(radar: int) -> str:
+    """The kind of message of a radar's plots: a newer one of another radar replaces none."""
+    return f'plots{radar or ""}'

@@ -1,25 +1,23 @@
-"""What comes in from one radar: each revolution's plots screened, timed, and made a scan."""
+"""What comes in from one radar: messages read, and each revolution made a scan."""
 
-import statistics
 import time
-from collections import deque
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sensor_msgs.msg import PointCloud2
 
 from ..estimators import WANT_DOPPLER
 from ..tracking import intake, own_ship
 from ..tracking.radars import Radar
+from ..tracking.scan_input import MISSED, Came, ScanInput
 from ..types import Array, Scan
 from . import convert
 from .diagnostics import OK, WARN, Tally
-from .faults import HEADER_REASONS, NO_STAMP, ConversionError, check_frame
+from .faults import HEADER_REASONS, ConversionError, check_frame
+from .messages_of_others import scan_to_plots
 from .topics import FRAME, OWN_SHIP_FRAME
 
-MISSED = 'revolutions missed'
 NO_DOPPLER = 'scans without the radial speeds that the estimator wants'
-LEADS = 15  # scans; more than ever wait in a queue
 SILENT_S = 5.0  # s of the wall, and three scans, without plots: the radar is silent
 
 
@@ -37,16 +35,10 @@ class Arrival(NamedTuple):
     own_frame: str
 
 
-class RadarInput:
-    """Of one radar of a tracker node; tell(reason, detail) is called for the first of each fault.
-
-    order   what the next scan's time is judged by
-    taken   scans so far
-    """
+class RadarInput(ScanInput):
+    """Of one radar of a node; tell(reason, detail) is called for the first of each fault."""
 
     def __init__(self, radar: Radar, place: int, tell: Callable[[str, str], None]) -> None:
-        self.radar, self._place = radar, place
-        self.order = intake.TimeOrder()
         self.bad = Tally(
             (
                 *convert.CLOUD_REASONS,
@@ -59,106 +51,40 @@ class RadarInput:
             ),
             tell,
         )
-        self.taken = 0
-        self._plots_in_scan = 0
-        self._starts: deque[float] = deque(maxlen=10)
-        self._stamped_alike = False
-        self._samples = 0  # of own ship, taken before the last scan
-        self._leads: deque[float] = deque(maxlen=LEADS)
+        super().__init__(
+            radar,
+            place,
+            lambda reason, count, detail: self.bad.add(reason, time.monotonic(), count, detail),
+        )
         self._began = time.monotonic()
         self._heard: float | None = None  # wall time of the last plots
 
-    @property
-    def period(self) -> float:
-        """s of one revolution: as measured, or by parameter until there is enough to measure."""
-        if len(self._starts) < 4:
-            return self.radar.parameters.scan_period_s
-        starts = list(self._starts)
-        return statistics.median(b - a for a, b in zip(starts, starts[1:]))
-
-    def scan_of(
+    def read(
         self,
-        message: PointCloud2,
+        message: Any,
         came: Arrival,
         own_log: own_ship.OwnShipLog,
         others: Sequence[intake.TimeOrder],
         way: Array,
         heading: float,
     ) -> tuple[Scan, str, own_ship.OwnShipLog] | None:
-        """The scan in the tracker's time, the fallback for own ship, and her log, in which what
-        waited may be confirmed by the scan; None where the scan is rejected.
-
-        others   the orders of the other radars
-        way      [2] m/s, own ship's way through the water, should her positions be lost; nan: none
-        heading  rad, hers now; nan: not known
-        """
+        """The scan of a PointCloud2 or RadarScan, as by `scan_of`; None where it is rejected."""
         self._heard = wall = time.monotonic()
         try:
             check_frame(message.header.frame_id, (FRAME, OWN_SHIP_FRAME, came.own_frame))
             start_ns = convert.nanoseconds(message.header.stamp)
-            plots = convert.cloud_to_plots(message)
+            if isinstance(message, PointCloud2):
+                plots = convert.cloud_to_plots(message)
+            else:
+                plots = scan_to_plots(message, self.radar.parameters.bearings)
         except ConversionError as error:
             self.bad.add(error.reason, wall, detail=str(error))
             return None
-        parameters, period = self.radar.parameters, self.period
-        plots, rejected = intake.screen_plots(plots, period, parameters.max_plots)
-        for reason, count in rejected.items():
-            self.bad.add(reason, wall, count)
-        if parameters.estimator in WANT_DOPPLER and plots.radial_speed is None and len(plots.time):
-            self.bad.add(NO_DOPPLER, wall, detail=parameters.estimator)
-        if not start_ns:
-            start_ns = came.now_ns - round(1e9 * max(period, plots.time.max(initial=0.0)))
-            self.bad.add(NO_STAMP, wall)
-        start, before = came.seconds(start_ns), self.order.last
-        self.order, taken, reason = intake.admit_scan(
-            self.order, start, period, others, came.arrival, own_log.newest
-        )
-        if reason:
-            self.bad.add(reason, wall, detail=f'stamp {start_ns * 1e-9:.3f} s')
-        if not taken:
-            return None
-        if reason == intake.REBASED:
-            self._starts.clear()
-        elif start - before > 1.5 * period:
-            self.bad.add(MISSED, wall, round((start - before) / period) - 1)
-        self._starts.append(start)
-
-        # Recordings may stamp all plots of a scan alike; an antenna never does.
-        if len(plots.time):
-            self._stamped_alike = not plots.time.any()
-        length = 0.0 if self._stamped_alike else max(period, plots.time.max(initial=0.0))
-        end, shift = start + length, self.order.shift
-        own_log, timeout = own_ship.confirmed(own_log, end), parameters.own_ship_timeout_s
-        own_log = own_ship.reckoned(own_log, end, came.arrival, timeout, way, heading)
-        own, fallback = own_ship.own_ship_for(
-            own_log, start, end, timeout, parameters.own_ship_velocity, self._lead(own_log, end)
-        )
-        if fallback == own_ship.OWN_BY_ARRIVAL:
-            self.bad.add(fallback, wall)
-        if own_log.reckoned:
-            fallback = own_ship.OWN_RECKONED
-        self.taken += 1
-        self._plots_in_scan = len(plots.time)
-        scan = Scan(
-            start + shift,
-            end + shift,
-            plots._replace(time=plots.time + start + shift),
-            own._replace(time=own.time + shift),
-            self._place,
-        )
-        return scan, fallback, own_log
-
-    def _lead(self, own_log: own_ship.OwnShipLog, end: float) -> float:
-        """s that own ship's stamps lie ahead of the plots': behind, where she was heard since the
-        last scan; ahead, by the least of many scans, for some may have waited in a queue."""
-        samples, self._samples = self._samples, own_log.number
-        if not own_log.number:
-            return 0.0
-        lead = float(own_log.taken.time[-1]) - end
-        self._leads.append(lead)
-        if lead < 0:
-            return lead if own_log.number > samples else 0.0
-        return min(self._leads) if len(self._leads) == LEADS else 0.0
+        estimator = self.radar.parameters.estimator
+        if estimator in WANT_DOPPLER and plots.radial_speed is None and len(plots.time):
+            self.bad.add(NO_DOPPLER, wall, detail=estimator)
+        how = Came(came.arrival, came.now_ns, start_ns, came.seconds)
+        return self.scan_of(plots, how, own_log, others, way, heading)
 
     def state(self, wall: float) -> tuple[bytes, str, dict[str, object]]:
         """Level, message and values for /diagnostics."""
@@ -176,8 +102,9 @@ class RadarInput:
             message,
             {
                 'scans taken': self.taken,
-                'plots in last scan': self._plots_in_scan,
-                'period_s': f'{self.period:.3f}',
+                'plots in last scan': self.plots_in_scan,
+                'period_s': f'{self.revolution:.3f}',
+                **({'sectors': round(self.revolution / self.period)} if self.in_sectors else {}),
                 **self.bad.counts,
             },
         )

@@ -1,9 +1,10 @@
 """The radar simulator as a node: a scenario's plots, own ship and truth, in their own time.
 
-Publishes `radar/plots` and `radar/plots_readable` at the end of each antenna revolution,
+Publishes `radar/plots` and `radar/plots_readable` at the end of each antenna revolution, or of each
+sector where the scenario or the parameter `sectors` asks for several messages a revolution,
 `own_ship/odometry` (and `own_ship/fix` where the scenario has a place on earth) at 10 Hz, `truth`
-once a revolution. Rate and `/clock`: see playback.py. The node ends when the scenario has ended,
-unless it loops.
+once a revolution; `radar/spokes` instead of plots where the radar gives video. Rate and `/clock`:
+see playback.py. The node ends when the scenario has ended, unless it loops.
 """
 
 from collections.abc import Iterator
@@ -13,12 +14,30 @@ import numpy as np
 
 from ..geometry import heading_at, own_ship_at
 from ..parameters import RadarSimulatorParameters
-from ..simulation import radar, scenario
-from ..types import OwnShip
+from ..simulation import radar, scenario, sectors, video
+from ..simulation.scenario import Scenario
+from ..types import OwnShip, Scan, take
 from .base_node import RunnableNode
 from .declare import declare
 from .diagnostics import one_line
-from .playback import Playback, Revolution, own_ship_period
+from .playback import NO_PLOTS, Playback, Revolution, own_ship_period
+
+SECTOR = 128  # spokes in a message
+
+
+def _with_video(chosen: Scenario, seed: int, step: float) -> Iterator[Revolution]:
+    """The spokes of a radar that gives video, in sectors; truth comes with the last one."""
+    for turn in video.simulate(chosen, seed):
+        spokes = len(turn.sweep.time)
+        period = chosen.radar.scan_period
+        for first in range(0, spokes, SECTOR):
+            part = take(turn.sweep, slice(first, first + SECTOR))
+            last = first + SECTOR >= spokes
+            start, end = float(part.time[0]), float(part.time[-1]) + period / spokes
+            count = max(round((end - start) / step), 1)
+            own = chosen.own_ship_at(np.linspace(start, end, count + 1)[1:])
+            truth = turn.truth if last else take(turn.truth, slice(0, 0))
+            yield Revolution(Scan(start, end, NO_PLOTS, own), truth, own, part)
 
 
 class RadarSimulatorNode(RunnableNode):
@@ -30,13 +49,17 @@ class RadarSimulatorNode(RunnableNode):
         chosen = scenario.load(parameters.scenario)
         for remark in chosen.fleet.remarks:
             self.get_logger().warning(remark)
-        step = own_ship_period(parameters.rate)
+        step, count = own_ship_period(parameters.rate), parameters.sectors or chosen.radar.sectors
 
         def revolutions() -> Iterator[Revolution]:
-            for scan, truth in radar.simulate(chosen, parameters.seed):
+            if chosen.radar.video is not None:
+                yield from _with_video(chosen, parameters.seed, step)
+                return
+            scans = radar.simulate(chosen, parameters.seed)
+            for scan, truth in sectors.parts(scans, count):
                 # Evenly up to the end, which is always one of them.
-                count = max(round((scan.end - scan.start) / step), 1)
-                time = np.linspace(scan.start, scan.end, count + 1)[1:]
+                samples = max(round((scan.end - scan.start) / step), 1)
+                time = np.linspace(scan.start, scan.end, samples + 1)[1:]
                 own = OwnShip(time, *own_ship_at(scan.own_ship, time))
                 own = own._replace(heading=heading_at(scan.own_ship, time))
                 yield Revolution(scan, truth, own)

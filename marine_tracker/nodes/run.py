@@ -29,9 +29,11 @@ from . import arguments, log_folder
 NODES = {
     'tracker': 'TrackerNode',
     'radar_simulator': 'RadarSimulatorNode',
+    'plot_extractor': 'PlotExtractorNode',
     'recording_player': 'RecordingPlayerNode',
     'nmea_output': 'NmeaOutputNode',
     'ppi_display': 'PpiDisplayNode',
+    'recorder': 'RecorderNode',
 }
 LONGEST = 600  # characters of why a node cannot start
 ASKED = (signal.SIGINT, signal.SIGTERM)
@@ -118,6 +120,11 @@ def radar_simulator() -> int:
     return run('radar_simulator')
 
 
+def plot_extractor() -> int:
+    """The exit code of the plot extractor."""
+    return run('plot_extractor')
+
+
 def recording_player() -> int:
     """The exit code of the recording player."""
     return run('recording_player')
@@ -131,6 +138,11 @@ def nmea_output() -> int:
 def ppi_display() -> int:
     """The exit code of the PPI."""
     return run('ppi_display')
+
+
+def recorder() -> int:
+    """The exit code of the recorder."""
+    return run('recorder')
 
 
 if __name__ == '__main__':

@@ -51,6 +51,7 @@ class TargetsListener:
     def __init__(self) -> None:
         self.picture = Picture()
         self._context = Context()
+        self._others: list[RunnableNode] = []
         log_folder.provide()
         try:
             rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
@@ -72,10 +73,22 @@ class TargetsListener:
         """Takes at most one message; waits at most `seconds` for it."""
         self._executor.spin_once(timeout_sec=seconds)
 
+    def add(self, name: str) -> RunnableNode:
+        """Another node, spun with this one."""
+        node = RunnableNode(name, context=self._context)
+        self._executor.add_node(node)
+        self._others.append(node)
+        return node
+
+    def forget(self) -> None:
+        """What was heard so far: something else comes."""
+        self.picture = Picture()
+
     def close(self) -> None:
         """Leave the network."""
         self._executor.shutdown()
-        self._node.destroy_node()
+        for node in (self._node, *self._others):
+            node.destroy_node()
         self._context.try_shutdown()
 
     def _on_targets(self, message: DiagnosticArray) -> None:

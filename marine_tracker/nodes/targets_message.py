@@ -6,10 +6,11 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from ..arpa.motion import MEMORY_NAMES
+from ..arpa.situation import DANGEROUS
 from ..arpa.targets import LETTERS
 from ..arpa.view import View
 from ..geometry import KNOT, NAUTICAL_MILE
-from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, REASONS, TENTATIVE
+from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, REASONS, STATIONARY, TENTATIVE
 from . import hull_columns
 from .convert import time_message
 from .diagnostics import ERROR, OK, STALE, WARN
@@ -50,8 +51,14 @@ COLUMNS = (
     'age_min',
     'reason',
 )
-LEVEL = {TENTATIVE: OK, CONFIRMED: OK, COASTING: WARN, LOST: STALE}
-MESSAGE = {TENTATIVE: 'ACQUIRING', CONFIRMED: 'TRACKING', COASTING: 'COASTING', LOST: 'LOST'}
+LEVEL = {TENTATIVE: OK, CONFIRMED: OK, COASTING: WARN, LOST: STALE, STATIONARY: OK}
+MESSAGE = {
+    TENTATIVE: 'ACQUIRING',
+    CONFIRMED: 'TRACKING',
+    COASTING: 'COASTING',
+    LOST: 'LOST',
+    STATIONARY: 'STATIONARY',
+}
 
 
 class TargetsWriter:
@@ -65,10 +72,11 @@ class TargetsWriter:
     def message(self, seen: View, estimator: str, time: float, time_ns: int) -> DiagnosticArray:
         """The targets of a view at `time` s, stamped time_ns; valid until the next call."""
         rows = table(seen, estimator, time)
+        names, levels, places = stationary_rows(seen)
         keys = COLUMNS if seen.hulls is None else COLUMNS + hull_columns.COLUMNS
         if keys != self._keys:
             self._keys, self._entries = keys, []
-        while len(self._entries) < len(rows):
+        while len(self._entries) < len(rows) + len(places):
             self._entries.append(
                 DiagnosticStatus(
                     hardware_id=self._hardware_id, values=[KeyValue(key=key) for key in keys]
@@ -90,7 +98,11 @@ class TargetsWriter:
                 entry.level = WARN
             for pair, text in zip(entry.values, row):
                 pair.value = text
-        message = DiagnosticArray(status=self._entries[: len(rows)])
+        for entry, name, level, told in zip(self._entries[len(rows) :], names, levels, places):
+            entry.name, entry.message, entry.level = name, MESSAGE[STATIONARY], level
+            for pair in entry.values:
+                pair.value = told.get(pair.key, '')
+        message = DiagnosticArray(status=self._entries[: len(rows) + len(places)])
         message.header.stamp = time_message(time_ns)
         return message
 
@@ -148,6 +160,39 @@ def table(seen: View, estimator: str, time: float) -> list[tuple[str, ...]]:
     if seen.hulls is not None:
         columns += hull_columns.columns(seen.hulls, degrees, figure)
     return list(zip(*columns))
+
+
+def stationary_rows(seen: View) -> tuple[list[str], list[bytes], list[dict[str, str]]]:
+    """Names, levels and values by key of the stationary objects: ST12, and a warning where own ship
+    will pass it within the limits."""
+    fixed = seen.fixed
+    if fixed is None:
+        return [], [], []
+    passing = fixed.approach
+    north = bool(np.isfinite(seen.approach.bearing).any() or not len(seen.id))
+    told = [
+        {
+            'range_nm': figure(range_ / NAUTICAL_MILE, 3),
+            'bearing_deg': degrees(bearing / DEGREE) if north else '',
+            'speed_kn': '0.0',
+            'cpa_nm': figure(cpa / NAUTICAL_MILE, 3),
+            'tcpa_min': figure(tcpa / 60, 1),
+            'motion': 'at rest',
+            'position_sd_m': figure(sigma, 0),
+        }
+        for range_, bearing, cpa, tcpa, sigma in zip(
+            passing.range.tolist(),
+            passing.bearing.tolist(),
+            passing.cpa.tolist(),
+            passing.tcpa.tolist(),
+            np.sqrt(2 * fixed.shown.variance).tolist(),
+        )
+    ]
+    return (
+        [f'ST{number:02d}' for number in fixed.shown.number.tolist()],
+        [WARN if danger == DANGEROUS else OK for danger in fixed.danger.tolist()],
+        told,
+    )
 
 
 def degrees(angle: float) -> str:

@@ -2,10 +2,14 @@
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-FRAME = 'map'  # ground-stabilised, east and north
+from ..recording.ros_messages import FRAME  # noqa: F401
+
 OWN_SHIP_FRAME = 'base_link'
 
 PLOTS = 'radar/plots'
+SPOKES = 'radar/spokes'
+SECTOR = 'radar/sector'  # marine_sensor_msgs/RadarSector
+IMAGE = 'radar/image'
 PLOTS_READABLE = 'radar/plots_readable'
 ODOMETRY = 'own_ship/odometry'
 FIX = 'own_ship/fix'
@@ -15,22 +19,33 @@ TRUTH = 'truth'
 TRACKS = 'tracks'
 EXTRAPOLATIONS = 'extrapolations'
 TRACKS_CLOUD = 'tracks_cloud'
+RADAR_TRACKS = 'radar_tracks'  # radar_msgs/RadarTracks
 TARGETS = 'targets'
 TARGETS_CLOUD = 'targets_cloud'
 MARKERS = 'markers'
 NMEA = 'nmea'
 ALARMS = 'alarms'
+ALARMS_PAST = 'alarms_past'
 TRIAL = 'trial'
+DANGER_AREAS = 'danger_areas'
 ACQUIRE = 'acquire'
 CLICKED_POINT = 'clicked_point'
+EXPLAIN = 'explain'
+EXPLANATION = 'explanation'
+VIDEO_EXPLANATION = 'video_explanation'
 CANCEL = 'cancel'
 ACKNOWLEDGE_TARGET = 'acknowledge_target'
+ACKNOWLEDGE_ALERT = 'acknowledge_alert'
 DIAGNOSTICS = '/diagnostics'
+CLOCK = '/clock'
 
 CANCEL_ALL = 'cancel_all'  # services
 ACKNOWLEDGE = 'acknowledge'
+SILENCE = 'silence'
 TRIAL_MANOEUVRE = 'trial_manoeuvre'
 
+SECTORS = 64  # messages of plots that may wait: the sectors of a revolution
+SPOKES_DEPTH = 16  # messages of spokes that may wait
 BURST = 400  # messages published at once, one for each track or target
 
 

@@ -22,14 +22,14 @@ from sensor_msgs.msg import PointCloud2
 
 from ..arpa.arpa import Picture
 from ..arpa.view import Standing
-from ..parameters import ArpaParameters, TrackerParameters
+from ..parameters import NODES, ArpaParameters, TrackerParameters
 from ..service import Service
 from ..tracking import clocks, own_ship
 from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
 from ..tracking.mounting import needs_heading
 from ..tracking.own_velocity import AUTO, POSITIONS
 from ..tracking.radars import radars_of
-from . import convert, diagnostics, topics
+from . import convert, diagnostics, messages_of_others, topics
 from .base_node import RunnableNode
 from .declare import declare, follow
 from .diagnostics import FAILED, OK, WARN, Durations, Tally
@@ -40,19 +40,21 @@ from .own_ship_state import sources
 from .radar_input import Arrival, RadarInput
 from .tracker_output import TrackerOutput
 
+ANOTHER_CLOCK_S = 60.0  # no load makes plots so late
+
 
 class TrackerNode(RunnableNode):
     """See the module. ValueError where the parameters are wrong."""
 
     def __init__(self, **node_arguments: Any) -> None:
         super().__init__('tracker', **node_arguments)
-        parameters, arpa_parameters = declare(self, TrackerParameters, ArpaParameters)
+        parameters, arpa_parameters, output_parameters = declare(self, *NODES['tracker'])
         service = Service(parameters, arpa_parameters)
         self._base_ns: int | None = None  # stamps are seconds after this
         self._own_log, self._own_frame = own_ship.empty_log(), topics.OWN_SHIP_FRAME
         self._fallback = own_ship.OWN_NEVER_HEARD
         self._samples = 0
-        self._status_count = np.zeros(4, int)
+        self._status_count = np.zeros(5, int)
         self._standing = Standing({}, 0, '', np.zeros(0, bool))
         self._left_out, self._left_out_lately = 0, 0  # pairs, in all scans and in the last
         self._processing, self._lateness = Durations(), Durations()
@@ -68,7 +70,12 @@ class TrackerNode(RunnableNode):
 
         self._operator = Operator(self, service, self._sensors, self.hardware_id)
         follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
-        self._output = TrackerOutput(self, self.hardware_id)
+        self._output = TrackerOutput(self, self.hardware_id, output_parameters)
+        p = output_parameters
+        self._send_transform = messages_of_others.transforms(self) if p.broadcast_tf else None
+        plots_kind: Any = PointCloud2
+        if p.plots_type != 'PointCloud2':
+            (plots_kind,) = messages_of_others.kinds('plots_type', 'radar_msgs.msg', p.plots_type)
         self._to_diagnostics = self.publisher(
             DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()
         )
@@ -80,13 +87,15 @@ class TrackerNode(RunnableNode):
         self._listen(Odometry, topics.ODOMETRY, self._on_odometry, topics.best_available())
         for heard in self.inputs:
             self._listen(
-                PointCloud2,
+                plots_kind,
                 heard.radar.topic,
                 partial(self._on_plots, heard),
-                topics.best_available(),
+                topics.best_available(topics.SECTORS),
             )
         # The wall's second, whatever the node's clock does.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        if output_parameters.managed:
+            self.manage()
         self.get_logger().info(
             f'estimator {parameters.estimator}, waiting for '
             + ', '.join(heard.radar.topic for heard in self.inputs)
@@ -130,6 +139,8 @@ class TrackerNode(RunnableNode):
         if placed and bare(message.child_frame_id) not in ('', topics.FRAME):
             self._own_frame = bare(message.child_frame_id)
         self._sensors.hear_own_ship(placed, heading)
+        if placed and self._send_transform is not None:
+            self._send_transform(message)
 
     def _arrival(self) -> Arrival:
         """How a message comes that comes now: in simulated time where there is one."""
@@ -141,7 +152,7 @@ class TrackerNode(RunnableNode):
 
     def _on_plots(self, heard: RadarInput, message: PointCloud2) -> None:
         began, p = time.perf_counter(), self._operator.arpa.parameters
-        found = heard.scan_of(
+        found = heard.read(
             message,
             self._arrival(),
             self._own_log,
@@ -153,15 +164,18 @@ class TrackerNode(RunnableNode):
             return
         scan, self._fallback, self._own_log = found
         end_ns = int(self._stamps(heard, scan.end))
-        output = self._operator.step(scan, end_ns, self._fallback)
-        self._to_state.publish(diagnostics.array(end_ns, [self._own_ship_status(time.monotonic())]))
-        self._output.publish(
-            self._operator.service, output, heard.period, partial(self._stamps, heard)
-        )
-        self._status_count = np.bincount(output.report.tracks.status, minlength=4)
-        self._standing = output.standing
-        self._left_out_lately = output.report.left_out
-        self._left_out += output.report.left_out
+        done, output = self._operator.step(scan, end_ns, self._fallback)
+        service, stamps = self._operator.service, partial(self._stamps, heard)
+        if done is not None:
+            self._output.publish_tracks(service, done, heard.revolution, stamps)
+        if output is not None:
+            status = self._own_ship_status(time.monotonic())
+            self._to_state.publish(diagnostics.array(end_ns, [status]))
+            self._output.publish_targets(service, output, stamps)
+            self._status_count = np.bincount(output.report.tracks.status, minlength=5)
+            self._standing = output.standing
+            self._left_out_lately = output.report.left_out
+            self._left_out += output.report.left_out
         now = self.get_clock().now().nanoseconds
         if now:  # 0: no /clock yet
             self._lateness.add((now - end_ns) * 1e-9)
@@ -173,7 +187,6 @@ class TrackerNode(RunnableNode):
         tracker = service.tracker
         for heard, radar in zip(self.inputs, radars_of(tracker.parameters), strict=True):
             heard.radar = radar
-        self.get_logger().info(f'parameters changed; estimator {tracker.parameters.estimator}')
 
     @property
     def picture(self) -> Picture | None:
@@ -183,7 +196,7 @@ class TrackerNode(RunnableNode):
     @property
     def period(self) -> float:
         """s of one revolution, of the fastest radar."""
-        return min(heard.period for heard in self.inputs)
+        return min(heard.revolution for heard in self.inputs)
 
     def _seconds(self, time_ns: int) -> float:
         """s of a stamp after the first stamp that came in."""
@@ -232,7 +245,7 @@ class TrackerNode(RunnableNode):
         if slow > 0.5 * self.period:
             worries.append(f'a scan takes up to {slow:.2f} s of {self.period:.2f} s')
         elif self._lateness.percentile(50) > self.period:
-            worries.append('plots come more than a revolution late')
+            worries.append('plots come more than a revolution late' + self._why_late())
         confirmed, (states, fallen, reason, _) = self._status_count[CONFIRMED], self._standing
         if fallen > 0.5 * confirmed:
             worries.append(f'{fallen} of {confirmed} targets have fallen back: {reason}')
@@ -264,6 +277,15 @@ class TrackerNode(RunnableNode):
             **self.failures.counts,
         }
         return self._status('tracking', level, message, values)
+
+    def _why_late(self) -> str:
+        """The cause, where the clock is: plots of another time than this node's."""
+        late = self._lateness.percentile(50)
+        if self.get_parameter('use_sim_time').value or late < ANOTHER_CLOCK_S:
+            return ''
+        if self.count_publishers(topics.CLOCK):
+            return f': {late:.0f} s; /clock is published: set use_sim_time'
+        return f': {late:.0f} s; if they are of a recording, play its /clock and set use_sim_time'
 
     def _own_ship_status(self, wall: float) -> DiagnosticStatus:
         worries = []

@@ -11,16 +11,21 @@ from .display import PpiDisplayParameters
 from .sources_and_outputs import (
     NmeaOutputParameters,
     RadarSimulatorParameters,
+    RecorderParameters,
     RecordingPlayerParameters,
+    TrackerOutputParameters,
 )
 from .tracker import EXTENTS, GLINT_SIGMA, VESSEL_CLASSES, TrackerParameters
+from .video import PlotExtractorParameters, VideoParameters
 
 NODES: dict[str, tuple[type, ...]] = {
-    'tracker': (TrackerParameters, ArpaParameters),
+    'tracker': (TrackerParameters, ArpaParameters, TrackerOutputParameters),
     'radar_simulator': (RadarSimulatorParameters,),
+    'plot_extractor': (VideoParameters, PlotExtractorParameters),
     'recording_player': (RecordingPlayerParameters,),
     'nmea_output': (NmeaOutputParameters,),
     'ppi_display': (PpiDisplayParameters,),
+    'recorder': (RecorderParameters,),
 }
 
 __all__ = [
@@ -30,10 +35,14 @@ __all__ = [
     'VESSEL_CLASSES',
     'ArpaParameters',
     'NmeaOutputParameters',
+    'PlotExtractorParameters',
     'PpiDisplayParameters',
     'RadarSimulatorParameters',
+    'RecorderParameters',
     'RecordingPlayerParameters',
+    'TrackerOutputParameters',
     'TrackerParameters',
+    'VideoParameters',
     'from_mapping',
     'from_mappings',
 ]

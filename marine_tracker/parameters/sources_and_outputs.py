@@ -1,4 +1,4 @@
-"""The parameters of the nodes other than the tracker: simulator, player, NMEA output."""
+"""The parameters of the nodes other than the tracker's own: simulator, player, outputs."""
 
 from dataclasses import dataclass
 
@@ -28,6 +28,13 @@ class RadarSimulatorParameters:
         high=1e10,
     )
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
+    sectors: int = parameter(
+        0,
+        'Messages of plots a revolution: the antenna does not wait for its whole turn. 0: as the '
+        'scenario says, 1 if it says nothing.',
+        low=0,
+        high=64,
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -37,7 +44,11 @@ class RadarSimulatorParameters:
 class RecordingPlayerParameters:
     """The recording player node's parameters."""
 
-    folder: str = parameter('', 'Folder of a recording: plots.csv, own_ship.csv, truth.csv.')
+    folder: str = parameter(
+        '',
+        'Folder of a recording (plots.csv, own_ship.csv, truth.csv), a file of spokes (.npz), or '
+        'a recording of topics (.mcap, or a folder of those).',
+    )
     rate: float = parameter(
         1.0,
         'Recorded seconds in a second; other than 1 needs use_sim_time in the other nodes.',
@@ -45,6 +56,79 @@ class RecordingPlayerParameters:
         high=1000.0,
     )
     loop: bool = parameter(False, 'Begin again when the recording has ended.')
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class RecorderParameters:
+    """The recorder node's parameters."""
+
+    folder: str = parameter(
+        '', 'Folder to record into, which must not have a recording. Empty: one named by the time.'
+    )
+    plots_topics: str = parameter(
+        'radar/plots', 'Topics of plots, several separated by blanks: those that the tracker hears.'
+    )
+    topics: str = parameter(
+        '',
+        'More topics to record, of whatever type is installed here, separated by blanks; beside '
+        'those of this package.',
+    )
+    without: str = parameter(
+        'radar/plots_readable extrapolations',
+        'Topics of this package that are not recorded, separated by blanks.',
+    )
+    tracker: str = parameter(
+        'tracker', "The tracker's node, whose parameters are recorded, so that a replay has them."
+    )
+    split_mb: int = parameter(
+        512, 'A new file begins when one has so many.', unit='MB', low=1, high=1_000_000
+    )
+    keep_free_mb: int = parameter(
+        500,
+        'The recording ends, whole, when less than so many would be left on the disk.',
+        unit='MB',
+        low=0,
+        high=100_000_000,
+    )
+    compression: str = parameter(
+        'zstd', 'How the files are packed.', choices=('zstd', 'lz4', 'none')
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class TrackerOutputParameters:
+    """How the tracker node publishes; nothing of it reaches the tracking."""
+
+    tracks_paced: bool = parameter(
+        False,
+        'Whether the messages of `tracks` are spread over the revolution. Else those of a scan '
+        'come at once, and a listener needs a depth of as many as there are tracks.',
+    )
+    managed: bool = parameter(
+        False,
+        'Whether the node is a lifecycle node: it waits to be configured and activated by ROS.',
+    )
+    plots_type: str = parameter(
+        'PointCloud2',
+        'Type of the topics of plots; RadarScan is that of radar_msgs, which must be installed.',
+        choices=('PointCloud2', 'RadarScan'),
+    )
+    radar_tracks: bool = parameter(
+        False,
+        'Whether the tracks are also published on `radar_tracks`, as radar_msgs/RadarTracks, which '
+        'must be installed.',
+    )
+    broadcast_tf: bool = parameter(
+        False,
+        "Whether own ship's odometry is also sent as the transform `map` -> `base_link`; tf2_ros "
+        'must be installed.',
+    )
 
     def __post_init__(self) -> None:
         check(self)

@@ -231,6 +231,20 @@ class TrackerParameters:
         high=1000.0,
         live=True,
     )
+    stationary_places: bool = parameter(
+        True,
+        'Whether places where plots always are (quays, moored craft) are learnt and shown as '
+        'stationary objects, not as ever new targets; see doc/tracking.md.',
+        live=True,
+    )
+    land_mask: str = parameter(
+        '', 'GeoJSON file of polygons of land: plots on land begin no track. Empty: none.'
+    )
+    land_mask_origin: str = parameter(
+        '',
+        'Latitude and longitude, deg, of the origin of the local positions, as in "63.43 10.39". '
+        'Empty: the coordinates in land_mask are metres, east and north.',
+    )
     max_tracks: int = parameter(
         2000,
         'Largest number of tracks, including tentative ones; above it none are initiated.',

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..types import Array
-from .scenario import Clutter, ScenarioRadar
+from .scenario_radar import Clutter, ScenarioRadar
 
 # Excess power of false plots, in units of noise: noise only just passes the threshold, sea clutter
 # by more.

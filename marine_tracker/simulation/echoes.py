@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from ..geometry import wrap_bearing
 from ..types import Array, PolarPlots, take
-from .scenario import ScenarioRadar
+from .scenario_radar import ScenarioRadar
 
 THRESHOLD = 20.0  # power over noise at which a plot is declared: 13 dB
+STRONGEST = 0.9999  # probability of detection that gives the amplitude of a certain plot
 NEAR = np.arange(-2, 3)  # cells; two cells away, pulse and beam are down by 48 dB or more
 
 

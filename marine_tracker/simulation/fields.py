@@ -74,6 +74,13 @@ class Section:
             )
         return float(value)
 
+    def whole(self, key: str, low: int, high: int, default: int) -> int:
+        """A whole number within [low, high]."""
+        value = self.number(key, low, high, default)
+        if value != int(value):
+            raise ValueError(f'{self.place(key)} is {value:g}; it must be a whole number')
+        return int(value)
+
     def length(self, stem: str, low: float, high: float, default: float | None = None) -> float:
         """Metres, from `stem_m` or `stem_nm`; the limits are metres."""
         return self._in_units(stem, LENGTH_UNITS, low, high, default)

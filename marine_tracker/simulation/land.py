@@ -37,33 +37,45 @@ def read(top: Section) -> tuple[Shore, ...]:
 
 
 def _shore(section, number):
-    key = section.one_of('corners')
-    key, unit = next(
-        (f'{key}_{u}', size)
-        for u, size in (('m', 1.0), ('nm', NAUTICAL_MILE))
-        if f'{key}_{u}' in section
-    )
     closed = section.values.get('closed', False)
     if not isinstance(closed, bool):
         raise ValueError(f'{section.place("closed")} is {shown(closed)}; it must be true or false')
-    corners = [
-        _corner(corner, section.place(f'{key}[{place}]'), unit)
-        for place, corner in enumerate(section.items(key))
-    ]
-    least = 3 if closed else 2
-    if len(corners) < least:
-        raise ValueError(
-            f'{section.place(key)} has {len(corners)} corners; it must have at least {least}'
-        )
+    corners = corners_of(section, 'corners', 3 if closed else 2)
     if closed:
         corners.append(corners[0])
     for place, (first, second) in enumerate(zip(corners, corners[1:])):
         if first == second:
-            raise ValueError(f'{section.place(key)}[{place}] is the same as the corner after it')
+            where = section.place(_spelled(section, 'corners')[0])
+            raise ValueError(f'{where}[{place}] is the same as the corner after it')
     return Shore(
         section.text('name', f'land {number + 1}'),
         np.array(corners),
         section.number('snr_db', 0.0, 60.0, SNR_DB),
+    )
+
+
+def corners_of(section: Section, stem: str, least: int) -> list[tuple[float, float]]:
+    """(east, north) m of the pairs [north, east] under `stem_m` or `stem_nm`, at least so many;
+    ValueError names place, value and limit."""
+    section.one_of(stem)
+    key, unit = _spelled(section, stem)
+    corners = [
+        _corner(corner, section.place(f'{key}[{place}]'), unit)
+        for place, corner in enumerate(section.items(key))
+    ]
+    if len(corners) < least:
+        raise ValueError(
+            f'{section.place(key)} has {len(corners)} {stem}; it must have at least {least}'
+        )
+    return corners
+
+
+def _spelled(section, stem):
+    """The key that is given, and the size of its unit in m."""
+    return next(
+        (f'{stem}_{u}', size)
+        for u, size in (('m', 1.0), ('nm', NAUTICAL_MILE))
+        if f'{stem}_{u}' in section
     )
 
 

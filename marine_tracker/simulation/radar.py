@@ -6,6 +6,7 @@ hull, and shores, give cells instead (extended.py).
 """
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -13,13 +14,27 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..geometry import to_range_bearing, unit_vector, wrap_angle, wrap_bearing
-from ..types import PolarPlots, Scan, Truth, append, take
-from . import beam, clutter, extended, sensor_errors
-from .echoes import THRESHOLD
-from .scenario import Scenario, ScenarioRadar
+from ..types import Array, PolarPlots, Scan, Truth, append, take
+from . import beam, clutter, extended, reflectors, sensor_errors
+from .echoes import STRONGEST, THRESHOLD
+from .scenario import Scenario
+from .scenario_radar import ScenarioRadar
 
-STRONGEST = 0.9999  # probability of detection that gives the amplitude of a certain plot
 OWN_SHIP_SAMPLES = 4  # a revolution, both ends included
+
+
+class Echoes(NamedTuple):
+    """Echoes of points over the threshold, E rows.
+
+    time [E] s, when the beam met them; distance [E] m; power [E] over noise; error [E, 2] m and rad
+    of a plot of each; radial_speed [E] m/s as measured, None where the radar has no Doppler
+    """
+
+    time: Array
+    distance: Array
+    power: Array
+    error: Array
+    radial_speed: Array | None = None
 
 
 def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
@@ -29,14 +44,15 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
     passed it (see beam.Revolution). The same scenario and seed give exactly the same plots. Each
     kind of random draw has its own stream: clutter or detection do not change the noise of targets.
     """
-    detection, noise, uniform, sea, errors, reckoning, doppler, false_doppler, cells = (
-        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(9)
+    detection, noise, uniform, sea, errors, reckoning, doppler, false_doppler, cells, ashore = (
+        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(10)
     )
     radar = scenario.radar
     imo = sensor_errors.draw(errors) if radar.sensor_errors == 'imo' else None
     drift = np.zeros(2)
     scene = extended.scene(scenario, cells) if scenario.in_cells else None
     point = np.isnan(scenario.fleet.hulls.beam)  # targets that give one plot
+    chance_ashore = reflectors.begin(scenario.fixed, ashore)
     for start, end, passages, truth in beam.revolutions(scenario):
         # Draws are made for every ship (own ship's are unused) and for both possible passages, seen
         # or not. So the use of one stream never depends on the results of another.
@@ -52,21 +68,15 @@ def simulate(scenario: Scenario, seed: int) -> Iterator[tuple[Scan, Truth]]:
         seen, power = _detect(
             scenario, passages.target, distance, chance[passages.turn, passages.target]
         )
-        plots, row = _resolve(radar, take(passages, seen), distance[seen], power[seen], start)
-        range_error, bearing_error = deviation[
-            passages.turn[seen][row], passages.target[seen][row]
-        ].T
-        plots = plots._replace(
-            range=plots.range + range_error + radar.range_bias,
-            bearing=wrap_bearing(plots.bearing + bearing_error + radar.bearing_bias),
-        )
+        turn, target = passages.turn[seen], passages.target[seen]
+        echoes = Echoes(passages.time[seen], distance[seen], power[seen], deviation[turn, target])
         if radar.radial_speed_sigma is not None:
             shift = radar.radial_speed_sigma * doppler.standard_normal(shape)
-            plots = plots._replace(
-                radial_speed=(_radial_speed(passages) + shift[passages.turn, passages.target])[
-                    seen
-                ][row]
+            echoes = echoes._replace(
+                radial_speed=_radial_speed(passages)[seen] + shift[turn, target]
             )
+        fixed, chance_ashore = _ashore(scenario, start, chance_ashore)
+        plots = _resolve(radar, append(echoes, fixed), start)
         plots = take(plots, plots.range > 0)
         plots = append(plots, _false_plots(scenario, start, uniform, sea, false_doppler))
         if scene is not None:
@@ -102,22 +112,35 @@ def _detect(scenario, target, distance, chance):
     return seen, np.maximum(power, THRESHOLD)
 
 
-def _resolve(radar: ScenarioRadar, passages, distance, power, start):
-    """Plots without noise, one a resolution cell, and for each the row of its strongest echo.
+def _ashore(scenario, start, chance):
+    """Echoes of the fixed things in the revolution from `start` s on, and the chance of the next
+    one."""
+    radar = scenario.radar
+    seen, following = reflectors.echoes(scenario.fixed, radar, scenario.own_ship_at, start, chance)
+    error = chance.random.standard_normal((len(seen.time), 2))
+    speed = None
+    if radar.radial_speed_sigma is not None:
+        speed = radar.radial_speed_sigma * chance.random.standard_normal(len(seen.time))
+    error *= [radar.range_sigma, radar.bearing_sigma]
+    return Echoes(seen.time, seen.distance, seen.power, error, speed), following
+
+
+def _resolve(radar: ScenarioRadar, echoes, start):
+    """Plots with their errors, one a resolution cell.
 
     Echoes closer than a cell in range and in the beam's angle merge, also in chains. The plot lies
-    at the centre weighted by amplitude. Echoes on different sides of north belong to different
-    revolutions and are not merged.
+    at the centre weighted by amplitude; its errors and radial speed are those of the strongest
+    echo. Echoes on different sides of north belong to different revolutions and are not merged.
     """
     turn = 2 * np.pi / radar.scan_period
-    time, row = passages.time, np.arange(len(distance))
-    if radar.range_resolution > 0 and radar.beam_width > 0 and len(row) > 1:
+    time, distance, power, row = echoes.time, echoes.distance, echoes.power, slice(None)
+    if radar.range_resolution > 0 and radar.beam_width > 0 and len(time) > 1:
         cells = np.column_stack(
             [distance / radar.range_resolution, (time - start) * turn / radar.beam_width]
         )
         pairs = cKDTree(cells).query_pairs(1.0, p=np.inf, output_type='ndarray')
         if len(pairs):
-            graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(row), len(row)))
+            graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(time), len(time)))
             count, group = connected_components(graph, directed=False)
             weight = np.sqrt(power)
             total = np.bincount(group, weight, count)
@@ -126,7 +149,15 @@ def _resolve(radar: ScenarioRadar, passages, distance, power, start):
             strongest = np.lexsort((-power, group))
             row = strongest[np.append(True, np.diff(group[strongest]) > 0)]
             power = np.bincount(group, power, count)
-    return PolarPlots(time, distance, turn * (time - start), 10 * np.log10(power)), row
+    error = echoes.error[row]
+    speed = None if echoes.radial_speed is None else echoes.radial_speed[row]
+    return PolarPlots(
+        time,
+        distance + error[:, 0] + radar.range_bias,
+        wrap_bearing(turn * (time - start) + error[:, 1] + radar.bearing_bias),
+        10 * np.log10(power),
+        speed,
+    )
 
 
 def _radial_speed(passages):

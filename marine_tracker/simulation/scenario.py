@@ -6,7 +6,8 @@ A scenario is a YAML file. Keys end in their unit: a length is `_m` or `_nm`, a 
     description: A ferry crosses our bow
     duration_s: 900
     radar: {max_range_nm: 6, range_sigma_m: 15, bearing_sigma_deg: 0.4, pd_near: 0.98, pd_far: 0.8,
-            radial_speed_sigma_kn: 0.5}       # only of a radar with Doppler
+            radial_speed_sigma_kn: 0.5,       # only of a radar with Doppler
+            sectors: 16}                      # messages a revolution; without it one
     clutter: {uniform: 20, sea: 40, sea_scale_nm: 1}      # mean numbers a scan
     tracker: {max_target_speed_kn: 45}                    # tracker parameters
     own_ship: {course_deg: 0, speed_kn: 12}
@@ -41,88 +42,40 @@ The size of a cell is the radar's range resolution and beam width:
     land:
       - {name: mole, corners_m: [[900, -400], [1200, 800]]}       # north, east; or corners_nm
       - {name: islet, corners_m: [[0, 600], [50, 700], [-80, 650]], closed: true, snr_db: 35}
+    reflectors:                   # fixed, one plot each: quays, buoys, moored craft (reflectors.py)
+      - {name: quay, corners_m: [[-300, 220], [400, 260]], spacing_m: 25, pd: [0.3, 0.95]}
+      - {name: dinghies, places_m: [[120, -80], [150, -84]], pd: 0.8, spell_s: 60, wander_m: 3}
 """
 
 import difflib
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import config, yaml_file
-from ..geometry import NAUTICAL_MILE, heading_from
+from ..geometry import heading_from
 from ..parameters import VESSEL_CLASSES, TrackerParameters
 from ..types import Numbers, OwnShip, Truth
-from . import land, motion, sensor_errors, ships
+from . import land, motion, reflectors, sensor_errors, ships
 from .fields import Section
+from .scenario_radar import (
+    CLUTTER_KEYS,
+    RADAR_KEYS,
+    Clutter,
+    ScenarioRadar,
+    read_clutter,
+    read_radar,
+)
 from .standard_scenarios import STANDARD
 
-MAX_RANGE = 200_000.0  # m
-
-TOP_KEYS = 'description duration_s origin radar clutter tracker ais own_ship targets land'
-RADAR_KEYS = (
-    'rotation_rpm max_range_m|max_range_nm blind_range_m|blind_range_nm '
-    'range_sigma_m|range_sigma_nm bearing_sigma_deg range_bias_m|range_bias_nm '
-    'bearing_bias_deg range_resolution_m|range_resolution_nm beam_width_deg '
-    'pd_near pd_far sensor_errors radial_speed_sigma_mps|radial_speed_sigma_kn '
-    'max_radial_speed_mps|max_radial_speed_kn'
+TOP_KEYS = (
+    'description duration_s origin radar clutter tracker ais own_ship targets land reflectors'
 )
-CLUTTER_KEYS = 'uniform sea sea_scale_m|sea_scale_nm'
 TRACKER_KEYS = 'max_target_speed_kn|max_target_speed_mps vessel_class'
-
-
-class ScenarioRadar(NamedTuple):
-    """The simulated radar.
-
-    rotation            rpm, antenna; the beam passes true north at the start of a revolution
-    max_range, blind_range  m; targets beyond the first or nearer than the second are not seen
-    range_sigma         m, Gaussian noise of a plot (not used with sensor_errors 'imo')
-    bearing_sigma       rad, likewise
-    range_bias, bearing_bias  m, rad; constant errors
-    range_resolution    m, and
-    beam_width          rad: targets closer than both in one revolution give one plot
-    pd_near, pd_far     probability of detection at range 0 and at the maximum range
-    sensor_errors       'none' or 'imo'
-    radial_speed_sigma  m/s, Gaussian noise of a plot's radial speed over ground; None: no Doppler
-    max_radial_speed    m/s; noise plots have radial speeds evenly between it and its negative
-    """
-
-    rotation: float
-    max_range: float
-    blind_range: float
-    range_sigma: float
-    bearing_sigma: float
-    range_bias: float
-    bearing_bias: float
-    range_resolution: float
-    beam_width: float
-    pd_near: float
-    pd_far: float
-    sensor_errors: str
-    radial_speed_sigma: float | None = None
-    max_radial_speed: float = 25.0
-
-    @property
-    def scan_period(self) -> float:
-        """Time of one revolution, s."""
-        return 60.0 / self.rotation
-
-
-class Clutter(NamedTuple):
-    """False plots: mean numbers a revolution, and how fast sea clutter decreases with range.
-
-    uniform    evenly over the area between blind and maximum range
-    sea        from the waves, evenly in bearing; the number per metre of range falls as
-               exp(-range / sea_scale), so the number per area falls faster
-    sea_scale  m
-    """
-
-    uniform: float
-    sea: float
-    sea_scale: float
 
 
 @dataclass(frozen=True)
@@ -134,6 +87,7 @@ class Scenario:
     radar, clutter
     fleet     own ship and the T targets
     shores    of the land
+    fixed     things on the ground that often give a plot
     stated    tracker parameters that the scenario states
     """
 
@@ -144,6 +98,7 @@ class Scenario:
     clutter: Clutter
     fleet: ships.Fleet
     shores: tuple[land.Shore, ...]
+    fixed: reflectors.Reflectors
     stated: dict[str, Any]
 
     @property
@@ -244,7 +199,7 @@ def build(values: dict[str, Any], name: str, folder: Path = Path()) -> Scenario:
     """
     top = Section(values, '', TOP_KEYS)
     duration = top.number('duration_s', 1.0, ships.MAX_DURATION)
-    radar = _radar(top.section('radar', RADAR_KEYS))
+    radar = read_radar(top.section('radar', RADAR_KEYS))
     if duration < radar.scan_period:
         raise ValueError(
             f'duration_s is {duration:g}; it must not be less than a revolution, '
@@ -255,9 +210,10 @@ def build(values: dict[str, Any], name: str, folder: Path = Path()) -> Scenario:
         top.text('description', ''),
         duration,
         radar,
-        _clutter(top.section('clutter', CLUTTER_KEYS), radar),
+        read_clutter(top.section('clutter', CLUTTER_KEYS), radar),
         ships.read(top, folder, duration),
         land.read(top),
+        reflectors.read(top),
         _stated(top.section('tracker', TRACKER_KEYS)),
     )
     if made.in_cells:
@@ -287,58 +243,6 @@ def _check_cells(radar):
                 f'radar.{key} is {value:g} in a scenario with hulls or land; it must '
                 f'be at least {least:g}'
             )
-
-
-def _radar(section):
-    errors = section.choice('sensor_errors', ('none', 'imo'), 'none')
-    if errors == 'imo':
-        for key in ('range_sigma', 'bearing_sigma'):
-            if any(k.startswith(key) for k in section.values):
-                raise ValueError(
-                    f'radar has {key} beside sensor_errors: imo, which states all '
-                    'noise; leave one out'
-                )
-    pd_near = section.number('pd_near', 0.01, 1.0, 0.98)
-    radar = ScenarioRadar(
-        section.number('rotation_rpm', 1.0, 300.0, 22.0),
-        section.length('max_range', 100.0, MAX_RANGE, 12 * NAUTICAL_MILE),
-        section.length('blind_range', 0.0, 10000.0, 50.0),
-        section.length('range_sigma', 0.0, 1000.0, 15.0),
-        math.radians(section.number('bearing_sigma_deg', 0.0, 10.0, 0.5)),
-        section.length('range_bias', -1000.0, 1000.0, 0.0),
-        math.radians(section.number('bearing_bias_deg', -10.0, 10.0, 0.0)),
-        section.length('range_resolution', 0.0, 1000.0, 30.0),
-        math.radians(section.number('beam_width_deg', 0.0, 30.0, 1.0)),
-        pd_near,
-        section.number('pd_far', 0.01, 1.0, min(0.8, pd_near)),
-        errors,
-        (
-            section.speed('radial_speed_sigma', 0.0, 10.0)
-            if section.has('radial_speed_sigma')
-            else None
-        ),
-        section.speed('max_radial_speed', 1.0, 100.0, 25.0),
-    )
-    if radar.blind_range >= radar.max_range:
-        raise ValueError(
-            f'radar.blind_range is {radar.blind_range:g} m; it must be below '
-            f'max_range, {radar.max_range:g} m'
-        )
-    if section.has('max_radial_speed') and radar.radial_speed_sigma is None:
-        raise ValueError('radar has max_radial_speed, but no radial_speed_sigma: give both or none')
-    if radar.pd_far > radar.pd_near:
-        raise ValueError(
-            f'radar.pd_far is {radar.pd_far:g}; it must not exceed pd_near, {radar.pd_near:g}'
-        )
-    return radar
-
-
-def _clutter(section, radar):
-    return Clutter(
-        section.number('uniform', 0.0, 100000.0, 0.0),
-        section.number('sea', 0.0, 100000.0, 0.0),
-        section.length('sea_scale', 10.0, radar.max_range, min(NAUTICAL_MILE, radar.max_range)),
-    )
 
 
 def _stated(section):

@@ -1,5 +1,5 @@
-"""Scenarios made by rule: the IMO's test conditions, Imazu's encounters, and one scene for two
-radars.
+"""Scenarios made by rule: the IMO's test conditions, Imazu's encounters, one scene for two radars,
+and crossings (crossings.py).
 
 Each function returns what a scenario file would hold (see scenario.py).
 """
@@ -12,6 +12,7 @@ import numpy as np
 
 from ..geometry import KNOT, NAUTICAL_MILE, to_range_bearing, unit_vector
 from . import motion
+from .crossings import ANGLES, crossing
 
 ROTATION = 22.0  # rpm
 REVOLUTION = 60 / ROTATION  # s
@@ -236,5 +237,9 @@ STANDARD: dict[str, Callable[[], dict[str, Any]]] = {
     **{
         f'two_radars_{which}': lambda which=which: two_radars(which)  # type: ignore
         for which in TWO_RADARS
+    },
+    **{
+        f'crossing_{angle:02d}': lambda angle=angle: crossing(angle)  # type: ignore
+        for angle in ANGLES
     },
 }

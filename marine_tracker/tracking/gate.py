@@ -128,15 +128,15 @@ def gate(
 
     A plot is compared with the target at the plot's own time.
     """
-    windows = _windows(expected, plots, sweep, noise, np.sqrt(size))
-    track, plot, left_out = window_pairs(*windows, plots.range, plots.bearing)
+    at = windows(expected, plots, sweep, noise, np.sqrt(size))
+    track, plot, left_out = window_pairs(*at, plots.range, plots.bearing)
     nis, determinant = _distance(expected, plots, track, plot)
     inside = (nis < size).nonzero()[0]
     pairs = Pairs(track[inside], plot[inside], nis[inside], np.log(determinant[inside]))
     return pairs, left_out
 
 
-def _windows(
+def windows(
     expected: Expected, plots: Plots, sweep: Sweep, noise: Noise, reach: float
 ) -> tuple[Array, Array, Array, Array, Array]:
     """The arguments of `window_pairs`: windows that hold every plot within `reach` deviations."""

@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry import wrap_bearing
-from ..types import PolarPlots, take
+from ..types import BoolArray, PolarPlots, take
 from .clocks import Beat
 
 MAX_RANGE = 500e3  # m; no surface radar measures farther
@@ -43,6 +43,7 @@ TOO_FAR = 'plots beyond 500 km'
 BAD_BEARING = 'plots with bearing out of range'
 BAD_OFFSET = 'plots with time out of the scan'
 TOO_MANY = 'plots over max_plots'
+BAD_COVARIANCE = 'plots with a wrong covariance'
 SPEED_NOT_FINITE = 'radial speeds not finite'
 SPEED_TOO_HIGH = 'radial speeds above 100 m/s'
 PLOT_REASONS = (
@@ -52,6 +53,7 @@ PLOT_REASONS = (
     BAD_BEARING,
     BAD_OFFSET,
     TOO_MANY,
+    BAD_COVARIANCE,
     SPEED_NOT_FINITE,
     SPEED_TOO_HIGH,
 )
@@ -95,6 +97,7 @@ def screen_plots(
                 (plots.bearing >= -np.pi - margin) & (plots.bearing <= 2 * np.pi + margin),
             ),
             (BAD_OFFSET, (plots.time >= -1e-3) & (plots.time <= OFFSET_SCANS * scan_period)),
+            (BAD_COVARIANCE, _covariance_good(plots)),
         )
     for reason, good in checks:
         rejected = int(np.count_nonzero(ok & ~good))
@@ -118,6 +121,15 @@ def screen_plots(
         sound = speed <= MAX_RADIAL_SPEED
         plots = plots._replace(radial_speed=np.where(sound, plots.radial_speed, np.nan))
     return plots._replace(bearing=wrap_bearing(plots.bearing)), counts
+
+
+def _covariance_good(plots: PolarPlots) -> BoolArray:
+    """[M] whether each plot's covariance is one; True where plots have none."""
+    if plots.covariance is None:
+        return np.ones(len(plots.range), bool)
+    xx, xy, yy = plots.covariance[:, [0, 0, 1], [0, 1, 1]].T
+    good: BoolArray = (xx > 0) & (yy > 0) & (xx * yy > xy * xy) & np.isfinite(xx + yy)
+    return good
 
 
 class TimeOrder(NamedTuple):

@@ -8,8 +8,8 @@ from . import existence
 from .history import hits
 from .look import Look
 
-TENTATIVE, CONFIRMED, COASTING, LOST = range(4)
-STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost')
+TENTATIVE, CONFIRMED, COASTING, LOST, STATIONARY = range(5)
+STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost', 'stationary')
 MISSED, OUT_OF_RANGE, MERGED = range(1, 4)
 REASONS = ('', 'missed', 'out of range', 'merged')
 TEN, SHOWS = 10, 5  # a target that shows in so many scans of ten is kept (IMO A.823)

@@ -10,9 +10,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..geometry import heading_at, on_deck, wrap_bearing
+from ..geometry import heading_at, on_deck, wrap_angle, wrap_bearing
 from ..parameters import TrackerParameters
-from ..types import Array, OwnShip, Scan
+from ..types import Array, OwnShip, Scan, Sector
 
 
 def mounted(scan: Scan, radar: TrackerParameters, heading: float) -> Scan:
@@ -30,12 +30,19 @@ def mounted(scan: Scan, radar: TrackerParameters, heading: float) -> Scan:
     if not (any(gps) or any(antenna) or radar.bearing_offset_deg or relative):
         return scan
     own, headings = scan.own_ship, _headings(scan.own_ship, heading)
-    bearing = scan.plots.bearing + np.radians(radar.bearing_offset_deg)
-    if relative:
-        bearing = bearing + np.nan_to_num(
-            heading_at(own._replace(heading=headings), scan.plots.time)
-        )
+
+    def true(bearing: Array, time: Array) -> Array:
+        bow = heading_at(own._replace(heading=headings), time) if relative else np.zeros(1)
+        found: Array = bearing + np.radians(radar.bearing_offset_deg) + np.nan_to_num(bow)
+        return found
+
+    bearing = true(scan.plots.bearing, scan.plots.time)
     scan = scan._replace(plots=scan.plots._replace(bearing=wrap_bearing(bearing)))
+    if scan.sector is not None:  # of a turning ship also the angle differs
+        first, angle = scan.sector
+        edges = true(np.array([first, first + angle]), np.array([scan.start, scan.end]))
+        turned = angle + wrap_angle(np.diff(edges) - angle)
+        scan = scan._replace(sector=Sector(float(edges[0]), float(turned[0])))
     if np.isnan(headings).any():
         return scan
     own = _moved(own, -gps[0], -gps[1], headings)

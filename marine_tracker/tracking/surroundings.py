@@ -98,10 +98,10 @@ def ratio(
     return np.append(of_old, of_new)
 
 
-def learn(
-    known: Surroundings, sure: BoolArray, seen: Look, plot_of: IntArray, plots: Plots, lone: Plots
-) -> Surroundings:
-    """The surroundings after one more scan.
+def found(
+    sure: BoolArray, seen: Look, plot_of: IntArray, plots: Plots, lone: Plots
+) -> tuple[Array, ...]:
+    """What `learn` takes from a scan, or from a sector.
 
     sure  [N]  the tracks whose targets are beyond doubt: their plots are no clutter, and they tell
                how targets show
@@ -109,10 +109,33 @@ def learn(
     """
     doubtful = np.ones(len(plots.time), bool)
     doubtful[plot_of[sure & (plot_of >= 0)]] = False
-    clutter = clutter_map.learn(
-        known.clutter, (plots.range[doubtful], plots.bearing[doubtful]), (lone.range, lone.bearing)
+    return (
+        *(lone.range, lone.bearing),
+        *(plots.range[doubtful], plots.bearing[doubtful]),
+        *(seen.distance[sure], seen.bearing[sure], seen.hit[sure].astype(float)),
     )
-    detection = detection_map.learn(
-        known.detection, seen.distance[sure], seen.bearing[sure], seen.hit[sure]
+
+
+def learn(known: Surroundings, *of_revolution: Array) -> Surroundings:
+    """The surroundings after one more revolution: what was `found` in its scans, put together."""
+    lone, doubtful = of_revolution[:2], of_revolution[2:4]
+    range_, bearing, hit = of_revolution[4:]
+    return Surroundings(
+        clutter_map.learn(known.clutter, (doubtful[0], doubtful[1]), (lone[0], lone[1])),
+        detection_map.learn(known.detection, range_, bearing, hit > 0),
     )
-    return Surroundings(clutter, detection)
+
+
+def prospects(
+    known: Surroundings, range_: Array, bearing: Array, log_det: float, radar: TrackerParameters
+) -> tuple[Array, Array]:
+    """Density of false plots [N] at the places [N] (m, rad), and the existence [N] that a target
+    there reaches at most with `confirm_scans` plots in a row.
+
+    log_det  of the covariance of its innovations, m^4
+    """
+    density = clutter_map.density(known.clutter, range_, bearing)
+    a_plot = radar.detection_probability * np.exp(-1 - 0.5 * log_det) / (2 * np.pi * density)
+    begins = BEGIN * clutter_map.least(range_) / density
+    odds = begins * np.maximum(a_plot, 1.0) ** (radar.confirm_scans - 1)
+    return density, odds / (1 + odds)

@@ -6,6 +6,8 @@ import numpy as np
 
 from ..types import Array, Scan
 
+TURN = 2 * np.pi
+
 
 class Sweep(NamedTuple):
     """One antenna revolution, clockwise at constant rate.
@@ -28,12 +30,17 @@ class Sweep(NamedTuple):
 
 
 def sweep_of(scan: Scan) -> Sweep:
-    """The sweep of a scan. The start direction of the beam is derived from its plots.
+    """The sweep of a scan; of a sector the revolution that ends with it.
 
-    If their times do not follow the bearing clockwise (no plots, or another kind of antenna), every
-    bearing is taken as swept in the middle of the scan.
+    The start direction of the beam in a whole revolution is derived from its plots. If their times
+    do not follow the bearing clockwise (no plots, or another kind of antenna), every bearing is
+    taken as swept in the middle of the scan.
     """
     period = scan.end - scan.start
+    if scan.sector is not None:
+        period *= TURN / scan.sector.angle
+        last = scan.sector.bearing + scan.sector.angle
+        return Sweep(scan.end - period, period, float(np.mod(last, TURN)))
     time, bearing = scan.plots.time, scan.plots.bearing
     if period > 0 and len(time):
         phase = bearing - (time - scan.start) * (2 * np.pi / period)

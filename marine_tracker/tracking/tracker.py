@@ -1,79 +1,41 @@
 """One scan in, tracks out: all steps of the tracker on one page."""
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from ..estimators import ESTIMATORS, Estimator, Velocity
 from ..geometry import to_range_bearing
 from ..parameters import TrackerParameters
-from ..types import Array, CodeArray, Extrapolation, IntArray, Plots, Scan, Tracks, append, take
-from . import doppler, late_plots, lifecycle
+from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
+from . import (
+    at_rest,
+    doppler,
+    land_mask,
+    late_plots,
+    lifecycle,
+    parts,
+    places,
+    sectors,
+    surroundings,
+)
 from .associate import associate, gain
 from .existence import EVEN
 from .expected import expect
 from .gate import gate, gate_size, split
 from .initiate import pair_up, unexplained
 from .joint import take_plots
-from .lifecycle import LOST, TENTATIVE
+from .land_mask import on_land
+from .lifecycle import LOST, STATIONARY, TENTATIVE
 from .look import look
+from .memory import Left, OfRadar, changed
+from .memory import Report as Report
+from .memory import TrackerMemory as TrackerMemory
 from .merge import duplicates
 from .noise import noise_of
 from .radars import HELD_REVOLUTIONS, held_updates, radars_of
 from .silence import unmistakable
-from .surroundings import Surroundings, learn, ratio, unknown, weigh
 from .sweep import sweep_of
-
-
-class OfRadar(NamedTuple):
-    """The memory of one radar.
-
-    leftover  plots of its last scan that belong to no track: one may be a new target's first plot
-    known     of its false plots, and of how targets show
-    """
-
-    leftover: Plots
-    known: Surroundings
-
-
-class TrackerMemory(NamedTuple):
-    """The memory of the tracker between two scans.
-
-    tracks       N tracks, without lost ones
-    radars       memory of each radar
-    origin       [2] m, own ship's last known position
-    next_id      the next track's id
-    next_number  the next confirmed track's target number
-    """
-
-    tracks: Tracks
-    radars: tuple[OfRadar, ...]
-    origin: Array
-    next_id: int
-    next_number: int
-
-
-class Report(NamedTuple):
-    """The results of one scan; one row a track, including lost ones and new ones.
-
-    time       [N]     s, when the beam passed the track (the time of its plot if it had one); or
-    the
-                       time of its last plot, if another radar's was later
-    tracks     N rows, after the scan
-    predicted  [N, 2]  m, where the track was expected at `time`; nan for a new track
-    plot       [N]     row of the scan's plots that the track took, -1 for none
-    reason     [N]     why a LOST track was lost: index into lifecycle.REASONS, 0 = not lost
-    begun      [B]     the first plots, of the last scan, of the new tracks: the last B
-    """
-
-    time: Array
-    tracks: Tracks
-    predicted: Array
-    plot: IntArray
-    reason: CodeArray
-    begun: Plots
-    left_out: int
 
 
 class Tracker:
@@ -104,14 +66,20 @@ class Tracker:
         self.updates = held_updates(radars)
         self.gate_size = gate_size(parameters.gate_probability)
         self.doppler = [doppler.limits(p) for p in self.radars]
+        self.land = land_mask.read(parameters.land_mask, parameters.land_mask_origin)
 
     def start(self) -> TrackerMemory:
         """No tracks yet."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
-        of_radar = OfRadar(plots, unknown())
+        of_radar = OfRadar(plots, surroundings.unknown())
         return TrackerMemory(
-            self._begin(plots, 1, 0), (of_radar,) * len(self.radars), np.zeros(2), 1, 1
+            self._begin(plots, 1, 0),
+            (of_radar,) * len(self.radars),
+            np.zeros(2),
+            1,
+            1,
+            at_rest.begin(),
         )
 
     def extrapolate(self, tracks: Tracks, time: float | Array) -> Extrapolation:
@@ -121,12 +89,35 @@ class Tracker:
         )
 
     def step(self, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemory, Report]:
-        """One antenna revolution."""
+        """One antenna revolution, or a part of one (see sectors.py)."""
+        if scan.sector is not None:
+            return parts.step(self, memory, scan)
+        memory, report, left = self.judge(memory, scan)
+        return self.learnt(memory, scan.radar, left.found), report
+
+    def learnt(self, memory: TrackerMemory, radar: int, found: sectors.Found) -> TrackerMemory:
+        """The memory after a whole revolution: false plots, and places where plots always are."""
+        p, (*around, position, variance, time) = self.radars[radar], found
+        learnt = surroundings.learn(memory.radars[radar].known, *around)
+        known, number = at_rest.name(memory.ground.places, memory.next_number)
+        distance = np.hypot(*(known.position - memory.origin).T)
+        visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
+        if p.stationary_places:
+            known = places.learn(known, position, variance, time, visible)
+        ground = memory.ground._replace(places=known, revolutions=memory.ground.revolutions + 1)
+        memory = memory._replace(next_number=number, ground=ground)
+        return changed(memory, radar, known=learnt)
+
+    def judge(
+        self, memory: TrackerMemory, scan: Scan, others: int = 0
+    ) -> tuple[TrackerMemory, Report, Left]:
+        """The tracks of the memory with the plots of the scan; `others` tracks are not judged."""
         p, of_radar = self.radars[scan.radar], memory.radars[scan.radar]
         tracks, count = memory.tracks, len(memory.tracks.id)
-        noise, speed = noise_of(p, scan), p.max_target_speed_mps
+        noise = noise_of(p, scan)
         measured = noise.locate(scan)
         plots, lone = noise.with_glint(measured), noise.with_glint(of_radar.leftover)
+        speed = p.max_target_speed_mps
 
         # extrapolate: every track to the time the beam passes it
         sweep = sweep_of(scan)
@@ -141,18 +132,21 @@ class Tracker:
         pairs, starts = split(pairs, count)
 
         # associate
-        evidence = weigh(of_radar.known, pairs, share, tracks, expected, plots, p)
+        known = of_radar.known
+        evidence = surroundings.weigh(known, pairs, share, tracks, expected, plots, p)
         worth = gain(pairs, self.gate_size)
         plot_of = associate(pairs.track, pairs.plot, worth, count, len(plots.time))
 
         # initiate: from plots of this scan and the last one that belong to no track
         free = unexplained(plots, pairs, plot_of, tracks)
-        room = max(0, p.max_tracks - count)
+        afloat = ~on_land(self.land, plots.position)
+        free &= afloat
+        room = max(0, p.max_tracks - count - others)
         first, second = pair_up(lone, plots, starts.track, starts.plot, free, speed, room)
         free[second] = False
-        begun = take(lone, first)
+        new = take(lone, first)
         if len(first):
-            tracks = append(tracks, self._begin(begun, memory.next_id, scan.radar))
+            tracks = append(tracks, self._begin(new, memory.next_id, scan.radar))
         plot_of = np.append(plot_of, second)
 
         # update
@@ -161,25 +155,44 @@ class Tracker:
 
         # judge: record the scan for each track, and decide its status
         seen = look(tracks, plot_of, plots, ahead, expected, noise)
-        shown = ratio(evidence, pairs, plot_of, begun, plots, p)
+        ratio = surroundings.ratio(evidence, pairs, plot_of, new, plots, p)
         other = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
         rest = other, taken.sharing, p, self.farthest, scan.end
-        tracks, reason = lifecycle.step(tracks, seen, shown, *rest)
+        tracks, reason = lifecycle.step(tracks, seen, ratio, *rest)
         tracks, reason = lifecycle.merge(tracks, reason, duplicates(pairs, plot_of, ahead, tracks))
+        hit, was = seen.hit, np.zeros(len(plot_of), bool)
+        chosen = take(plots, plot_of[hit])
+        was[:count] = memory.tracks.status == STATIONARY
+        still = at_rest.standing(
+            hit, chosen, ahead, noise.with_glint(expected).covariance[:count], seen.time
+        )
+        ground, tracks, learnable = at_rest.step(memory.ground, tracks, was, still)
         tracks, next_number = lifecycle.number(tracks, memory.next_number)
 
         # remember
+        begun = take(of_radar.leftover, first)
         nowhere = take(lone, np.delete(np.arange(len(lone.time)), first))
-        known = learn(of_radar.known, lifecycle.sure(tracks), seen, plot_of, plots, nowhere)
-        of_radar, begun = OfRadar(take(measured, free), known), take(of_radar.leftover, first)
+        fixed = afloat.copy()
+        fixed[plot_of[hit & ~learnable]] = False
+        at = take(plots, fixed)
+        sure = lifecycle.sure(tracks) & (tracks.status != STATIONARY)
+        found = (
+            *surroundings.found(sure, seen, plot_of, plots, nowhere),
+            *(at.position, at_rest.larger(at.covariance), at.time),
+        )
         alive = tracks.status != LOST
-        return TrackerMemory(
+        memory = TrackerMemory(
             tracks if alive.all() else take(tracks, alive),
-            memory.radars[: scan.radar] + (of_radar,) + memory.radars[scan.radar + 1 :],
+            memory.radars,
             scan.own_ship.position[-1],
             memory.next_id + len(first),
             next_number,
-        ), Report(seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out)
+            ground,
+        )
+        told = seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan
+        report = Report(*told, at_rest.shown(ground))
+        memory = changed(memory, scan.radar, leftover=take(measured, free))
+        return memory, report, Left(free, found)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """Takes over the memory of another tracker for this one's estimator. No track is lost.

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from marine_tracker.arpa import acquisition, alarms, alerts, zones
+from marine_tracker.arpa import acquisition, alarms, alerts, sounding, zones
 from marine_tracker.arpa.alarm_text import parts, text
 from marine_tracker.arpa.alarms import NAMES, AlarmSettings, Silence, Tracking
 from marine_tracker.arpa.alerts import STATES
@@ -23,7 +23,7 @@ PERIOD = 3.0
 LIMITS = Limits(cpa=0.5 * NAUTICAL_MILE, tcpa=720.0)
 RING = '{name: ring, kind: guard, range_m: [1000, 2000]}'
 INNER = '{name: inner, kind: guard, range_m: [0, 1500]}'
-UNACKNOWLEDGED, ACKNOWLEDGED, RECTIFIED = STATES[1:]
+UNACKNOWLEDGED, ACKNOWLEDGED, RECTIFIED = STATES[1:4]
 NORMAL = STATES[0]
 
 
@@ -72,6 +72,10 @@ class Bridge:
 
     def acknowledge(self, **which):
         self.alerts, changed = alarms.acknowledge(self.alerts, self.now, **which)
+        return self.told(changed)
+
+    def silence(self):
+        self.alerts, changed = sounding.silence(self.alerts, self.now)
         return self.told(changed)
 
     def cancel(self, number):
@@ -440,6 +444,9 @@ def test_every_kind_has_words_a_priority_and_a_rule():
         np.full((count, alerts.VALUES), 1.0),
         np.full(count, np.nan),
         np.full((count, 2), np.nan),
+        kinds + 1,
+        *np.zeros((3, count)),
+        0 * kinds,
     )
     assert len(set(text(every, zones.parse('')))) == count
     unknown = every._replace(values=np.full((count, alerts.VALUES), np.inf))
@@ -459,9 +466,11 @@ def test_whatever_happens_every_change_follows_from_the_state_before(situate, se
     for _ in range(30):
         chosen = np.sort(rng.permutation(15)[: rng.integers(0, 12)])
         kept = one.alerts
-        what = rng.integers(4)
+        what = rng.integers(5)
         if what == 0:
             told = one.acknowledge()
+        elif what == 4:
+            told = one.silence()
         elif what == 1 and (one.acquisition.targets.number > 0).any():
             told = one.cancel(int(one.acquisition.targets.number.max()))
         elif what == 2:
@@ -475,6 +484,9 @@ def test_whatever_happens_every_change_follows_from_the_state_before(situate, se
             )
         keys = list(zip(one.alerts.kind.tolist(), one.alerts.zone.tolist(), one.alerts.id.tolist()))
         assert len(set(keys)) == len(keys)
+        assert (
+            len(set(one.alerts.instance.tolist())) == len(keys) and (one.alerts.instance > 0).all()
+        )
         after = {key: state for key, state in zip(keys, one.alerts.state.tolist()) if state}
         differences = {key for key in {*before, *after} if before.get(key) != after.get(key)}
         assert len(told) == len(differences), (kept, one.alerts)

@@ -342,3 +342,22 @@ def test_a_lost_target_is_taken_back_from_signalk():
     _, values = delta(status=LOST)
     assert values.pop('') == {'name': 'TT07'}
     assert len(values) == 4 and set(values.values()) == {None}
+
+
+@pytest.mark.parametrize(
+    ('state', 'told', 'method'),
+    [
+        ('active unacknowledged', 'alarm', ['visual', 'sound']),
+        ('rectified unacknowledged', 'alarm', ['visual', 'sound']),
+        ('active acknowledged', 'alarm', ['visual']),
+        ('normal', 'normal', []),
+    ],
+)
+def test_an_alert_is_a_notification_of_own_ship(state, told, method):
+    alert = signalk.Alert('TT31: new target in bow & quay', 'TT31 in guard zone', 'alarm', state)
+    (text,) = signalk.notifications([alert], 'radar_1', NOON)
+    said = json.loads(text)
+    assert said['context'] == 'vessels.self'
+    (entry,) = said['updates'][0]['values']
+    assert entry['path'] == 'notifications.radar.radar_1.TT31_new_target_in_bow_quay'
+    assert entry['value'] == {'state': told, 'method': method, 'message': 'TT31 in guard zone'}

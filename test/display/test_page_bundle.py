@@ -1,4 +1,4 @@
-"""What is committed of OpenBridge is what its sources in web/ give."""
+"""What is committed of the page is what its sources give, and in the form that is agreed on."""
 
 import shutil
 import subprocess
@@ -11,23 +11,25 @@ STATIC = ROOT / 'marine_tracker' / 'display' / 'static'
 BUILT = ('openbridge.js', 'openbridge.css')
 
 
-def test_a_build_of_the_bundle_gives_the_committed_one(tmp_path):
-    if not (ROOT / 'web' / 'node_modules').is_dir() or not shutil.which('node'):
-        pytest.skip('web/node_modules is missing (cd web && npm ci): the bundle is not rebuilt')
+def test_a_build_of_the_bundle_gives_the_committed_one(tmp_path, web):
     for name in ('colours.css', 'style.css'):
         shutil.copy(STATIC / name, tmp_path)
     done = subprocess.run(
-        ['node', 'build.mjs', tmp_path],
-        cwd=ROOT / 'web',
-        capture_output=True,
-        text=True,
-        timeout=100,
+        ['node', 'build.mjs', tmp_path], cwd=web, capture_output=True, text=True, timeout=100
     )
     assert done.returncode == 0, done.stderr
     for name in BUILT:
         assert (tmp_path / name).read_bytes() == (STATIC / name).read_bytes(), (
             f'npm run build: {name}'
         )
+
+
+@pytest.mark.parametrize('check', ['lint', 'check-format'])
+def test_modules_keep_to_the_rules(web, check):
+    done = subprocess.run(
+        ['npm', 'run', '--silent', check], cwd=web, capture_output=True, text=True, timeout=100
+    )
+    assert done.returncode == 0, f'npm run {check}:\n{done.stdout}{done.stderr}'
 
 
 def test_the_page_is_small_and_loads_nothing_from_elsewhere():

@@ -4,7 +4,6 @@ import asyncio
 import math
 import time
 from concurrent.futures import Future
-from pathlib import Path
 
 import pytest
 
@@ -12,8 +11,12 @@ pytest.importorskip('aiohttp', reason='no aiohttp: the display is not tested')
 from marine_tracker.display import browser
 from marine_tracker.display.server import DisplayServer
 
-if not browser.program():
-    pytest.skip('no Chromium: the page is not tried in a browser', allow_module_level=True)
+
+@pytest.fixture(autouse=True)
+def one_browser_for_all(chromium):
+    """on_stage opens tabs of it."""
+    on_stage.port = chromium
+
 
 HEADING = math.radians(37)
 OWN = {'x': 900.0, 'y': -400.0, 'vx': 3.0, 'vy': 4.0, 'heading': HEADING}
@@ -110,7 +113,7 @@ def on_stage(act, query=''):
         address = stage.server.url.replace('/#', f'/{query}#')
         player = asyncio.ensure_future(stage.play())
         try:
-            async with browser.open_page(address, 1100, 760) as page:
+            async with browser.open_tab(on_stage.port, address, 1100, 760) as page:
                 await page.until('ppi.state.targets.length == 4 && ppi.state.role.commands')
                 await page.until("document.getElementById('stale').hidden")
                 await act(page, stage)
@@ -247,10 +250,8 @@ def test_dragging_own_ships_vector_tries_a_manoeuvre():
 
 
 @pytest.mark.parametrize('palette', ['day', 'dusk', 'night'])
-def test_the_page_is_accessible(palette):
-    axe = Path(__file__).resolve().parents[2] / 'web/node_modules/axe-core/axe.min.js'
-    if not axe.exists():
-        pytest.skip('web/node_modules is missing (cd web && npm ci): axe is not run')
+def test_the_page_is_accessible(palette, web):
+    axe = web / 'node_modules/axe-core/axe.min.js'
 
     async def act(page, stage):
         await page.evaluate(
@@ -311,7 +312,13 @@ def test_alarms_sound_where_sound_is_on_until_silenced():
     async def act(page, stage):
         await page.until('ppi.sound.played > 0')
         await page.evaluate("document.getElementById('silence').click()")
+        while not stage.commands:
+            await asyncio.sleep(0.05)
+        assert [command.name for command in stage.commands] == ['silence']  # for all viewers
+        await page.evaluate('ppi.state.role.commands = false')
+        await page.evaluate("document.getElementById('silence').click()")  # here alone
         assert await page.evaluate('ppi.sound.until > performance.now() / 1000 + 25')
+        assert len(stage.commands) == 1
 
     on_stage(act, '?sound=on')
 

@@ -334,3 +334,38 @@ def test_a_port_that_is_taken_is_an_error_at_the_start():
 def test_addresses_without_host_and_port_are_refused_by_name(address):
     with pytest.raises(ValueError, match='host:port'):
         server.read_address(address)
+
+
+def test_what_comes_on_demand_goes_to_who_asked_and_nobody_else(served):
+    here = served()
+
+    async def look_on():
+        async with aiohttp.ClientSession() as session:
+            async with (
+                session.ws_connect(here.base + '/live') as asks,
+                session.ws_connect(here.base + '/live') as other,
+            ):
+                await asks.send_json({'command': 'watch', 'id': 4, 'areas': 1})
+                said = await answers(asks)  # without a token: it is no command
+                assert said['ok'] and said['id'] == 4 and here.server.wanted('areas') == 1
+                here.server.publish('areas', {'safe': [[1, 2]]})
+                here.server.publish('own', {'x': 3})
+                assert (await answers(asks, 'areas'))['safe'] == [[1, 2]]
+                kinds = []
+                while 'own' not in kinds:
+                    kinds.append(json.loads((await other.receive(20)).data)['kind'])
+                assert 'areas' not in kinds
+                await other.send_json({'command': 'watch', 'areas': 1})
+                assert (await answers(other, 'areas'))['safe'] == [[1, 2]]  # the newest at once
+                await asks.send_json({'command': 'watch', 'areas': 0})
+                assert (await answers(asks))['ok'] and here.server.wanted('areas') == 1
+                await asks.send_json({'command': 'watch', 'areas': 3})
+                assert 'areas must be between 0 and 1' in (await answers(asks))['text']
+        for _ in range(100):
+            if not here.server.wanted('areas'):
+                return
+            await asyncio.sleep(0.05)
+        raise AssertionError('who has gone still wants')
+
+    asyncio.run(look_on())
+    assert here.commands == []

@@ -41,7 +41,7 @@ class Failing(RunnableNode):
         self.declare_parameter('depth', 1)
         self.add_on_set_parameters_callback(self.judge)
         self.add_post_set_parameters_callback(self.change)
-        self.watch_failures(steady)
+        self.watch(steady, 'failing', lambda: (DiagnosticStatus.OK, 'works', {'ticks': self.ticks}))
 
     def tell(self, reason, detail):
         self.said.append(reason)
@@ -110,8 +110,8 @@ def test_no_failing_callback_ends_a_node_and_each_kind_is_told_once(graph, node_
         return [entry for message in diagnostics.messages for entry in message.status]
 
     wait(lambda: any(entry.level == DiagnosticStatus.ERROR for entry in told()))
-    wait(lambda: {pair.key for pair in told()[-1].values} == {FAILED, *kinds})
-    assert told()[-1].name == 'failing: callbacks' and told()[-1].hardware_id == 'radar'
+    wait(lambda: {pair.key for pair in told()[-1].values} == {'ticks', FAILED, *kinds})
+    assert told()[-1].name == 'failing: failing' and told()[-1].hardware_id == 'failing'
 
     node.works = True
     senders[0].publish(String(data='heard'))

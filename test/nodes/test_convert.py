@@ -10,8 +10,8 @@ from sensor_msgs.msg import PointCloud2, PointField
 
 from marine_tracker.geometry import own_ship_at
 from marine_tracker.nodes import convert
-from marine_tracker.nodes.faults import ConversionError
 from marine_tracker.nodes.readable_plots import plots_to_readable
+from marine_tracker.recording.message_faults import ConversionError
 from marine_tracker.types import OwnShip, PolarPlots, Scan
 
 SECOND = 1_000_000_000

@@ -62,7 +62,7 @@ class Watch:
                 (PointCloud2, topics.TRACKS_CLOUD, topics.reliable()),
                 (DiagnosticArray, topics.TARGETS, topics.latched(50)),
                 (MarkerArray, topics.MARKERS, topics.reliable()),
-                (DiagnosticArray, topics.ALARMS, topics.latched(10)),
+                (DiagnosticArray, topics.ALARMS, topics.latched(100)),
                 (DiagnosticArray, topics.DIAGNOSTICS, topics.reliable()),
             )
         }

@@ -14,11 +14,11 @@ from pyproj import Geod
 pytest.importorskip('rclpy')
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from nav_msgs.msg import Odometry
-from sensor_msgs.msg import NavSatFix
+from sensor_msgs.msg import NavSatFix, PointCloud2
 from std_msgs.msg import String
 
-from marine_tracker.geometry import KNOT, unit_vector
-from marine_tracker.nodes import convert, topics
+from marine_tracker.geometry import KNOT, NAUTICAL_MILE, unit_vector
+from marine_tracker.nodes import convert, targets_cloud, topics
 from marine_tracker.nodes.nmea_output_input import FIX_BY_ARRIVAL, TIME_BY_ARRIVAL
 from marine_tracker.nodes.nmea_output_node import NmeaOutputNode
 
@@ -29,22 +29,26 @@ LOOPBACK = '127.0.0.1'
 EARTH = Geod(ellps='WGS84')
 
 
-def entry(title, message='TRACKING', **values):
+STATUS = {'ACQUIRING': 0, 'TRACKING': 1, 'COASTING': 2, 'LOST': 3}
+
+
+def entry(title, status='TRACKING', by_hand=False, **values):
+    """A row of `targets_cloud`: TT07 or Q123; values in NM, deg, kn, min."""
+    row = np.zeros(1, targets_cloud.TARGET_TYPE)
+    row['number' if title.startswith('TT') else 'id'] = int(title.lstrip('TQ'))
+    row['status'], row['acquired'] = STATUS[status], by_hand
     shown = {
-        'range_nm': '2.00',
-        'bearing_deg': '045.0',
-        'course_deg': '225.0',
-        'speed_kn': '10.0',
-        'cpa_nm': '0.10',
-        'tcpa_min': '12.0',
-        'acquired': 'A',
-        **values,
+        'range': 2.0,
+        'bearing': 45.0,
+        'course': 225.0,
+        'speed': 10.0,
+        'cpa': 0.1,
+        'tcpa': 12.0,
     }
-    return DiagnosticStatus(
-        name=title,
-        message=message,
-        values=[KeyValue(key=key, value=value) for key, value in shown.items()],
-    )
+    units = {'bearing': np.pi / 180, 'course': np.pi / 180, 'speed': KNOT, 'tcpa': 60.0}
+    for name, value in {**shown, **values}.items():
+        row[name] = value * units.get(name, NAUTICAL_MILE)
+    return row
 
 
 class Ear:
@@ -80,6 +84,12 @@ def free_port():
         return one.getsockname()[1]
 
 
+def cloud(entries, seconds):
+    """A message on `targets_cloud`."""
+    rows = np.concatenate([np.zeros(0, targets_cloud.TARGET_TYPE), *entries])
+    return convert.cloud_message(rows, NOON + round(seconds * SECOND))
+
+
 class Rig:
     """The node, and someone who publishes what it hears and hears what it publishes."""
 
@@ -98,7 +108,7 @@ class Rig:
             )
         )
         self.targets = self.other.create_publisher(
-            DiagnosticArray, topics.TARGETS, topics.latched()
+            PointCloud2, topics.TARGETS_CLOUD, topics.latched()
         )
         self.wait(
             lambda: (
@@ -127,8 +137,7 @@ class Rig:
         self.scans += 1
         seconds = self.scans if seconds is None else seconds
         before = len(self.nmea)
-        message = DiagnosticArray(status=list(entries))
-        message.header.stamp = convert.time_message(NOON + round(seconds * SECOND))
+        message = cloud(entries, seconds)
         sent = self.node._count['sentences']
         self.targets.publish(message)
         self.wait(lambda: self.node._count['sentences'] > sent)
@@ -160,9 +169,7 @@ def test_a_scan_gives_own_ship_and_one_ttm_a_target_alike_on_topic_udp_and_tcp(
         here.wait(lambda: len(here.node._tcp) == 1)
         here.send_own_ship()
         said = here.scan(
-            entry('TT01'),
-            entry('TT02', range_nm='0.50', tcpa_min='-3.0', acquired='M', name='BUOY'),
-            seconds=2.0,
+            entry('TT01'), entry('TT02', range=0.5, tcpa=-3.0, by_hand=True), seconds=2.0
         )
         first = [one.data for one in here.nmea.messages]  # with those of the odometry
         heard = ear.hear(len(first))
@@ -174,7 +181,7 @@ def test_a_scan_gives_own_ship_and_one_ttm_a_target_alike_on_topic_udp_and_tcp(
         '$RATTM,01,2.000,045.0,T,10.00,225.0,T,0.100,12.0,N,TT01,T,,120002.00,A*'
     )
     assert said[4].startswith(
-        '$RATTM,02,0.500,045.0,T,10.00,225.0,T,0.100,-3.0,N,BUOY,T,,120002.00,M*'
+        '$RATTM,02,0.500,045.0,T,10.00,225.0,T,0.100,-3.0,N,TT02,T,,120002.00,M*'
     )
     assert said[2].startswith('$RAOSD,090.0,A,090.0,P,10.00,P,,,N*')
     rmc = pynmea2.parse(said[0], check=True)
@@ -205,27 +212,13 @@ def test_lost_and_cancelled_targets_get_one_last_word_and_then_no_more(rig):
     assert status(here.scan()) == {}
 
 
-def test_what_targets_does_not_tell_is_left_empty_and_what_is_no_target_passed_over(rig):
+def test_what_is_not_known_is_left_empty(rig):
     here = rig(sentences='TTM')
-    plain = DiagnosticStatus(
-        name='TT05',
-        message='COASTING',
-        values=[
-            KeyValue(key=key, value=value)
-            for key, value in (
-                ('range_nm', '1.50'),
-                ('bearing_deg', '359.9'),
-                ('course_deg', ''),
-                ('speed_kn', 'fast'),
-            )
-        ],
-    )
+    unknown = {'course': np.nan, 'speed': np.inf, 'cpa': np.nan, 'tcpa': np.nan}
     said = here.scan(
-        plain,
-        entry('Q123', 'ACQUIRING', acquired='M'),
-        entry('radar'),
-        entry('TTxx'),
-        entry('TT07', range_nm='nan'),
+        entry('TT05', 'COASTING', range=1.5, bearing=359.9, **unknown),
+        entry('Q123', 'ACQUIRING', by_hand=True),
+        entry('TT07', range=np.nan),
     )
     assert [line.rpartition('*')[0] for line in said] == [
         '$RATTM,05,1.500,359.9,T,,,T,,,N,TT05,T,,120001.00,A',
@@ -248,9 +241,7 @@ def test_a_receiver_of_three_digits_is_told_each_target_by_its_own_number(rig):
 def test_the_same_message_twice_is_one_scan(rig):
     here = rig(sentences='TTM')
     assert len(here.scan(entry('TT01'), seconds=5.0)) == 1
-    message = DiagnosticArray(status=[entry('TT01')])
-    message.header.stamp = convert.time_message(NOON + 5 * SECOND)
-    here.targets.publish(message)
+    here.targets.publish(cloud([entry('TT01')], 5.0))
     assert len(here.scan(entry('TT01'), seconds=6.0)) == 1
 
 
@@ -265,7 +256,7 @@ def test_all_sentences_and_talkers_as_chosen(rig):
     )
     here.send_own_ship(seconds=1.0, position=(0.0, 1852.0), fix=None)
     # Own ship may have been told once before the scan came.
-    said = here.scan(entry('TT01', range_nm='1.00', bearing_deg='000.0'), seconds=1.0)[-6:]
+    said = here.scan(entry('TT01', range=1.0, bearing=0.0), seconds=1.0)[-6:]
     assert [line[1:6] for line in said] == ['GPRMC', 'GPHDT', 'IIOSD', 'IIRSD', 'IITTM', 'IITLL']
     rmc, tll = (pynmea2.parse(said[k], check=True) for k in (0, 5))
     assert rmc.latitude == pytest.approx(EARTH.fwd(10, 54, 0, 1852)[1], abs=2e-6)
@@ -301,9 +292,7 @@ def test_targets_are_at_range_and_true_bearing_from_own_ship_wherever_she_is(
     # A fix tells nothing of the origin of `map`.
     fix = (own_lat, own_lon) if by == 'fix' else None
     here.send_own_ship(seconds=1.0, position=own, fix=fix)
-    told = here.scan(
-        entry('TT01', range_nm=f'{miles:.2f}', bearing_deg=f'{bearing:.1f}'), seconds=1.0
-    )
+    told = here.scan(entry('TT01', range=miles, bearing=bearing), seconds=1.0)
     rmc, tll = pynmea2.parse(told[0], check=True), pynmea2.parse(told[2], check=True)
     assert EARTH.inv(rmc.longitude, rmc.latitude, own_lon, own_lat)[2] < 0.3
     lon, lat, _ = EARTH.fwd(own_lon, own_lat, bearing, miles * 1852)
@@ -404,6 +393,30 @@ def test_signalk_deltas_go_out_as_datagrams(rig, ears):
     here.scan(entry('TT02'), seconds=2.0)
     gone = [delta for delta in map(json.loads, ear.hear(2)) if delta['context'] == first['context']]
     assert all(one['value'] is None for one in gone[0]['updates'][0]['values'] if one['path'])
+
+
+def test_alarms_go_to_signalk_as_notifications_of_own_ship(rig, ears):
+    ear = ears()
+    here = rig(signalk_udp=f'{LOOPBACK}:{ear.port}')
+    alarms = here.other.create_publisher(DiagnosticArray, topics.ALARMS, topics.latched())
+    here.wait(alarms.get_subscription_count)
+    values = {'priority': 'alarm', 'state': 'active acknowledged'}
+    alarms.publish(
+        DiagnosticArray(
+            status=[
+                DiagnosticStatus(
+                    name='TT12: danger',
+                    message='TT12 dangerous: CPA 0.21 NM',
+                    values=[KeyValue(key=key, value=value) for key, value in values.items()],
+                )
+            ]
+        )
+    )
+    (delta,) = map(json.loads, ear.hear(1))
+    (entry,) = delta['updates'][0]['values']
+    assert entry['path'] == 'notifications.radar.nmea_output.TT12_danger'
+    assert entry['value']['message'] == 'TT12 dangerous: CPA 0.21 NM'
+    assert entry['value']['method'] == ['visual']
 
 
 def p(**parameters):

@@ -1,4 +1,4 @@
-"""The NMEA output as a process: many clients, names without end, hosts of one family."""
+"""The NMEA output as a process: many clients, targets without end, hosts of one family."""
 
 import contextlib
 import re
@@ -7,35 +7,31 @@ import struct
 import threading
 import time
 
+import numpy as np
 import psutil
 import pytest
 
 pytest.importorskip('rclpy')
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray
+from sensor_msgs.msg import PointCloud2
 
-from marine_tracker.nodes import convert, topics
+from marine_tracker.nodes import convert, targets_cloud, topics
 from marine_tracker.nodes.nmea_output_links import CLIENTS
 from marine_tracker.nodes.nmea_output_node import NO_ROOM, NOT_SENT, REFUSED
+from marine_tracker.tracking.lifecycle import CONFIRMED
 
 LOOPBACK = '127.0.0.1'
 GROWTH_MB = 100.0
 
 
-def target(number, **values):
-    shown = {
-        'range_nm': '3.250',
-        'bearing_deg': '117.5',
-        'course_deg': '301.0',
-        'speed_kn': '14.5',
-        'cpa_nm': '0.870',
-        'tcpa_min': '9.5',
-        **values,
-    }
-    return DiagnosticStatus(
-        name=f'TT{number:02d}',
-        message='TRACKING',
-        values=[KeyValue(key=key, value=value) for key, value in shown.items()],
-    )
+def targets(numbers):
+    """Rows of `targets_cloud`."""
+    rows = np.zeros(len(numbers), targets_cloud.TARGET_TYPE)
+    rows['number'], rows['status'] = numbers, CONFIRMED
+    for name, value in (('range', 6019.0), ('bearing', 2.05), ('course', 5.25), ('speed', 7.46)):
+        rows[name] = value
+    rows['cpa'], rows['tcpa'] = 1611.2, 570.0
+    return rows
 
 
 class Output:
@@ -49,17 +45,16 @@ class Output:
         assert self.process.says('TTM'), self.process.said
         self.other = graph.bystander()
         self._targets = self.other.create_publisher(
-            DiagnosticArray, topics.TARGETS, topics.latched()
+            PointCloud2, topics.TARGETS_CLOUD, topics.latched()
         )
         self._diagnostics = listener(self.other, DiagnosticArray, topics.DIAGNOSTICS)
         self.wait(lambda: self._targets.get_subscription_count() and len(self._diagnostics))
         self.scans = 0
 
-    def scan(self, entries):
+    def scan(self, numbers):
         self.scans += 1
-        message = DiagnosticArray(status=entries)
-        message.header.stamp = convert.time_message(1_700_000_000_000_000_000 + self.scans)
-        self._targets.publish(message)
+        stamp = 1_700_000_000_000_000_000 + self.scans
+        self._targets.publish(convert.cloud_message(targets(numbers), stamp))
 
     def values(self):
         """The last word on /diagnostics."""
@@ -92,24 +87,24 @@ def test_who_listens_on_ipv4_is_reached_where_localhost_is_ipv6_alone(output, pr
             udp=f'localhost:{ear.getsockname()[1]}',
             sentences='TTM',
         )
-        here.scan([target(number) for number in range(41, 45)])
+        here.scan(range(41, 45))
         heard = [ear.recv(200)[:9] for _ in range(4)]
     assert heard == [b'$RATTM,%d' % number for number in range(41, 45)]
     here.wait(lambda: here.values()['datagrams'] == '4')
     assert here.values()[REFUSED] == here.values()[NOT_SENT] == '0'
-    here.scan([target(number) for number in range(41, 45)])  # nobody listens any more
+    here.scan(range(41, 45))  # nobody listens any more
     here.wait(lambda: here.values()[REFUSED] == '4')
     assert here.values()['datagrams'] == '4'
     here.process.stop()
 
 
-def test_one_name_without_end_does_not_cost_memory_for_every_target(output):
+def test_targets_without_end_cost_no_memory(output):
     here = output(signalk_udp=f'{LOOPBACK}:9')
-    here.scan([target(number) for number in range(1, 2_301)])
+    here.scan(range(1, 2_301))
     here.wait(lambda: here.values()['targets'] == '99')
     before = here.peak_mb()
-    here.scan([target(number) for number in range(1, 2_300)] + [target(7, name='Ü' * 140_000)])
-    here.scan([target(number, name='N' * 140_000) for number in (1, 2)])
+    here.scan(range(1, 50_000))
+    here.scan((1, 2))
     here.wait(lambda: here.values()['targets'] == '2')
     print(f'memory {before:.0f} MB, at most {here.peak_mb():.0f} MB')
     assert here.peak_mb() - before < GROWTH_MB
@@ -179,7 +174,7 @@ def test_a_crowd_of_clients_is_served_or_refused_and_counted(
     served = [reader for reader in readers if reader.here]
     here.wait(lambda: here.values()[NO_ROOM] == str(clients - CLIENTS))
 
-    entries = [target(number) for number in range(1, 100)]
+    entries = range(1, 100)
     for k in range(reconnects):
         comes_and_goes(free_port, k)
         if k % 5 == 0:

@@ -159,12 +159,16 @@ def test_two_radars_side_by_side_do_not_hear_each_other(launch, graph, node_help
     assert max(message.width for message in plots[2].messages) < 6
     wait(
         lambda: (
-            {'radar_1/tracker: input', 'radar_2/tracker: input'}
+            {
+                f'radar_{k}/{task}'
+                for k in (1, 2)
+                for task in ('tracker: input', 'radar_simulator: playback')
+            }
             <= {entry.name for message in diagnostics.messages for entry in message.status}
         )
     )
     ids = {entry.hardware_id for message in diagnostics.messages for entry in message.status}
-    assert ids == {'radar_1/radar', 'radar_2/radar'}
+    assert ids == {f'radar_{k}/{node}' for k in (1, 2) for node in ('tracker', 'radar_simulator')}
     for process in processes:
         process.stop()
 

@@ -49,7 +49,7 @@ class Bridge:
         ]
         self.own = other.create_publisher(Odometry, topics.ODOMETRY, topics.reliable(500))
         self.targets = listener(other, DiagnosticArray, topics.TARGETS, topics.latched(50))
-        self.alarms = listener(other, DiagnosticArray, topics.ALARMS, topics.latched(10))
+        self.alarms = listener(other, DiagnosticArray, topics.ALARMS, topics.latched(100))
         self.diagnostics = listener(other, DiagnosticArray, topics.DIAGNOSTICS)
         self.wait(
             lambda: (

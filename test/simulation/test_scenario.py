@@ -335,6 +335,7 @@ def test_the_example_of_hulls_and_land_is_right(tmp_path):
         ('mole', 2),
         ('islet', 4),
     ]
+    assert len(loaded.fixed.place) == 30 + 2
 
 
 def test_unknown_names_are_answered_with_the_nearest():

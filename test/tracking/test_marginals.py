@@ -76,7 +76,7 @@ def test_a_chain_too_long_for_the_sum_is_exact_by_messages():
 
 
 def by_enumeration_of_chain(chain):
-    """Of a chain: track k wants plots k and k + 1. A sum over which plot is taken, left to right."""
+    """The same where track k wants plots k and k + 1."""
     count = len(chain)
     total, found = 0.0, np.zeros_like(chain)
     for choice in itertools.product((None, 0, 1), repeat=count):

@@ -33,6 +33,11 @@ export function minutes(seconds) {
   return number(seconds === null || seconds === undefined ? null : seconds / 60, 1);
 }
 
+/** 15 s, 6 min. @param {number} time  min */
+export function duration(time) {
+  return time < 1 ? `${Math.round(60 * time)} s` : `${time} min`;
+}
+
 /** 54°05.123′N. @param {number|null} latitude deg @param {number|null} longitude deg */
 export function place(latitude, longitude) {
   if (latitude === null || longitude === null) return NONE;

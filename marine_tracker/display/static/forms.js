@@ -8,8 +8,14 @@ const LEAST = 40; // px from own ship to the handle: a ship at rest has one, too
 
 const form = (/** @type {string} */ id) => /** @type {HTMLFormElement} */ (element(id));
 
+let opening = false; // the trial's box, for a vector that was dragged
+
 /** Numbers of a form go out as the command of its name. */
-export function listen(/** @type {(name: string, values: object) => void} */ command) {
+export function listen(/** @type {import('./app.js').App} */ app) {
+  element('trial-box').addEventListener('toggle', () => {
+    if (!opening) fillTrial(app.state);
+    opening = false;
+  });
   for (const id of ['trial', 'limits']) {
     form(id)
       .querySelector('.submit')
@@ -17,7 +23,7 @@ export function listen(/** @type {(name: string, values: object) => void} */ com
     form(id).addEventListener('submit', (event) => {
       event.preventDefault();
       const given = [...new FormData(form(id))].map(([key, value]) => [key, Number(value)]);
-      command(id, Object.fromEntries(given));
+      app.command(id, Object.fromEntries(given));
     });
   }
 }
@@ -30,10 +36,10 @@ export function fillLimits(/** @type {Record<string, number>} */ limits) {
 }
 
 /** A trial begins from what own ship does now. */
-export function fillTrial(/** @type {import('./state.js').State} */ state) {
+function fillTrial(/** @type {import('./state.js').State} */ state) {
   if (!state.own || state.trial.on) return;
-  const { vx, vy, heading } = state.own;
-  setTrial(degrees(heading ?? wrap(Math.atan2(vx, vy))), Math.hypot(vx, vy) / KNOT);
+  const [speed, course] = wayOf(state.own);
+  setTrial(degrees(wrap(course)), speed / KNOT);
 }
 
 function setTrial(/** @type {number} */ course, /** @type {number} */ speed) {
@@ -46,7 +52,14 @@ function motionOf(state) {
   const { own, trial } = state;
   return trial.on && trial.course_deg !== null
     ? [trial.speed_kn * KNOT, radians(trial.course_deg)]
-    : [Math.hypot(own.vx, own.vy), own.heading ?? Math.atan2(own.vx, own.vy)];
+    : wayOf(own);
+}
+
+/** m/s and course of own ship, as the targets' courses are measured; her heading where she is at rest. */
+function wayOf(own) {
+  const [wx, wy] = [own.wx ?? own.vx, own.wy ?? own.vy];
+  const speed = Math.hypot(wx, wy);
+  return [speed, speed > 0.25 ? Math.atan2(wx, wy) : (own.heading ?? 0)];
 }
 
 /**
@@ -77,6 +90,8 @@ export function dragTo(state, settings, view, [x, y]) {
 
 /** As typed: the trial in the form goes out. */
 export function tryIt() {
-  /** @type {HTMLDetailsElement} */ (element('trial-box')).open = true;
+  const box = /** @type {HTMLDetailsElement} */ (element('trial-box'));
+  opening = !box.open;
+  box.open = true;
   form('trial').requestSubmit();
 }

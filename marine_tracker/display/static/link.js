@@ -1,6 +1,8 @@
 // The connection to the server: comes back by itself, and tells what came of each command.
 
 const SILENT_MS = 6000; // without a word: the connection is dead, whatever it says itself
+const LATE_S = 6; // behind by so much: what waits in the network is given up for the state of now
+const LATE_AGAIN_MS = 15000; // and not again before
 const AGAIN_MS = [500, 1000, 2000, 4000];
 
 export class Link {
@@ -8,13 +10,16 @@ export class Link {
    * @param {string} token  '' to look only
    * @param {(message: Record<string, any>) => void} onMessage
    * @param {() => void} onOpen
+   * @param {() => number} lateness  s that the last message was late
    */
-  constructor(token, onMessage, onOpen) {
+  constructor(token, onMessage, onOpen, lateness = () => 0) {
     this.token = token;
     this.onMessage = onMessage;
     this.onOpen = onOpen;
+    this.lateness = lateness;
     this.failures = 0;
     this.heard = 0;
+    this.opened = 0;
     this.nextId = 1;
     /** @type {Map<number, (answer: {ok: boolean, text: string}) => void>} */
     this.waiting = new Map();
@@ -29,7 +34,7 @@ export class Link {
       `${location.protocol.replace('http', 'ws')}//${location.host}/live`,
     );
     this.socket = socket;
-    this.heard = performance.now();
+    this.heard = this.opened = performance.now();
     socket.onopen = () => {
       this.onOpen();
       if (this.token) socket.send(JSON.stringify({ command: 'login', token: this.token }));
@@ -48,7 +53,9 @@ export class Link {
 
   /** A connection that died without a word is given up, and a new one made. */
   watch() {
-    if (this.socket && performance.now() - this.heard > SILENT_MS) {
+    const now = performance.now();
+    const late = this.lateness() > LATE_S && now - this.opened > LATE_AGAIN_MS;
+    if (this.socket && (late || now - this.heard > SILENT_MS)) {
       this.socket.onclose = null;
       this.socket.close();
       this.again();

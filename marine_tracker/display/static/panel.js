@@ -1,9 +1,9 @@
 // What stands beside the picture: own ship, alarms, the selected target, the table, the state.
 
-import { rangeBearing, toMap } from './geometry.js';
 import * as format from './format.js';
+import { rangeBearing } from './geometry.js';
+import { bowOf } from './scope.js';
 import { COASTING, LOST, ACQUIRING, nameOf } from './state.js';
-import { RANGES } from './settings.js';
 
 const STATUS = {
   [ACQUIRING]: 'acquiring',
@@ -12,21 +12,12 @@ const STATUS = {
   [LOST]: 'lost',
 };
 const MOTION = ['steady', 'manoeuvring', 'at rest'];
-/** Of alerts, as they are listed. */
-const STATES = ['active unacknowledged', 'rectified unacknowledged', 'active acknowledged'];
+export const STABILISED = {
+  ground: 'courses over ground',
+  sea: 'courses through the water',
+  none: 'COURSES NOT KNOWN',
+};
 const CLOCK_S = 30; // a larger difference of the time of day is told
-const NEVER = 1e12; // sorts behind all numbers
-/** Columns of the table: head, what a cell shows, what it is sorted by. */
-export const COLUMNS = [
-  ['No', nameOf, (t) => t.number || NEVER + t.id],
-  ['NM', (t) => format.miles(t.range), (t) => t.range],
-  ['Brg°', (t) => format.bearing(t.bearing), (t) => t.bearing],
-  ['Crs°', (t) => format.bearing(t.course), (t) => t.course],
-  ['kn', (t) => format.knots(t.speed), (t) => t.speed],
-  ['CPA', (t) => format.miles(t.cpa), (t) => t.cpa],
-  ['TCPA', (t) => format.minutes(t.tcpa), (t) => (t.tcpa !== null && t.tcpa < 0 ? NEVER : t.tcpa)],
-];
-
 /** @param {string} id @returns {HTMLElement} */
 export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
@@ -65,7 +56,7 @@ export function showOwnShip(/** @type {import('./state.js').State} */ state) {
 }
 
 /** The data of the selected target, each with its standard deviation. */
-export function showSelected(/** @type {import('./state.js').Target|undefined} */ target) {
+export function showSelected(/** @type {import('./state.js').Target|undefined} */ target, own) {
   say(
     element('selected-name'),
     target
@@ -76,6 +67,7 @@ export function showSelected(/** @type {import('./state.js').Target|undefined} *
   const figures = [
     ['Range', `${format.miles(target.range)} NM`, format.miles(target.range_sd, 3)],
     ['Bearing', `${format.bearing(target.bearing)}°`, angleSd(target.bearing_sd)],
+    ['Rel. brg', `${format.bearing(relativeBearing(target, own))}°`],
     ['Course', `${format.bearing(target.course)}°`, angleSd(target.course_sd)],
     ['Speed', `${format.knots(target.speed)} kn`, format.knots(target.speed_sd)],
     ['CPA', `${format.miles(target.cpa)} NM`, format.miles(target.cpa_sd)],
@@ -94,130 +86,14 @@ export function showSelected(/** @type {import('./state.js').Target|undefined} *
   fill(element('selected'), figures);
 }
 
+/** From the bow, or from where it was when the heading was lost; null where nobody knows. */
+function relativeBearing(target, own) {
+  if (!own || target.x === null || (own.heading === null && own.bow == null)) return null;
+  return rangeBearing(own.x, own.y, target.x, target.y)[1] - bowOf(own);
+}
+
 function angleSd(/** @type {number|null} */ sd) {
   return format.number(sd === null ? null : (sd * 180) / Math.PI, 1);
-}
-
-/** The alerts, those that nobody acknowledged first. */
-export function showAlarms(state, mayCommand, acknowledge) {
-  const list = element('alarms');
-  const priority = ['alarm', 'warning', 'caution'];
-  const waits = (alarm) => alarm.state.endsWith('unacknowledged');
-  const rank = (alarm) => STATES.indexOf(alarm.state) * 3 + priority.indexOf(alarm.priority);
-  const alarms = [...state.alarms].sort((a, b) => rank(a) - rank(b));
-  const old = new Map([...list.children].map((item) => [item.dataset.name, item]));
-  const items = alarms.map((alarm) => {
-    const item = old.get(alarm.name) ?? newAlarm(alarm.name);
-    item.className = `${alarm.priority} ${alarm.state}`;
-    const over = alarm.state.startsWith('rectified') ? 'Over: ' : '';
-    const [icon, text, button] = item.children;
-    const about = {
-      type: alarm.priority,
-      active: !over,
-      acknowledged: !waits(alarm),
-    };
-    Object.assign(icon, about);
-    say(text, over + (alarm.text || alarm.name));
-    button.hidden = !(waits(alarm) && alarm.number);
-    button.disabled = !mayCommand;
-    button.onclick = () => acknowledge(alarm.number);
-    return item;
-  });
-  if (items.length !== list.children.length || items.some((item, k) => item !== list.children[k])) {
-    list.replaceChildren(...items);
-  }
-}
-
-function newAlarm(/** @type {string} */ name) {
-  const item = document.createElement('li');
-  item.dataset.name = name;
-  const button = document.createElement('obc-button');
-  button.textContent = 'Ack';
-  button.title = `Acknowledge ${name}`;
-  item.append(document.createElement('obc-alert-icon'), document.createElement('span'), button);
-  return item;
-}
-
-/** The heads of the table; sort(column) is called by a click. */
-export function makeHeads(sort) {
-  const row = element('targets').querySelector('thead tr');
-  COLUMNS.forEach(([head], column) => {
-    const cell = document.createElement('th');
-    const button = document.createElement('button');
-    button.textContent = head;
-    button.title = `Sort by ${head}`;
-    button.onclick = () => sort(column);
-    cell.append(button);
-    row.append(cell);
-  });
-}
-
-/** @type {Map<number, HTMLTableRowElement>} */
-const rows = new Map();
-
-/** The table, sorted; dangerous ones first where it is sorted by TCPA. */
-export function showTargets(targets, sorted, chosen, choose) {
-  const body = element('targets').querySelector('tbody');
-  const [, , key] = COLUMNS[sorted.column];
-  const order = (t) => key(t) ?? NEVER;
-  const inOrder = targets
-    .filter((t) => t.status !== LOST)
-    .sort((a, b) => (sorted.danger ? b.alarm - a.alarm : 0) || sorted.sign * (order(a) - order(b)));
-  say(element('count'), String(inOrder.length));
-  for (const [id, row] of rows)
-    if (!inOrder.some((t) => t.id === id)) rows.delete(id) && row.remove();
-  inOrder.forEach((target, place) => {
-    let row = rows.get(target.id);
-    if (!row) {
-      row = newRow();
-      rows.set(target.id, row);
-    }
-    row.className = `${target.alarm ? 'danger' : ''} ${target.id === chosen ? 'chosen' : ''}`;
-    row.onclick = () => choose(target.id);
-    COLUMNS.forEach(([, show], column) => {
-      const cell = row.children[column];
-      say(column ? cell : cell.firstChild, show(target));
-    });
-    if (body.children[place] !== row) body.insertBefore(row, body.children[place] ?? null);
-  });
-}
-
-function newRow() {
-  const row = document.createElement('tr');
-  COLUMNS.forEach((_, column) => {
-    const cell = document.createElement('td');
-    if (!column) cell.append(document.createElement('button'));
-    row.append(cell);
-  });
-  return row;
-}
-
-/** The words in the corners of the picture. */
-export function showCorners(state, settings, scope, marks, pointer) {
-  const [range, rings] = RANGES[settings.range];
-  const heading = state.own?.heading ?? null;
-  const missing = heading === null ? '\nHEADING MISSING' : '';
-  say(
-    element('scale'),
-    `${range} NM\n${settings.rings === 'on' ? `rings ${rings} NM` : 'no rings'}\n` +
-      `${scope.orientation}\nrelative motion${missing}`,
-  );
-  say(
-    element('modes'),
-    `vectors ${settings.vectors}, ${settings.vectorMinutes} min\n` +
-      `trails ${settings.trails}${settings.trails === 'off' ? '' : `, ${settings.trailMinutes} min`}`,
-  );
-  const lines = [];
-  const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
-  if (place && state.own) {
-    lines.push(['cursor', rangeBearing(state.own.x, state.own.y, place[0], place[1])]);
-  }
-  marks.lines.forEach((line, k) => lines.push([`EBL${k + 1}/VRM${k + 1}`, line]));
-  const told = lines.map(
-    ([name, [away, angle]]) => `${name} ${format.bearing(angle)}° ${format.miles(away)} NM`,
-  );
-  say(element('cursor'), told.join('\n'));
-  say(element('time'), state.scan ? `${format.clock(state.scan.time)} UTC` : '');
 }
 
 /** Health, limits, trial, and what this viewer may do. */
@@ -246,23 +122,4 @@ export function showState(state) {
     ? `This device's clock is ${Math.round(state.clockError)} s off; ages do not depend on it. `
     : '';
   say(element('role'), clock + (state.role.commands ? '' : state.role.why || 'Looking only.'));
-  say(element('trial-says'), trialSays(state.trial));
-}
-
-function trialSays(trial) {
-  if (!trial.on) return '';
-  if (!trial.safe_deg) return trial.text;
-  const safe = trial.safe_deg.map(
-    ([a, b]) => `${String(a).padStart(3, '0')}–${String(b).padStart(3, '0')}`,
-  );
-  const dangers = trial.targets.filter((target) => target.danger);
-  const told = dangers.map(
-    (t) => `${t.name} CPA ${format.number(t.cpa_nm, 2)} NM in ${format.number(t.tcpa_min, 1)} min`,
-  );
-  return (
-    `TRIAL ${format.number(trial.course_deg, 0)}°, ${format.number(trial.speed_kn, 1)} kn` +
-    `${trial.countdown_min ? `, begins in ${format.number(trial.countdown_min, 1)} min` : ''}. ` +
-    `Safe courses: ${safe.join(', ') || 'none'}. ` +
-    (told.length ? `Dangerous: ${told.join('; ')}.` : 'No target is dangerous.')
-  );
 }

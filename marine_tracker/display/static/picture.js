@@ -1,81 +1,33 @@
 // The radar picture on its canvas: scale, rings, echoes, targets, own ship.
 
-import {
-  NAUTICAL_MILE,
-  canvasAngle,
-  direction,
-  edge,
-  ellipse,
-  toScreen,
-  turned,
-} from './geometry.js';
-import { placed } from './labels.js';
+import { NAUTICAL_MILE, toScreen } from './geometry.js';
+import { drawAreas, drawSafeCourses } from './dangers.js';
+import { echoKey, paintEchoes } from './echoes.js';
+import { Layer, Stamps } from './layers.js';
+import { farthestSeen } from './scope.js';
 import { RANGES } from './settings.js';
-import { drawMarks, drawScale, drawTrial } from './surround.js';
-import {
-  ACQUIRING,
-  ACKNOWLEDGED,
-  COASTING,
-  LOST,
-  UNACKNOWLEDGED,
-  lostTargets,
-  nameOf,
-  serverNow,
-} from './state.js';
+import { drawOwnShip } from './own_ship.js';
+import { drawStationary } from './stationary.js';
+import { drawMarks, drawScale, drawSimulation, drawTrial } from './surround.js';
+import { LOST, serverNow } from './state.js';
+import { paintSpokes, spokesKey } from './spokes.js';
 import * as symbols from './symbols.js';
+import { drawTargets } from './targets.js';
+import { drawTools } from './tools_draw.js';
+import { drawZones } from './zones_draw.js';
 
-const MARGIN = 40; // px, for the bearing scale
-const GLOW_S = 30; // an echo has faded after so long
-const OFF = 0.5; // of the radius: how far own ship is moved back when off-centre
-const ELLIPSE_SIGMA = 2;
-const FLASH_S = 0.5;
+const around = new Layer(); // sea, rings, bearing scale
+const glow = new Layer(); // echoes
+const video = new Layer(); // spokes, where they come
+const past = new Layer(); // trails
+const stamps = new Stamps();
 
 /**
  * @typedef {import('./geometry.js').View} View
  * @typedef {import('./state.js').State} State
  * @typedef {import('./settings.js').Settings} Settings
- * @typedef {object} Scope
- * @property {View} view
- * @property {number} middleX  px, of the picture's circle
- * @property {number} middleY
- * @property {number} radius
- * @property {string} orientation  as it is: north-up where no heading is known
+ * @typedef {import('./scope.js').Scope} Scope
  */
-
-/**
- * How the map lies on the screen at this moment; drawing and clicking ask this.
- * @param {State} state @param {Settings} settings
- * @param {number} width px @param {number} height px @param {number} courseUp rad
- * @returns {Scope}
- */
-export function scopeOf(state, settings, width, height, courseUp) {
-  const radius = Math.max(Math.min(width, height) / 2 - MARGIN, 40);
-  const own = state.own;
-  const heading = own?.heading ?? null;
-  const orientation = heading === null ? 'north-up' : settings.orientation;
-  const up = { 'north-up': 0, 'head-up': heading ?? 0, 'course-up': courseUp }[orientation] ?? 0;
-  const view = {
-    originX: own?.x ?? 0,
-    originY: own?.y ?? 0,
-    centreX: width / 2,
-    centreY: height / 2,
-    scale: radius / (RANGES[settings.range][0] * NAUTICAL_MILE),
-    up,
-  };
-  if (settings.offCentre === 'on' && heading !== null) {
-    const [right, down] = direction(view, heading);
-    view.centreX -= OFF * radius * right;
-    view.centreY -= OFF * radius * down;
-  }
-  return { view, middleX: width / 2, middleY: height / 2, radius, orientation };
-}
-
-/** The vector of a target or own ship, m. */
-export function vectorOf(/** @type {Settings} */ settings, own, vx, vy) {
-  const seconds = 60 * settings.vectorMinutes;
-  const relative = settings.vectors === 'relative';
-  return [(vx - (relative ? own.vx : 0)) * seconds, (vy - (relative ? own.vy : 0)) * seconds];
-}
 
 /**
  * Draw everything.
@@ -88,55 +40,67 @@ export function vectorOf(/** @type {Settings} */ settings, own, vx, vy) {
 export function draw(canvas, state, settings, scope, colors, marks, local) {
   const { middleX, middleY, radius } = scope;
   canvas.clearRect(0, 0, canvas.canvas.width, canvas.canvas.height);
-  canvas.fillStyle = colors.sea;
+  const lies = [...Object.values(scope.view), scope.north, settings.palette];
+  const graphics = local >= marks.hidden.graphics;
+  around.onto(canvas, [...lies, settings.range, settings.rings, graphics], (pen) => {
+    pen.fillStyle = colors.sea;
+    pen.beginPath();
+    pen.arc(middleX, middleY, radius, 0, 2 * Math.PI);
+    pen.fill();
+    pen.save();
+    pen.clip();
+    if (graphics && settings.rings === 'on') drawRings(pen, settings, scope, colors);
+    pen.restore();
+    drawScale(pen, scope, colors);
+  });
+  canvas.save();
   canvas.beginPath();
   canvas.arc(middleX, middleY, radius, 0, 2 * Math.PI);
-  canvas.fill();
-  canvas.save();
   canvas.clip();
-  if (settings.rings === 'on') drawRings(canvas, settings, scope, colors);
-  if (state.own) {
-    drawPlots(canvas, state, scope, colors, local);
-    if (settings.trails !== 'off') drawTrails(canvas, state, settings, scope, colors);
-    drawOwnShip(canvas, state, settings, scope, colors);
-    drawTargets(canvas, state, settings, scope, colors, marks.id, local);
+  if (state.spokes) {
+    video.onto(canvas, [...lies, ...spokesKey(state, local)], (pen) =>
+      paintSpokes(pen, state, scope.view, colors.echo, serverNow(state, local)),
+    );
+  } else if (state.own) {
+    glow.onto(canvas, [...lies, ...echoKey(state, local)], (pen) =>
+      paintEchoes(pen, state, scope.view, colors.echo, local),
+    );
   }
-  drawMarks(canvas, scope, colors, marks);
+  if (graphics) {
+    const names = drawZones(canvas, state, scope, colors, marks);
+    if (state.own) {
+      if (settings.trails !== 'off') {
+        const shown = [settings.trails, settings.trailMinutes, state.trails?.count];
+        past.onto(canvas, [...lies, ...shown, state.scan?.at], (pen) =>
+          drawTrails(pen, state, settings, scope, colors),
+        );
+      }
+      drawAreas(canvas, state, settings, scope, colors, local);
+      drawStationary(canvas, state.fixed, scope.view, colors.trail);
+      drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
+      drawTargets(canvas, state, settings, scope, colors, marks.id, local, names);
+    }
+    drawTools(canvas, state, scope, colors, marks);
+    drawMarks(canvas, scope, colors, marks);
+  }
   canvas.restore();
-  drawScale(canvas, scope, colors);
+  if (!graphics) return;
+  drawSafeCourses(canvas, state, settings, scope, colors, local);
+  if (state.ship?.source === 'simulation') drawSimulation(canvas, scope, colors);
   if (state.trial.on) drawTrial(canvas, state, scope, colors);
 }
 
-function drawRings(canvas, settings, { view, radius }, colors) {
-  const [range, spacing] = RANGES[settings.range];
-  const far = settings.offCentre === 'on' ? (1 + OFF) * range : range;
+function drawRings(canvas, settings, scope, colors) {
+  const { view } = scope;
+  const spacing = RANGES[settings.range][1] * NAUTICAL_MILE;
+  const far = farthestSeen(scope);
   canvas.strokeStyle = colors.ring;
   canvas.lineWidth = 1;
-  for (let ring = 1; ring * spacing <= far + 1e-9; ring++) {
+  for (let ring = 1; ring * spacing <= far * (1 + 1e-9); ring++) {
     canvas.beginPath();
-    canvas.arc(view.centreX, view.centreY, (ring * spacing * radius) / range, 0, 2 * Math.PI);
+    canvas.arc(view.centreX, view.centreY, ring * spacing * view.scale, 0, 2 * Math.PI);
     canvas.stroke();
   }
-}
-
-/** Echoes, each as large as its age leaves it bright. */
-function drawPlots(canvas, state, { view, radius, middleX, middleY }, colors, local) {
-  const now = serverNow(state, local);
-  canvas.fillStyle = colors.echo;
-  state.plots.forEach((scan, place) => {
-    const newest = place === state.plots.length - 1;
-    const fade = 1 - Math.max(now - scan.at, 0) / GLOW_S;
-    if (fade <= 0 && !newest) return;
-    canvas.globalAlpha = newest ? 0.9 : 0.4 * fade ** 2;
-    const size = newest ? 3.5 : 3;
-    for (let k = 0; k < scan.x.length; k++) {
-      const [x, y] = toScreen(view, scan.x[k], scan.y[k]);
-      if (Math.abs(x - middleX) < radius && Math.abs(y - middleY) < radius) {
-        canvas.fillRect(x - size / 2, y - size / 2, size, size);
-      }
-    }
-  });
-  canvas.globalAlpha = 1;
 }
 
 function drawTrails(canvas, state, settings, { view }, colors) {
@@ -145,7 +109,6 @@ function drawTrails(canvas, state, settings, { view }, colors) {
   const relative = settings.trails === 'relative';
   const count = Math.round((60 * settings.trailMinutes) / trails.interval);
   const step = Math.max(1, Math.round(count / 12));
-  canvas.fillStyle = colors.trail;
   const last = trails.own.length - 1;
   for (const target of state.targets) {
     const trail = trails.targets[target.id];
@@ -158,102 +121,12 @@ function drawTrails(canvas, state, settings, { view }, colors) {
         ? [state.own.x - trails.own[moment][0], state.own.y - trails.own[moment][1]]
         : [0, 0];
       const [x, y] = toScreen(view, trail[moment][0] + dx, trail[moment][1] + dy);
-      symbols.pastPosition(canvas, x, y);
+      stamps.put(canvas, `past ${colors.trail}`, x, y, 3, (pen, middleX, middleY) => {
+        pen.fillStyle = colors.trail;
+        symbols.pastPosition(pen, middleX, middleY);
+      });
     }
   }
-}
-
-function drawOwnShip(canvas, state, settings, scope, colors) {
-  const { view, middleX, middleY, radius } = scope;
-  const own = state.own;
-  if (own.heading !== null) {
-    const [x, y] = edge(view, own.heading, middleX, middleY, radius);
-    canvas.strokeStyle = colors.own;
-    canvas.lineWidth = 1.4;
-    canvas.beginPath();
-    canvas.moveTo(view.centreX, view.centreY);
-    canvas.lineTo(x, y);
-    canvas.stroke();
-  }
-  if (settings.vectors === 'true') {
-    const [right, down] = turned(view, ...vectorOf(settings, own, own.vx, own.vy));
-    symbols.vector(canvas, view.centreX, view.centreY, right, down, colors.own, true);
-  }
-  symbols.ownShip(canvas, view.centreX, view.centreY, colors.own);
-}
-
-function drawTargets(canvas, state, settings, scope, colors, chosen, local) {
-  const { view, middleX, middleY, radius } = scope;
-  const shown = Math.floor(local / FLASH_S) % 2 === 0;
-  /** @type {import('./labels.js').Label[]} */
-  const labels = [];
-  const inOrder = [...state.targets].sort((a, b) => a.alarm - b.alarm); // the dangerous on top
-  for (const target of inOrder) {
-    if (target.x === null || target.status === LOST) continue;
-    const [x, y] = toScreen(view, target.x, target.y);
-    const danger = target.alarm >= ACKNOWLEDGED;
-    const color = danger
-      ? colors.danger
-      : target.status === COASTING
-        ? colors.coasting
-        : colors.target;
-    const [right, down] = turned(view, ...vectorOf(settings, state.own, target.vx, target.vy));
-    const beyond = Math.hypot(x - middleX, y - middleY) - radius;
-    if (danger && beyond > 0 && shown) drawBeyond(canvas, scope, target, colors);
-    if (beyond > Math.hypot(right, down)) continue;
-    if (target.id === chosen) {
-      symbols.selected(canvas, x, y, colors.selected);
-      drawEllipse(canvas, view, target, colors);
-    }
-    if (target.alarm !== UNACKNOWLEDGED || shown) {
-      if (target.status !== ACQUIRING) symbols.vector(canvas, x, y, right, down, color, danger);
-      if (danger) symbols.dangerous(canvas, x, y, color);
-      else if (target.status === ACQUIRING) symbols.acquiring(canvas, x, y, color);
-      else if (target.status === COASTING) symbols.coasting(canvas, x, y, color);
-      else symbols.tracked(canvas, x, y, color, target.danger_probability ?? 0, colors.danger);
-    }
-    if (target.number && (settings.labels === 'on' || danger || target.id === chosen)) {
-      const text = String(target.number).padStart(2, '0');
-      labels.push({ x, y, text, needed: danger || target.id === chosen });
-    }
-  }
-  for (const alarm of lostTargets(state)) {
-    if (!shown && alarm.state.endsWith('unacknowledged')) continue;
-    const [x, y] = toScreen(view, alarm.x, alarm.y);
-    symbols.lost(canvas, x, y, colors.lost);
-    if (alarm.number) labels.push({ x, y, text: nameOf(alarm).slice(2), needed: false });
-  }
-  canvas.font = '600 13px system-ui, sans-serif';
-  canvas.textBaseline = 'middle';
-  canvas.textAlign = 'left';
-  canvas.fillStyle = colors.label;
-  for (const { label, left, middle } of placed(labels, (text) => canvas.measureText(text).width)) {
-    canvas.fillText(label.text, left, middle);
-  }
-}
-
-/** A dangerous target beyond the edge: a triangle on its bearing. */
-function drawBeyond(canvas, { view, middleX, middleY, radius }, target, colors) {
-  const bearing = Math.atan2(target.x - view.originX, target.y - view.originY);
-  const [x, y] = edge(view, bearing, middleX, middleY, radius - 3);
-  const [right, down] = [(x - middleX) / radius, (y - middleY) / radius];
-  canvas.fillStyle = colors.danger;
-  canvas.beginPath();
-  canvas.moveTo(x, y);
-  canvas.lineTo(x - 16 * right - 8 * down, y - 16 * down + 8 * right);
-  canvas.lineTo(x - 16 * right + 8 * down, y - 16 * down - 8 * right);
-  canvas.fill();
-}
-
-function drawEllipse(canvas, view, target, colors) {
-  const { long, short, bearing } = ellipse(target.xx, target.xy, target.yy);
-  canvas.strokeStyle = colors.selected;
-  canvas.lineWidth = 1;
-  canvas.beginPath();
-  const [x, y] = toScreen(view, target.x, target.y);
-  const size = ELLIPSE_SIGMA * view.scale;
-  canvas.ellipse(x, y, long * size, short * size, canvasAngle(view, bearing), 0, 2 * Math.PI);
-  canvas.stroke();
 }
 
 /** The target under a pixel, or null. */

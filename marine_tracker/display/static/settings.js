@@ -2,6 +2,7 @@
 
 /** Range in NM, and the distance between its rings. */
 export const RANGES = [
+  [0.125, 0.025],
   [0.25, 0.05],
   [0.5, 0.1],
   [0.75, 0.25],
@@ -10,16 +11,22 @@ export const RANGES = [
   [6, 1],
   [12, 2],
   [24, 4],
+  [48, 8],
+  [96, 16],
 ];
 export const CHOICES = {
   orientation: ['north-up', 'head-up', 'course-up'],
+  motion: ['relative', 'true'],
   vectors: ['true', 'relative'],
   vectorMinutes: [1, 3, 6, 12, 30],
   trails: ['true', 'relative', 'off'],
-  trailMinutes: [1, 3, 6, 15, 30],
+  trailMinutes: [0.25, 0.5, 1, 3, 6, 15, 30],
   labels: ['on', 'off'],
   rings: ['on', 'off'],
-  offCentre: ['off', 'on'],
+  offCentre: ['off', 'ahead', 'place'],
+  areas: ['off', 'on'],
+  safeCourses: ['off', 'on'],
+  ellipses: ['selected', 'all', 'off'],
   palette: ['day', 'dusk', 'night'],
   sound: ['off', 'on'],
 };
@@ -29,6 +36,7 @@ const KEY = 'marine_tracker ppi';
  * @typedef {object} Settings
  * @property {number} range  index of RANGES
  * @property {string} orientation
+ * @property {string} motion
  * @property {string} vectors
  * @property {number} vectorMinutes
  * @property {string} trails
@@ -36,6 +44,11 @@ const KEY = 'marine_tracker ppi';
  * @property {string} labels
  * @property {string} rings
  * @property {string} offCentre
+ * @property {string} areas        predicted areas of danger
+ * @property {string} safeCourses  the ring of safe courses
+ * @property {string} ellipses     of uncertainty
+ * @property {number} offRight  radii from the middle to own ship, where offCentre is `place`
+ * @property {number} offDown
  * @property {string} palette
  * @property {string} sound
  */
@@ -44,8 +57,9 @@ const KEY = 'marine_tracker ppi';
 export function load(/** @type {string} */ search) {
   /** @type {Record<string, any>} */
   const settings = {
-    range: 5,
+    range: 6,
     orientation: 'north-up',
+    motion: 'relative',
     vectors: 'true',
     vectorMinutes: 6,
     trails: 'true',
@@ -53,38 +67,51 @@ export function load(/** @type {string} */ search) {
     labels: 'on',
     rings: 'on',
     offCentre: 'off',
+    areas: 'off',
+    safeCourses: 'off',
+    ellipses: 'selected',
+    offRight: 0,
+    offDown: 0,
     palette: 'day',
     sound: 'off',
   };
-  let kept = {};
-  try {
-    kept = JSON.parse(localStorage.getItem(KEY) ?? '{}');
-  } catch {
-    // Kept by somebody else, or not to be read: the defaults will do.
-  }
+  const before = kept('') ?? {};
   const asked = Object.fromEntries(new URLSearchParams(search));
-  for (const given of [kept, asked]) {
+  for (const given of [before, asked]) {
     for (const [name, choices] of Object.entries(CHOICES)) {
       const found = choices.find((choice) => String(choice) === String(given[name]));
       if (found !== undefined) settings[name] = found;
     }
   }
   const index = RANGES.findIndex(([range]) => String(range) === asked.range);
-  if (Number.isInteger(kept.range) && RANGES[kept.range]) settings.range = kept.range;
+  if (Number.isInteger(before.range) && RANGES[before.range]) settings.range = before.range;
   if (index >= 0) settings.range = index;
+  if (Math.hypot(before.offRight, before.offDown) <= 0.75) {
+    Object.assign(settings, { offRight: before.offRight, offDown: before.offDown });
+  }
   return /** @type {Settings} */ (settings);
 }
 
-export function keep(/** @type {Settings} */ settings) {
+/** What was kept under a name, '' for the settings; null where there is nothing to be read. */
+export function kept(/** @type {string} */ name) {
   try {
-    localStorage.setItem(KEY, JSON.stringify(settings));
+    return JSON.parse(localStorage.getItem(`${KEY} ${name}`.trim()) ?? 'null');
+  } catch {
+    return null; // kept by somebody else, or not to be read: the defaults will do
+  }
+}
+
+export function keep(/** @type {unknown} */ value, name = '') {
+  try {
+    localStorage.setItem(`${KEY} ${name}`.trim(), JSON.stringify(value));
   } catch {
     // Not allowed here: they hold until the page is closed.
   }
 }
 
-/** The choice after the present one. */
+/** The choice after the present one; own ship's own place only where she was put somewhere. */
 export function next(/** @type {Settings} */ settings, /** @type {string} */ name) {
-  const choices = CHOICES[name];
+  const put = name !== 'offCentre' || settings.offRight || settings.offDown;
+  const choices = put ? CHOICES[name] : CHOICES[name].filter((choice) => choice !== 'place');
   return choices[(choices.indexOf(settings[name]) + 1) % choices.length];
 }

@@ -1,12 +1,16 @@
-// The alarms' sound: three short tones each 7 s while an alarm waits for somebody, two tones once
-// for a warning. It can be silenced for 30 s: a new alarm sounds at once.
+// The alarms' sound: three short tones each 7 s while an alarm waits for somebody, two lower ones for
+// a warning each time the tracker says that it sounds. Cautions are silent. The tracker knows what is
+// silenced; a viewer that may not command can silence this device alone for 30 s.
 
 const AGAIN_S = 7;
 const SILENT_S = 30;
 const TONE_HZ = { alarm: 880, warning: 660 };
 const TONES = { alarm: 3, warning: 2 };
 
-const waits = (/** @type {Record<string, any>} */ alarm) => alarm.state === 'active unacknowledged';
+const sounds = (/** @type {Record<string, any>} */ alarm) =>
+  alarm.state === 'active unacknowledged';
+/** An alert, and which of its times to sound this is. */
+const key = (alarm) => `${alarm.name} ${alarm.instance ?? 0} ${alarm.sounds ?? 0}`;
 
 export class Sound {
   constructor() {
@@ -20,9 +24,9 @@ export class Sound {
 
   /** To be called often; alarms as the server tells them, now in s. */
   update(/** @type {Record<string, any>[]} */ alarms, /** @type {number} */ now) {
-    const waiting = alarms.filter(waits);
-    const fresh = waiting.filter((alarm) => !this.known.has(alarm.name));
-    this.known = new Set(waiting.map((alarm) => alarm.name));
+    const waiting = alarms.filter(sounds);
+    const fresh = waiting.filter((alarm) => !this.known.has(key(alarm)));
+    this.known = new Set(waiting.map(key));
     const loud = fresh.some((alarm) => alarm.priority === 'alarm');
     if (loud) this.until = -Infinity;
     if (now < this.until) return;

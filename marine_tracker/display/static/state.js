@@ -3,9 +3,11 @@
 // Receiving does not draw. Ages come from the server's steady clock, which stands in every
 // message, and this browser's own steady clock: what time of day either has does not matter.
 
+import { takeSpokes } from './spokes.js';
+
 export const SILENT_S = 3; // without fresh data for so long: the red cross
 const GLOW_SCANS = 12; // of plots that are kept for the afterglow
-const WINDOW = 60; // messages by which the clocks are compared
+const DRIFT = 1e-4; // of two steady clocks against each other, at most
 
 export const ACQUIRING = 0;
 export const COASTING = 2;
@@ -19,17 +21,25 @@ export const UNACKNOWLEDGED = 2;
  * @typedef {object} State
  * @property {Message|null} own
  * @property {Target[]} targets
+ * @property {[number, number, number][]} fixed  stationary objects: number, x, y
  * @property {Message|null} scan     the message that the targets came with, without its columns
  * @property {Message[]} plots       of the last scans, newest last
- * @property {Message[]} alarms
+ * @property {any} spokes           radar video of the last turn (spokes.js)
+ * @property {Message[]} alarms      in the order in which they are listed
+ * @property {Message[]} settled     alerts that are over, the newest first
+ * @property {Message|null} areas    of danger, while they are asked for
+ * @property {Message|null} ship     own ship's size, and what the picture comes from
  * @property {Message|null} trails
  * @property {Message} trial
  * @property {Record<string, Message>} health
  * @property {Message|null} limits
+ * @property {Message} zones         of the tracker, in m and rad; `error` where they are not known
+ * @property {Record<string, any>} demo  what a demo shows and offers; empty where there is none
  * @property {{commands: boolean, why: string}} role
  * @property {number} heard          s of this browser's clock; -Infinity before the first message
  * @property {number} clockError     s, how far this browser's time of day is ahead of the server's
- * @property {number[]} differences  s, of the server's clock to this browser's, of late
+ * @property {number} offset         s, the server's steady clock less this browser's
+ * @property {number} late           s that the last message was longer on its way than the quickest
  */
 
 /** @returns {State} */
@@ -37,16 +47,24 @@ export function emptyState() {
   return {
     own: null,
     targets: [],
+    fixed: [],
     scan: null,
     plots: [],
+    spokes: null,
     alarms: [],
+    settled: [],
+    areas: null,
+    ship: null,
     trails: null,
     trial: { on: false },
     health: {},
     limits: null,
+    zones: { zones: [], error: '' },
+    demo: {},
     role: { commands: false, why: '' },
     heard: -Infinity,
-    differences: [],
+    offset: -Infinity,
+    late: 0,
     clockError: 0,
   };
 }
@@ -56,12 +74,17 @@ export function emptyState() {
  * @param {State} state @param {Message} message @param {number} local s of this browser's clock
  */
 export function receive(state, message, local) {
+  // The message that was least on its way tells the server's time best. However long others wait
+  // in a slow network after it: their age is not forgotten.
+  const difference = message.now - local;
+  const held = state.offset - DRIFT * Math.max(local - state.heard, 0);
+  state.offset = Math.max(Number.isFinite(held) ? held : difference, difference);
+  state.late = state.offset - difference;
   state.heard = local;
-  state.differences.push(message.now - local);
-  if (state.differences.length > WINDOW) state.differences.shift();
-  switch (message.kind) {
+  switch (message.kind.replace(/\d+$/, '')) {
     case 'targets':
       state.targets = rows(message.columns);
+      state.fixed = message.fixed ?? [];
       state.scan = {
         at: message.at,
         time: message.time,
@@ -69,14 +92,22 @@ export function receive(state, message, local) {
       };
       break;
     case 'plots':
-      if (state.plots.length && message.stamp < state.plots[state.plots.length - 1].stamp) {
-        state.plots = []; // time went back: another run
-      }
-      state.plots.push(message);
-      if (state.plots.length > GLOW_SCANS) state.plots.shift();
+      takePlots(state, message);
+      break;
+    case 'spokes':
+      takeSpokes(state, message);
       break;
     case 'alarms':
       state.alarms = message.alarms;
+      break;
+    case 'alarms_past':
+      state.settled = message.alarms;
+      break;
+    case 'demo':
+      if (state.demo.run !== undefined && message.demo.run !== state.demo.run) {
+        Object.assign(state, { targets: [], scan: null, plots: [], spokes: null, trails: null }); // another run
+      }
+      state.demo = message.demo;
       break;
     case 'health':
       state.health = message.parts;
@@ -88,25 +119,40 @@ export function receive(state, message, local) {
       state.clockError = Date.now() / 1000 - message.utc || 0;
       break;
     case 'own':
+      state.own = { wx: message.vx, wy: message.vy, stabilised: 'ground', ...message };
+      break;
     case 'trails':
     case 'trial':
     case 'limits':
+    case 'ship':
+    case 'areas':
+    case 'zones':
       state[message.kind] = message;
       break;
   }
 }
 
+/** Of each radar the newest scans; where its time goes back, it is another run. */
+function takePlots(/** @type {State} */ state, /** @type {Message} */ message) {
+  const radar = message.radar ?? 0;
+  const of = state.plots.filter((scan) => (scan.radar ?? 0) === radar);
+  if (of.length && message.stamp < of[of.length - 1].stamp) state.plots = [];
+  else if (of.length >= GLOW_SCANS) state.plots.splice(state.plots.indexOf(of[0]), 1);
+  state.plots.push(message);
+}
+
 /** After a new connection the clocks are compared anew: it may be another server. */
 export function reconnected(/** @type {State} */ state) {
-  state.differences = [];
+  state.offset = -Infinity;
+  state.late = 0;
 }
 
 /**
- * The server's time now, s. The message that was least on its way tells it best.
+ * The server's time now, s.
  * @param {State} state @param {number} local s
  */
 export function serverNow(state, local) {
-  return local + Math.max(...state.differences);
+  return local + state.offset;
 }
 
 /**
@@ -117,6 +163,7 @@ export function staleness(state, local) {
   if (!Number.isFinite(state.heard)) return 'No connection yet';
   const silent = local - state.heard;
   if (silent >= SILENT_S) return `No connection for ${Math.floor(silent)} s`;
+  if (state.late >= SILENT_S) return `The network is ${Math.floor(state.late)} s late`;
   const now = serverNow(state, local);
   if (!state.own) return 'No own ship yet';
   const ownAge = now - state.own.at;
@@ -140,9 +187,19 @@ export function nameOf(target) {
   return target.number ? `TT${String(target.number).padStart(2, '0')}` : `Q${target.id}`;
 }
 
+/** Whether somebody has still to acknowledge an alert. @param {Message} alarm */
+export const waits = (alarm) =>
+  alarm.state.endsWith('unacknowledged') || alarm.state === 'active silenced';
+
 /** Alerts that somebody has still to acknowledge. @param {State} state */
 export function unacknowledged(state) {
-  return state.alarms.filter((alarm) => alarm.state.endsWith('unacknowledged'));
+  return state.alarms.filter(waits);
+}
+
+/** Numbers of the targets in guard zones that nobody has acknowledged. @param {State} state */
+export function newTargets(state) {
+  const found = state.alarms.filter((alarm) => alarm.kind === 'new target' && waits(alarm));
+  return new Set(found.map((alarm) => alarm.number));
 }
 
 /** Where targets were lost, until that is acknowledged. @param {State} state */

@@ -1,36 +1,22 @@
 // What is drawn around and over the picture: bearing scale, cursor, markers, a trial's courses.
 
-import { canvasAngle, edge, radians, toScreen } from './geometry.js';
+import { drawRing } from './dangers.js';
+import { edge, radians, toScreen, turned } from './geometry.js';
 
 /**
  * What the viewer has marked.
  * @typedef {object} Marks
  * @property {number|null} id           of the selected target's track
  * @property {number[]|null} cursor     map position, m
- * @property {number[][]} lines         range, m, and bearing, rad: electronic bearing lines
  * @property {number[]|null} drag       px, to where own ship's vector is being dragged
+ * @property {import('./tools.js').Tools} tools
+ * @property {import('./zones.js').Draft|null} draft  the zone that is being drawn or changed
+ * @property {number[]|null} asked      map position, m, that was asked about
+ * @property {{heading: number, graphics: number}} hidden  local s until which they are not drawn
  */
 
-/** Cursor, bearing lines with their range markers, and the vector that is being dragged. */
-export function drawMarks(
-  canvas,
-  { view, middleX, middleY, radius },
-  colors,
-  /** @type {Marks} */ marks,
-) {
-  marks.lines.forEach(([range, bearing], place) => {
-    canvas.strokeStyle = colors.marker;
-    canvas.lineWidth = 1.2;
-    canvas.setLineDash(place ? [3, 5] : [9, 5]);
-    canvas.beginPath();
-    canvas.moveTo(view.centreX, view.centreY);
-    canvas.lineTo(...edge(view, bearing, middleX, middleY, radius));
-    canvas.stroke();
-    canvas.beginPath();
-    canvas.arc(view.centreX, view.centreY, range * view.scale, 0, 2 * Math.PI);
-    canvas.stroke();
-    canvas.setLineDash([]);
-  });
+/** The cursor, and the vector that is being dragged. */
+export function drawMarks(canvas, { view }, colors, /** @type {Marks} */ marks) {
   if (marks.drag) {
     canvas.strokeStyle = colors.safe;
     canvas.lineWidth = 2;
@@ -57,8 +43,12 @@ export function drawMarks(
   }
 }
 
-/** The bearing scale around the picture: marks each 5 degrees, numbers each 30. */
-export function drawScale(canvas, { view, middleX, middleY, radius }, colors) {
+/**
+ * The bearing scale around the picture: marks each 5 degrees, numbers each 30. From true north, or,
+ * where that is not known, from the bow.
+ */
+export function drawScale(canvas, { view, middleX, middleY, radius, north }, colors) {
+  const zero = north ? 0 : view.up;
   canvas.strokeStyle = colors.scale;
   canvas.fillStyle = colors.scale;
   canvas.font = '600 12px system-ui, sans-serif';
@@ -69,7 +59,7 @@ export function drawScale(canvas, { view, middleX, middleY, radius }, colors) {
   canvas.arc(middleX, middleY, radius, 0, 2 * Math.PI);
   for (let mark = 0; mark < 360; mark++) {
     if (mark % 5 && radius < 250) continue;
-    const [x, y] = edge(view, radians(mark), middleX, middleY, radius);
+    const [x, y] = edge(view, zero + radians(mark), middleX, middleY, radius);
     const length = mark % 10 === 0 ? 10 : mark % 5 === 0 ? 6 : 3;
     const out = [(x - middleX) / radius, (y - middleY) / radius];
     canvas.moveTo(x, y);
@@ -81,35 +71,37 @@ export function drawScale(canvas, { view, middleX, middleY, radius }, colors) {
   canvas.stroke();
 }
 
+/** The S of a picture that is simulated. */
+export function drawSimulation(canvas, { middleX, middleY, radius }, colors) {
+  canvas.fillStyle = colors.label;
+  canvas.font = '700 40px system-ui, sans-serif';
+  canvas.textAlign = 'center';
+  canvas.textBaseline = 'middle';
+  canvas.fillText('S', middleX - 44, middleY + radius - 34);
+}
+
 /** Safe and unsafe courses of a trial around the picture, and the T that says that it is one. */
 export function drawTrial(canvas, state, scope, colors) {
   const { view, middleX, middleY, radius } = scope;
-  const around = 5;
-  canvas.lineWidth = 6;
-  const safe = new Set();
-  for (const [first, last] of state.trial.safe_deg ?? []) {
-    for (let k = 0; k <= (last - first + 360) % 360; k++) safe.add((first + k) % 360);
-  }
-  for (let course = 0; course < 360; course++) {
-    canvas.strokeStyle = safe.has(course) ? colors.safe : colors.danger;
-    if (!safe.has(course) && course % 4 > 1) continue; // broken: not by colour alone
-    const angle = canvasAngle(view, radians(course));
-    canvas.beginPath();
-    canvas.arc(middleX, middleY, radius - around, angle, angle + radians(1.2));
-    canvas.stroke();
-  }
+  if (state.trial.safe_deg) drawRing(canvas, scope, colors, state.trial.safe_deg);
   canvas.fillStyle = colors.danger;
   canvas.font = '700 40px system-ui, sans-serif';
   canvas.textAlign = 'center';
+  canvas.textBaseline = 'middle';
   canvas.fillText('T', middleX, middleY + radius - 34);
-  if (state.trial.course_deg !== null && state.own) {
-    canvas.strokeStyle = colors.safe;
-    canvas.lineWidth = 2;
-    canvas.setLineDash([2, 6]);
-    canvas.beginPath();
-    canvas.moveTo(view.centreX, view.centreY);
-    canvas.lineTo(...edge(view, radians(state.trial.course_deg), middleX, middleY, radius));
-    canvas.stroke();
-    canvas.setLineDash([]);
-  }
+  const { own, trial } = state;
+  if (typeof trial.course_deg !== 'number' || !own) return;
+  // On as before until the delay is over, then on the new course.
+  const wait = 60 * (trial.countdown_min ?? 0);
+  const [x, y] = turned(view, wait * (own.wx ?? 0), wait * (own.wy ?? 0));
+  const begin = { ...view, centreX: view.centreX + x, centreY: view.centreY + y };
+  canvas.strokeStyle = colors.safe;
+  canvas.lineWidth = 2;
+  canvas.setLineDash([2, 6]);
+  canvas.beginPath();
+  canvas.moveTo(view.centreX, view.centreY);
+  canvas.lineTo(begin.centreX, begin.centreY);
+  canvas.lineTo(...edge(begin, radians(trial.course_deg), middleX, middleY, radius));
+  canvas.stroke();
+  canvas.setLineDash([]);
 }

@@ -27,14 +27,24 @@ export function tracked(/** @type {Canvas} */ canvas, x, y, color, likely, dange
   circle(canvas, x, y, RADIUS);
 }
 
-/** Being acquired: a circle in segments. */
+/** Being acquired by hand: a circle in segments. */
 export function acquiring(/** @type {Canvas} */ canvas, x, y, color) {
   canvas.lineWidth = THIN;
+  segments(canvas, x, y, color, RADIUS);
+}
+
+/** Acquired in a guard zone: the same, bold; the caller leaves it out now and then. */
+export function caught(/** @type {Canvas} */ canvas, x, y, color) {
+  canvas.lineWidth = BOLD;
+  segments(canvas, x, y, color, RADIUS + 2);
+}
+
+function segments(canvas, x, y, color, radius) {
   canvas.strokeStyle = color;
   for (let part = 0; part < 4; part++) {
     const middle = (part * Math.PI) / 2 + Math.PI / 4;
     canvas.beginPath();
-    canvas.arc(x, y, RADIUS, middle - 0.5, middle + 0.5);
+    canvas.arc(x, y, radius, middle - 0.5, middle + 0.5);
     canvas.stroke();
   }
 }
@@ -118,4 +128,62 @@ export function ownShip(/** @type {Canvas} */ canvas, x, y, color) {
   canvas.strokeStyle = color;
   circle(canvas, x, y, 4);
   circle(canvas, x, y, 8);
+}
+
+/** Heads at the end of own ship's vector: one through the water, two over ground. */
+export function arrowheads(/** @type {Canvas} */ canvas, x, y, right, down, color, heads) {
+  const length = Math.hypot(right, down);
+  if (length < 2 * RADIUS) return;
+  const [ahead, abeam] = [right / length, down / length];
+  canvas.lineWidth = BOLD - 1;
+  canvas.strokeStyle = color;
+  canvas.beginPath();
+  for (let head = 0; head < heads; head++) {
+    const [tipX, tipY] = [x + right - 7 * head * ahead, y + down - 7 * head * abeam];
+    canvas.moveTo(tipX - 8 * ahead - 5 * abeam, tipY - 8 * abeam + 5 * ahead);
+    canvas.lineTo(tipX, tipY);
+    canvas.lineTo(tipX - 8 * ahead + 5 * abeam, tipY - 8 * abeam - 5 * ahead);
+  }
+  canvas.stroke();
+}
+
+/**
+ * A hull to scale, pointed at the bow.
+ * @param {Canvas} canvas @param {number} x px, of the point that `bow` is measured from
+ * @param {{length: number, beam: number, bow: number, heading: number}} hull  m, rad
+ * @param {import('./geometry.js').View} view
+ */
+export function hull(canvas, x, y, { length, beam, bow, heading }, view, color) {
+  const shoulder = bow - Math.min(beam, length / 3);
+  canvas.save();
+  canvas.translate(x, y);
+  canvas.rotate(heading - view.up);
+  canvas.scale(view.scale, view.scale);
+  canvas.beginPath();
+  canvas.moveTo(0, -bow);
+  for (const [right, ahead] of [
+    [beam / 2, shoulder],
+    [beam / 2, bow - length],
+    [-beam / 2, bow - length],
+    [-beam / 2, shoulder],
+  ]) {
+    canvas.lineTo(right, -ahead);
+  }
+  canvas.closePath();
+  canvas.restore();
+  canvas.lineWidth = THIN;
+  canvas.strokeStyle = color;
+  canvas.stroke();
+}
+
+/** The reference point in own ship's outline. */
+export function cross(/** @type {Canvas} */ canvas, x, y, color) {
+  canvas.lineWidth = THIN;
+  canvas.strokeStyle = color;
+  canvas.beginPath();
+  canvas.moveTo(x - 4, y);
+  canvas.lineTo(x + 4, y);
+  canvas.moveTo(x, y - 4);
+  canvas.lineTo(x, y + 4);
+  canvas.stroke();
 }

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...arpa import alarms
 from ...arpa.alarms import DANGER
-from ...arpa.alerts import ACTIVE_ACKNOWLEDGED, ACTIVE_UNACKNOWLEDGED
+from ...arpa.alerts import ACTIVE, ACTIVE_UNACKNOWLEDGED
 from ...arpa.cpa import cpa_of
 from ...parameters import ArpaParameters, TrackerParameters, from_mapping
 from ...service import Service
@@ -89,9 +89,7 @@ def keep(scenario: Scenario, seed: int, swing: float = 0.0, **parameters: Any) -
             sounded.append(now)
             whose.append(its.get(track, NOBODY))
         alerts = picture.alerts
-        active = (alerts.kind == DANGER) & np.isin(
-            alerts.state, (ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED)
-        )
+        active = (alerts.kind == DANGER) & np.isin(alerts.state, ACTIVE)
         told = {its.get(track, NOBODY) for track in alerts.id[active].tolist()} - {NOBODY}
         alarmed[k, list(told)] = True
     return Watch(time, dangerous, cpa, alarmed, np.array(sounded), np.array(whose, np.int64))

@@ -4,13 +4,16 @@ import { test } from 'node:test';
 
 const page = new URL('../../../marine_tracker/display/static/', import.meta.url);
 const geometry = await import(new URL('geometry.js', page));
-const { scopeOf, targetAt } = await import(new URL('picture.js', page));
+const { targetAt } = await import(new URL('picture.js', page));
+const { scopeOf } = await import(new URL('scope.js', page));
+const held = (courseUp, anchor = null) => ({ courseUp, anchor });
 const { NAUTICAL_MILE, radians, degrees, wrap, toScreen, toMap, rangeBearing, edge } = geometry;
 
 const HEADINGS = [0, 37, 90, 143.5, 180, 271, 359.6];
 const own = (heading) => ({ x: 41234.5, y: -7020.25, vx: 3, vy: 4, heading });
 const settings = (more) => ({
-  range: 4,
+  range: 5,
+  motion: 'relative',
   orientation: 'north-up',
   offCentre: 'off',
   ...more,
@@ -18,7 +21,7 @@ const settings = (more) => ({
 const near = (a, b, within) => assert.ok(Math.abs(a - b) <= within, `${a} is not ${b}`);
 
 for (const orientation of ['north-up', 'head-up', 'course-up']) {
-  for (const offCentre of ['off', 'on']) {
+  for (const offCentre of ['off', 'ahead', 'place']) {
     test(`pixel to map and back, ${orientation}, off-centre ${offCentre}`, () => {
       for (const heading of HEADINGS) {
         for (const [width, height] of [
@@ -29,10 +32,10 @@ for (const orientation of ['north-up', 'head-up', 'course-up']) {
           const state = { own: own(radians(heading)) };
           const { view } = scopeOf(
             state,
-            settings({ orientation, offCentre }),
+            settings({ orientation, offCentre, offRight: -0.42, offDown: 0.31 }),
             width,
             height,
-            radians(211),
+            held(radians(211)),
           );
           for (const [px, py] of [
             [12, 700],
@@ -55,11 +58,11 @@ test('north-up has a target on 045 up and to the right, head-up one on the headi
     state.own.x + 1500 * Math.sin(radians(bearing)),
     state.own.y + 1500 * Math.cos(radians(bearing)),
   ];
-  let scope = scopeOf(state, settings({}), 800, 800, 0);
+  let scope = scopeOf(state, settings({}), 800, 800, held(0));
   let [x, y] = toScreen(scope.view, ...place(45));
   near(x - 400, 400 - y, 1e-6);
   assert.ok(x > 450);
-  scope = scopeOf(state, settings({ orientation: 'head-up' }), 800, 800, 0);
+  scope = scopeOf(state, settings({ orientation: 'head-up' }), 800, 800, held(0));
   [x, y] = toScreen(scope.view, ...place(127));
   near(x, 400, 1e-6);
   near(400 - y, (1500 / (3 * NAUTICAL_MILE)) * scope.radius, 1e-6);
@@ -71,7 +74,7 @@ test('north-up has a target on 045 up and to the right, head-up one on the headi
 test('a click on the screen has the range and bearing of what is drawn there', () => {
   for (const heading of HEADINGS) {
     const state = { own: own(radians(heading)) };
-    const { view } = scopeOf(state, settings({ orientation: 'head-up' }), 700, 700, 0);
+    const { view } = scopeOf(state, settings({ orientation: 'head-up' }), 700, 700, held(0));
     for (const bearing of [0.4, 88, 179.5, 260, 345]) {
       const away = 2345;
       const [px, py] = toScreen(
@@ -92,7 +95,7 @@ test('a yawing ship leaves a pier where it is, in all orientations but head-up i
     const places = [-20, -7, 0, 11, 20].map((yaw) => {
       const state = { own: own(radians(80 + yaw)) };
       return toScreen(
-        scopeOf(state, settings({ orientation }), 900, 700, radians(80)).view,
+        scopeOf(state, settings({ orientation }), 900, 700, held(radians(80))).view,
         ...pier,
       );
     });
@@ -103,17 +106,18 @@ test('a yawing ship leaves a pier where it is, in all orientations but head-up i
   }
 });
 
-test('without a heading the picture is north-up and says so', () => {
-  const scope = scopeOf(
-    { own: own(null) },
-    settings({ orientation: 'head-up', offCentre: 'on' }),
-    500,
-    500,
-    1,
-  );
-  assert.equal(scope.orientation, 'north-up');
-  assert.equal(scope.view.up, 0);
-  assert.equal(scope.view.centreX, 250);
+test('without a heading the picture is head-up by the last one, and north is not known', () => {
+  for (const orientation of ['north-up', 'course-up', 'head-up']) {
+    const lost = { ...own(null), bow: radians(61) };
+    const asked = settings({ orientation, offCentre: 'ahead', motion: 'true' });
+    const scope = scopeOf({ own: lost }, asked, 500, 500, held(1, [0, 0]));
+    assert.equal(scope.orientation, 'head-up');
+    assert.equal(scope.motion, 'relative');
+    assert.equal(scope.north, false);
+    assert.equal(scope.view.up, radians(61));
+    near(scope.view.centreX, 250, 1e-9);
+    near(scope.view.centreY, 250 + 0.5 * scope.radius, 1e-9);
+  }
 });
 
 test('the nearest target within reach is the one that is clicked', () => {
@@ -126,7 +130,13 @@ test('the nearest target within reach is the one that is clicked', () => {
       { id: 8, x: 41234.5 + 505, y: -7020.25, status: 3 },
     ],
   };
-  const { view } = scopeOf(state, settings({ orientation: 'course-up' }), 600, 600, radians(200));
+  const { view } = scopeOf(
+    state,
+    settings({ orientation: 'course-up' }),
+    600,
+    600,
+    held(radians(200)),
+  );
   assert.equal(targetAt(state, view, ...toScreen(view, 41234.5 + 515, -7020.25)).id, 5);
   assert.equal(targetAt(state, view, ...toScreen(view, 41234.5 + 552, -7020.25)).id, 6);
   assert.equal(targetAt(state, view, ...toScreen(view, 41234.5 - 2000, -7020.25)), null);
@@ -134,7 +144,7 @@ test('the nearest target within reach is the one that is clicked', () => {
 
 test('the edge of the circle is met on its bearing, off-centre too', () => {
   const state = { own: own(radians(300)) };
-  const scope = scopeOf(state, settings({ offCentre: 'on' }), 640, 640, 0);
+  const scope = scopeOf(state, settings({ offCentre: 'ahead' }), 640, 640, held(0));
   for (const bearing of [0, 61, 175, 300]) {
     const [x, y] = edge(scope.view, radians(bearing), scope.middleX, scope.middleY, scope.radius);
     near(Math.hypot(x - scope.middleX, y - scope.middleY), scope.radius, 1e-9);

@@ -39,7 +39,28 @@ test('a warning sounds once, a caution never', () => {
   assert.deepEqual(sound.told, [['warning', 5]]);
 });
 
-test('silenced for 30 s, but not for a new alarm', () => {
+test('a warning that sounds again by the tracker, and an alarm whose silence has ended, are heard', () => {
+  const sound = heard();
+  const one = alert('lost', 'warning');
+  sound.update([{ ...one, instance: 3, sounds: 1 }], 1);
+  sound.update([{ ...one, instance: 3, sounds: 1 }], 200);
+  sound.update([{ ...one, instance: 3, sounds: 2 }], 301);
+  assert.deepEqual(sound.told, [
+    ['warning', 1],
+    ['warning', 301],
+  ]);
+  const danger = { ...alert('TT08: danger', 'alarm'), instance: 5 };
+  sound.update([{ ...danger, sounds: 1 }], 400);
+  sound.update([{ ...danger, sounds: 1, state: 'active silenced' }], 402);
+  sound.update([{ ...danger, sounds: 1, state: 'active silenced' }], 420);
+  sound.update([{ ...danger, sounds: 2 }], 432);
+  assert.deepEqual(sound.told.slice(2), [
+    ['alarm', 400],
+    ['alarm', 432],
+  ]);
+});
+
+test('this device silenced for 30 s, but not for a new alarm', () => {
   const sound = heard();
   const first = alert('TT05: danger', 'alarm');
   sound.update([first], 10);

@@ -54,10 +54,45 @@ test('before the first data the picture is not live either', () => {
 test('messages that were long on their way do not change the time, and a new server does', () => {
   const state = live(20);
   receive(state, { kind: 'pulse', now: SERVER + 20.2 }, 22.2); // 2 s late
-  assert.ok(Math.abs(serverNow(state, 23) - (SERVER + 23)) < 1e-9);
+  assert.ok(Math.abs(serverNow(state, 23) - (SERVER + 23)) < 0.001); // clocks may drift a little
   reconnected(state);
   receive(state, { kind: 'pulse', now: 7 }, 24);
   assert.ok(Math.abs(serverNow(state, 25) - 8) < 1e-9);
+});
+
+test('a network that gets slower and slower makes no picture young, however long it lasts', () => {
+  const state = live(20);
+  let stale = 0;
+  for (let sent = 20; sent < 140; sent += 0.1) {
+    const local = sent + 0.1 * (sent - 20); // 12 s behind at the end
+    const now = SERVER + sent;
+    receive(state, { kind: 'own', now, at: now, x: 0, y: 0, vx: 0, vy: 0, heading: 1 }, local);
+    receive(state, { kind: 'targets', now, at: now, time: 9, period: 2, columns: none }, local);
+    stale = staleness(state, local) ? stale || local - sent : 0;
+  }
+  assert.ok(Math.abs(stale - 3) < 0.2, `stale at ${stale} s`);
+  assert.ok(Math.abs(state.late - 12) < 0.1);
+  assert.match(staleness(state, 152), /network is 11 s late/);
+});
+
+test('what waited in a network that was dead comes late, and is not taken for live', () => {
+  const state = live(20);
+  for (let sent = 20; sent < 95; sent += 0.1) {
+    const now = SERVER + sent;
+    receive(state, { kind: 'own', now, at: now, x: 0, y: 0, vx: 0, vy: 0, heading: 1 }, 95);
+    receive(state, { kind: 'targets', now, at: now, time: 9, period: 2, columns: none }, 95);
+    const boundary = Math.abs(sent - 92) < 0.05;
+    if (!boundary) assert.equal(staleness(state, 95) === '', sent > 92, `sent at ${sent}`);
+  }
+});
+
+test('clocks that drift against each other are followed', () => {
+  const state = live(0);
+  for (let local = 1; local < 7200; local++) {
+    const now = SERVER + local * (1 - 5e-5); // 0.36 s in two hours
+    receive(state, { kind: 'pulse', now, at: now }, local);
+  }
+  assert.ok(state.late < 0.01);
 });
 
 test('plots of another run push those of the last one out', () => {

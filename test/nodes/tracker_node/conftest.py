@@ -1,5 +1,8 @@
 """A tracker node in this process over real DDS, and all that it takes to feed it and to listen."""
 
+import asyncio
+import json
+
 import numpy as np
 import pytest
 
@@ -154,7 +157,7 @@ class Bridge(Rig):
     def __init__(self, graph, node_helpers, sea, **parameters):
         super().__init__(graph, node_helpers, sea, **parameters)
         self._truth = sea[2]
-        self.alarms = self.listen(DiagnosticArray, topics.ALARMS, topics.latched(10))
+        self.alarms = self.listen(DiagnosticArray, topics.ALARMS, topics.latched(100))
         self._played = 0
         self._commands = {}
 
@@ -353,3 +356,74 @@ def core():
             yield output.picture
 
     return run
+
+
+class Viewer:
+    """A viewer's connection: the newest message of each kind, and answers to commands."""
+
+    def __init__(self, link):
+        self.link, self.newest, self.answers = link, {}, []
+
+    async def until(self, condition, patience=60):
+        async def read():
+            while not condition(self):
+                heard = json.loads((await self.link.receive()).data)
+                self.newest[heard['kind']] = heard
+                if heard['kind'] == 'answer':
+                    self.answers.append(heard)
+
+        await asyncio.wait_for(read(), patience)
+
+    async def command(self, command, /, **values):
+        count = len(self.answers)
+        await self.link.send_json({'command': command, **values})
+        await self.until(lambda me: len(me.answers) > count)
+        return self.answers[-1]
+
+
+@pytest.fixture(scope='session')
+def look():
+    return looked
+
+
+def looked(display, act, token='pass'):
+    """Run act(viewer) with a connection to the display."""
+
+    async def run():
+        base = display.server.url.split('#')[0]
+        import aiohttp  # of the extra `display`
+
+        async with aiohttp.ClientSession() as session, session.ws_connect(base + 'live') as link:
+            viewer = Viewer(link)
+            await link.send_json({'command': 'login', 'token': token})
+            await viewer.until(lambda me: 'role' in me.newest)
+            return await act(viewer)
+
+    return asyncio.run(run())
+
+
+@pytest.fixture
+def display(graph, node_helpers):
+    """display(tracker rig, **parameters): a PPI that hears it, and is heard."""
+    from marine_tracker.nodes.ppi_display_node import PpiDisplayNode
+
+    wait, _ = node_helpers
+    made = []
+
+    def make(here, **parameters):
+        node = graph.make(PpiDisplayNode, address='127.0.0.1:0', token='pass', **parameters)
+        made.append(node)
+        for topic in (topics.TARGETS_CLOUD, topics.ALARMS, topics.ACQUIRE, topics.CANCEL):
+            wait(
+                lambda topic=topic: (
+                    here.tracker.count_publishers(topic) and (node.count_subscribers(topic))
+                )
+            )
+        wait(lambda: here.tracker._output._to_numeric.get_subscription_count())
+        wait(lambda: here.own_ship.get_subscription_count() > 1)
+        wait(lambda: here.radar.get_subscription_count() > 1)
+        return node
+
+    yield make
+    for node in made:
+        node.close()

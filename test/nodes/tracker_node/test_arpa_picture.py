@@ -182,7 +182,7 @@ def test_two_radars_have_their_own_targets_alarms_and_commands(bridge, sea):
     danger = f'{bow.name_of(1)}: danger'
     assert bow.standing() == {danger: 'active unacknowledged'} and not len(stern.alarms)
     assert {entry.hardware_id for entry in (*bow.targets[-1].status, *bow.alarms[-1].status)} == {
-        'bow/radar'
+        'bow/tracker'
     }
     assert stern.ask(topics.CANCEL_ALL) == '3 targets cancelled'
     for here, count in ((bow, 3), (stern, 0)):

@@ -206,7 +206,7 @@ def test_bad_radial_speeds_are_counted_and_their_plots_kept(rig, clean, speed, r
     here.play(clean[0][:3])
     here.play([with_speeds(clean[0][3], speed)])
     assert here.told(reason) == 1
-    assert here.tracker.inputs[0]._plots_in_scan == len(clean[0][3].plots.time)
+    assert here.tracker.inputs[0].plots_in_scan == len(clean[0][3].plots.time)
     assert not here.tracker.failures.counts
 
 

@@ -97,7 +97,7 @@ def test_diagnostics_come_each_second_with_names_and_hardware_ids(rig, clean):
     here.play(clean[0][:8])
     here.wait(lambda: diagnostics[-1].status[0].values[0].value == '8')
     entries = {entry.name: entry for entry in diagnostics[-1].status}
-    assert all(entry.hardware_id == 'radar' for entry in entries.values())
+    assert all(entry.hardware_id == 'tracker' for entry in entries.values())
     assert [entry.level for entry in entries.values()] == [DiagnosticStatus.OK] * 3
     values = {pair.key: pair.value for entry in entries.values() for pair in entry.values}
     assert values['scans taken'] == '8' and values['samples'] == '8'

@@ -7,11 +7,13 @@ pytest.importorskip('rclpy')
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import String
 
-from marine_tracker.nodes import convert, faults, topics
+from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.nmea_output_node import NmeaOutputNode
 from marine_tracker.nodes.radar_simulator_node import RadarSimulatorNode
 from marine_tracker.nodes.tracker_node import TrackerNode
+from marine_tracker.recording.message_faults import BAD_STAMP, WRONG_FRAME
 from marine_tracker.tracking import own_ship
+from marine_tracker.tracking.scan_input import NO_STAMP
 
 SPEED, SECOND = 13.0, 1_000_000_000  # kn, of own ship; ns
 ANCHORED, CROSSING = (2.3, 0, 0, 0), (3, 60, 270, 9)
@@ -155,7 +157,7 @@ def test_own_ship_without_stamps_is_timed_as_she_arrives(watch):
     here.sail(20)
     row = here.rows()[here.name_of(1)]
     assert float(row['range_nm']) < 2.2  # she follows: not at rest where she began
-    assert here.tracker.bad_own_ship.counts[faults.NO_STAMP] == 20
+    assert here.tracker.bad_own_ship.counts[NO_STAMP] == 20
     here.wait(lambda: 'without a stamp' in status(here, 'tracker: own ship').message)
 
 
@@ -166,9 +168,9 @@ def test_plots_in_a_frame_of_nobody_are_refused_by_name(watch, frame):
         message = convert.plots_to_cloud(scan, here.stamp(scan.start))
         message.header.frame_id = frame
         here.radar.publish(message)
-    here.wait(lambda: here.told(faults.WRONG_FRAME) == 3)
+    here.wait(lambda: here.told(WRONG_FRAME) == 3)
     assert here.tracker.inputs[0].taken == 0
-    here.wait(lambda: faults.WRONG_FRAME in status(here, 'tracker: input').message)
+    here.wait(lambda: WRONG_FRAME in status(here, 'tracker: input').message)
     here.awaits('plots missing', 'active unacknowledged')
 
 
@@ -188,7 +190,7 @@ def test_plots_in_map_or_own_ships_frame_are_taken(watch, frame):
         message.header.frame_id = frame
         here.radar.publish(message)
     here.wait(lambda: here.tracker.inputs[0].taken == 4)
-    assert not here.told(faults.WRONG_FRAME)
+    assert not here.told(WRONG_FRAME)
 
 
 def test_odometry_in_another_frame_is_refused_by_name_and_missed(watch):
@@ -201,8 +203,8 @@ def test_odometry_in_another_frame_is_refused_by_name_and_missed(watch):
 
     here.odometry = adrift
     here.sail(4)
-    assert here.tracker.bad_own_ship.counts[faults.WRONG_FRAME] == 4
-    assert here.output._bad.counts[faults.WRONG_FRAME] == 4
+    assert here.tracker.bad_own_ship.counts[WRONG_FRAME] == 4
+    assert here.output._bad.counts[WRONG_FRAME] == 4
     here.awaits('position missing', 'active unacknowledged')
     assert said(here, 'RMC')[2] == 'V'
 
@@ -216,7 +218,7 @@ def test_stamps_with_too_many_nanoseconds_are_refused_and_tracks_live_on(watch):
     cloud.header.stamp.nanosec = odometry.header.stamp.nanosec = 3_000_000_001
     here.own_ship.publish(odometry)
     here.radar.publish(cloud)
-    here.wait(lambda: here.told(faults.BAD_STAMP) == 2)
+    here.wait(lambda: here.told(BAD_STAMP) == 2)
     here.sail(3)
     assert here.names() == before
     assert [entry.message for entry in here.targets[-1].status] == ['TRACKING'] * len(before)

@@ -1,7 +1,6 @@
 """The PPI beside a tracker over DDS: what a viewer gets and what its commands do."""
 
 import asyncio
-import json
 
 import numpy as np
 import pytest
@@ -21,74 +20,12 @@ from marine_tracker.nodes.ppi_display_node import PpiDisplayNode
 SHIPS = [(3.1, 20, 200, 12), (2.2, 300, 90, 7), (4.0, 110, 285, 15)]
 
 
-class Viewer:
-    """A viewer's connection: the newest message of each kind, and answers to commands."""
-
-    def __init__(self, link):
-        self.link, self.newest, self.answers = link, {}, []
-
-    async def until(self, condition, patience=60):
-        async def read():
-            while not condition(self):
-                heard = json.loads((await self.link.receive()).data)
-                self.newest[heard['kind']] = heard
-                if heard['kind'] == 'answer':
-                    self.answers.append(heard)
-
-        await asyncio.wait_for(read(), patience)
-
-    async def command(self, name, **values):
-        count = len(self.answers)
-        await self.link.send_json({'command': name, **values})
-        await self.until(lambda me: len(me.answers) > count)
-        return self.answers[-1]
-
-
-def look(display, act, token='pass'):
-    """Run act(viewer) with a connection to the display."""
-
-    async def run():
-        base = display.server.url.split('#')[0]
-        async with aiohttp.ClientSession() as session, session.ws_connect(base + 'live') as link:
-            viewer = Viewer(link)
-            await link.send_json({'command': 'login', 'token': token})
-            await viewer.until(lambda me: 'role' in me.newest)
-            return await act(viewer)
-
-    return asyncio.run(run())
-
-
-@pytest.fixture
-def display(graph, node_helpers):
-    """display(tracker rig, **parameters): a PPI that hears it, and is heard."""
-    wait, _ = node_helpers
-    made = []
-
-    def make(here, **parameters):
-        node = graph.make(PpiDisplayNode, address='127.0.0.1:0', token='pass', **parameters)
-        made.append(node)
-        for topic in (topics.TARGETS_CLOUD, topics.ALARMS, topics.ACQUIRE, topics.CANCEL):
-            wait(
-                lambda topic=topic: (
-                    here.tracker.count_publishers(topic) and (node.count_subscribers(topic))
-                )
-            )
-        wait(lambda: here.tracker._output._to_numeric.get_subscription_count())
-        wait(lambda: here.own_ship.get_subscription_count() > 1)
-        wait(lambda: here.radar.get_subscription_count() > 1)
-        return node
-
-    yield make
-    for node in made:
-        node.close()
-
-
 @pytest.fixture
 def sea(simulated):
     return simulated(SHIPS, 200)
 
 
-def test_a_viewer_sees_the_picture_of_the_tracker(bridge, sea, display):
+def test_a_viewer_sees_the_picture_of_the_tracker(bridge, sea, display, look):
     here = bridge(sea, cpa_limit_nm=2.0, tcpa_limit_min=60.0)
     node = display(here)
 
@@ -128,7 +65,7 @@ def test_a_viewer_sees_the_picture_of_the_tracker(bridge, sea, display):
     assert all(len(trail) == len(trails['own']) for trail in trails['targets'].values())
 
 
-def test_commands_of_the_page_reach_the_tracker(bridge, sea, display):
+def test_commands_of_the_page_reach_the_tracker(bridge, sea, display, look):
     here = bridge(sea, cpa_limit_nm=2.0, tcpa_limit_min=60.0, acquisition='nowhere')
     node = display(here)
     here.sail(8)
@@ -172,7 +109,7 @@ def test_commands_of_the_page_reach_the_tracker(bridge, sea, display):
     look(node, act)
 
 
-def test_without_a_tracker_a_command_is_answered_with_what_is_missing(graph):
+def test_without_a_tracker_a_command_is_answered_with_what_is_missing(graph, look):
     node = graph.make(PpiDisplayNode, address='127.0.0.1:0', token='pass', tracker='none_there')
     try:
 
@@ -189,12 +126,12 @@ def test_without_a_tracker_a_command_is_answered_with_what_is_missing(graph):
         node.close()
 
 
-def test_a_tracker_that_answers_late_or_never_harms_nothing(graph, node_helpers, monkeypatch):
+def test_a_tracker_that_answers_late_or_never_harms_nothing(graph, node_helpers, monkeypatch, look):
     wait, _ = node_helpers
     monkeypatch.setattr(server, 'ANSWER_S', 0.5)
     display = graph.make(PpiDisplayNode, address='127.0.0.1:0', token='pass')
     mute = Node('mute', context=graph.context)  # serves, but is not spun yet
-    for name in (topics.CANCEL_ALL, topics.ACKNOWLEDGE):
+    for name in (topics.CANCEL_ALL, topics.ACKNOWLEDGE, topics.SILENCE):
         mute.create_service(Trigger, name, lambda request, response: response)
     mute.create_service(SetParameters, 'tracker/set_parameters', lambda request, response: response)
     wait(lambda: all(client.service_is_ready() for client in display._commands._triggers.values()))
@@ -218,7 +155,7 @@ def test_a_tracker_that_answers_late_or_never_harms_nothing(graph, node_helpers,
         display.close()
 
 
-def test_alarms_go_with_their_tracker(graph, bridge, sea, display):
+def test_alarms_go_with_their_tracker(graph, bridge, sea, display, look):
     here = bridge(sea, cpa_limit_nm=2.0, tcpa_limit_min=60.0)
     node = display(here)
 
@@ -233,17 +170,41 @@ def test_alarms_go_with_their_tracker(graph, bridge, sea, display):
     look(node, act)
 
 
-def test_the_tracks_are_the_same_with_and_without_a_display(
-    graph, node_helpers, sea, bridge, display
+async def harass(address, until):
+    """Clients that mean no good, until the task has ended, and 1,000 wrong messages at least."""
+    host, port = address.split('/')[2].split(':')
+    async with aiohttp.ClientSession() as session:
+        count = 0
+        while count < 1000 or not until.done():
+            async with session.ws_connect(address + 'live') as link:
+                for k in range(250):
+                    await link.send_str(f'{{"command": "cancel_all", "id": -{k}' + '}' * (k % 3))
+                await link.send_bytes(b'\xff' * 20_000)  # ends the connection
+                count += 251
+            reader, writer = await asyncio.open_connection(host, int(port))
+            writer.write(b'GET /live HTTP/1.1\r\n' + bytes(range(256)) * 50)
+            writer.close()
+            async with session.get(address + '%2e%2e/tracker.yaml') as page:
+                assert page.status == 404
+            await asyncio.sleep(0.02)
+
+
+def test_the_tracks_are_the_same_without_a_display_with_one_and_under_bad_clients(
+    graph, node_helpers, sea, bridge, display, look
 ):
     clouds = []
-    for with_display in (False, True):
+    for with_display in (False, 'display', 'bad clients'):
         here = bridge(sea)
         heard = here.listen(PointCloud2, topics.TRACKS_CLOUD)
         node = display(here) if with_display else None
 
-        async def act(viewer, here=here):
-            await asyncio.to_thread(here.sail, 20)
+        async def act(viewer, here=here, node=node, bad=with_display == 'bad clients'):
+            sailing = asyncio.ensure_future(asyncio.to_thread(here.sail, 20))
+            if bad:
+                await harass(node.server.url.split('#')[0], sailing)
+                assert node.server.counts[server.BAD] >= 1000
+                assert not node.failures.counts
+            await sailing
 
         if node:
             look(node, act)
@@ -252,7 +213,7 @@ def test_the_tracks_are_the_same_with_and_without_a_display(
         here.wait(lambda heard=heard: len(heard) >= 20)
         clouds.append([bytes(message.data) for message in heard.messages])
         graph.executor.remove_node(here.tracker)
-    assert clouds[0] == clouds[1]
+    assert clouds[0] == clouds[1] == clouds[2]
     assert len(clouds[0][-1]) > 100
 
 

@@ -44,9 +44,9 @@ def test_the_cloud_holds_the_numbers_of_the_picture(rig, clean):
             variance = picture.motion.covariance[:, column, column]
             assert rows[name + name].tolist() == np.float32(variance).tolist()
         for name in ('range', 'bearing', 'speed', 'cpa', 'tcpa', 'bow_range', 'bow_time'):
-            for ending, other in (('', ''), ('_sd', '_sigma')):
-                wanted = np.float32(getattr(picture.approach, name + other))
-                assert np.array_equal(rows[name + ending], wanted, equal_nan=True)
+            value, sd = (getattr(picture.approach, name + of) for of in ('', '_sigma'))
+            assert np.array_equal(rows[name], value, equal_nan=True)
+            assert np.array_equal(rows[name + '_sd'], np.float32(sd), equal_nan=True)
         active = picture.alerts.id[
             (picture.alerts.kind == DANGER) & (picture.alerts.state == ACTIVE_UNACKNOWLEDGED)
         ]

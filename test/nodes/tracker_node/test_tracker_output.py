@@ -109,7 +109,7 @@ def test_targets_read_like_a_table_of_what_the_core_says(rig, clean, core):
             'TRACKING',
             DiagnosticStatus.ERROR if danger[k] else DiagnosticStatus.OK,
         )
-        assert entry.hardware_id == 'radar'
+        assert entry.hardware_id == 'tracker'
         for key, unit, field, size, digits in MEASURED:
             for name, value in (
                 (f'{key}_{unit}', getattr(picture.approach, field)),

@@ -1,0 +1,54 @@
+// The words in the corners of the picture: scale and modes, the cursor's readout, the time.
+
+import { rangeBearing, toMap } from './geometry.js';
+import * as format from './format.js';
+import { placeAt } from './geodesic.js';
+import { STABILISED, element, say } from './panel.js';
+import { RANGES } from './settings.js';
+import { bearingText, readouts } from './tools.js';
+
+/**
+ * @param {import('./state.js').State} state @param {import('./settings.js').Settings} settings
+ * @param {import('./scope.js').Scope} scope @param {import('./surround.js').Marks} marks
+ * @param {[number, number]|null} pointer px @param {string} more  lines about dangers
+ */
+export function showCorners(state, settings, scope, marks, pointer, more) {
+  const [range, rings] = RANGES[settings.range];
+  element('no-heading').hidden = scope.north;
+  say(
+    element('scale'),
+    `${range} NM\n${settings.rings === 'on' ? `rings ${rings} NM` : 'no rings'}\n` +
+      `${scope.orientation}\n${scope.motion} motion`,
+  );
+  const trails = settings.trails === 'off' ? '' : `, ${format.duration(settings.trailMinutes)}`;
+  say(
+    element('modes'),
+    `vectors ${settings.vectors}, ${settings.vectorMinutes} min\ntrails ${settings.trails}${trails}\n` +
+      stabilised(state.own) +
+      more,
+  );
+  const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
+  const lines = place && state.own ? cursorLines(place, state.own) : [];
+  if (state.own) lines.push(...readouts(marks.tools, state.own));
+  say(element('cursor'), lines.join('\n'));
+  say(element('time'), state.scan ? `${format.clock(state.scan.time)} UTC` : '');
+}
+
+/** Range and bearing of a map position from own ship, and where on Earth it is. */
+export function cursorLines(/** @type {number[]} */ [x, y], own) {
+  const [range, bearing] = rangeBearing(own.x, own.y, x, y);
+  // Without north nobody knows in which direction of own ship the place is.
+  const known = own.latitude !== null && own.heading !== null;
+  const found = known ? placeAt(own.latitude, own.longitude, range, bearing) : null;
+  return [
+    `cursor ${bearingText(bearing, own)} ${format.miles(range)} NM`,
+    found ? format.place(...found) : 'no position',
+  ];
+}
+
+/** What courses and speeds are measured against, and by what that is known. */
+function stabilised(/** @type {Record<string, any>|null} */ own) {
+  if (!own) return STABILISED.none;
+  const by = own.stabilised === 'none' ? `: ${own.by}` : `, by ${own.by}`;
+  return STABILISED[own.stabilised] + (own.by ? by : '');
+}

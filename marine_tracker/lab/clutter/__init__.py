@@ -1,0 +1,1 @@
+"""Scenes full of false plots and of plots that are always there."""

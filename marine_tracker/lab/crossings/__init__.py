@@ -1,0 +1,1 @@
+"""Two ships that meet: how often their tracks are swapped."""

@@ -1,0 +1,1 @@
+"""Areas of danger against ships that are sailed."""

@@ -1,0 +1,262 @@
+"""Tracks on places where plots always are: which are targets, and which are a place.
+
+A track that never moved, on an established place in a crowd of such places, is STATIONARY: it is
+shown as that place, by one number, however often the track itself is lost and begun again. One that
+stands alone, as an anchored ship or a buoy, stays a target, and if its track is lost for a while,
+its place is still shown by its number. A track that has moved is a target and stays one: a ship
+that stops, anchors, or goes alongside. A stationary one that moves becomes a target with the number
+of its place, which is forgotten: a ship that leaves its berth.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..types import (
+    Array,
+    BoolArray,
+    Extrapolation,
+    IntArray,
+    Plots,
+    Tracks,
+    append,
+    row_of,
+    take,
+    where,
+)
+from . import steady
+from .lifecycle import COASTING, CONFIRMED, LOST, STATIONARY
+from .places import AT_REST, GATE, UNNAMED, WANDER, Places, empty, nearest
+
+AWAY = 12  # of a track that surely moves: a plot counts
+OFF, ALONG = 3, 1  # if it lies off every place, or on a line with those before it
+LEARNT = 40  # revolutions after which the map holds most places
+
+
+class Anchors(NamedTuple):
+    """Where the tracks began, A rows, ascending by id.
+
+    id        [A]
+    position  [A, 2]  m, of the first plot
+    variance  [A]     m^2, of it, the larger axis
+    away      [A]     sum over plots in a row far from it: OFF or ALONG
+    moved     [A]     it has moved for sure
+    number    [A]     of the target, 0 for none
+    target    [A]     it is a target, and no place
+    line      through its last plots, A rows
+    """
+
+    id: IntArray
+    position: Array
+    variance: Array
+    away: IntArray
+    moved: BoolArray
+    number: IntArray
+    target: BoolArray
+    line: steady.Line
+
+
+class Standing(NamedTuple):
+    """What is known of the N tracks of a scan, each with its plot or where it was expected.
+
+    position  [N, 2]  m
+    variance  [N]     m^2, the larger axis
+    hit       [N]     it had a plot
+    time      [N]     s
+    """
+
+    position: Array
+    variance: Array
+    hit: BoolArray
+    time: Array
+
+
+class Ground(NamedTuple):
+    """The memory between two scans.
+
+    revolutions  that the places were learnt from
+    """
+
+    places: Places
+    anchors: Anchors
+    revolutions: int
+
+    @property
+    def moving(self) -> IntArray:
+        """Ids of the tracks that have moved for sure."""
+        return self.anchors.id[self.anchors.moved]
+
+
+def begin() -> Ground:
+    """Nothing is known."""
+    ids, none, at = np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 2))
+    no, line = ids > 0, steady.begin(at, none)
+    return Ground(empty(), Anchors(ids, at, none, ids, no, ids, no, line), 0)
+
+
+def step(
+    ground: Ground, tracks: Tracks, was: BoolArray, seen: Standing
+) -> tuple[Ground, Tracks, BoolArray]:
+    """The memory and the N tracks after a scan; and the tracks [N] whose plots may be learnt from,
+    for they are not under way.
+
+    was   [N] status before the scan was STATIONARY
+    seen  of the N tracks
+
+    Anchors of tracks that were not in this scan stay; those of lost ones go.
+    """
+    at = at_places(ground.places, seen)
+    learnt = ground.revolutions >= LEARNT
+    anchors = moving(follow(ground.anchors, tracks, seen), at, seen, learnt)
+    others = take(ground.anchors, ~np.isin(ground.anchors.id, tracks.id))
+    along = steady.under_way(anchors.line, seen.variance + WANDER**2)
+    at = np.where(along & ~was, -1, at)  # what surely moves does not become a place
+    tracks, places = settle(tracks, was, anchors, at, ground.places, others.number)
+    target = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
+    anchors = anchors._replace(number=tracks.number, target=target)
+    every = append(others, take(anchors, tracks.status != LOST))
+    every = take(every, every.id.argsort(kind='stable'))
+    ground = ground._replace(places=places, anchors=every)
+    return ground, tracks, ~anchors.moved | (steady.speed(anchors.line) < AT_REST)
+
+
+def follow(before: Anchors, tracks: Tracks, seen: Standing) -> Anchors:
+    """The anchors of the N tracks, in their order; new ones begin where they are."""
+    row = row_of(before.id, tracks.id)
+    new = row < 0
+    old = take(before, np.maximum(row, 0)) if len(before.id) else None
+    line = steady.begin(seen.position, seen.time)
+    if old is None:
+        none = np.zeros(len(new), np.int64)
+        still = np.zeros(len(new), bool)
+        return Anchors(
+            tracks.id, seen.position, seen.variance, none, still, tracks.number, still, line
+        )
+    return Anchors(
+        tracks.id,
+        np.where(new[:, None], seen.position, old.position),
+        np.where(new, seen.variance, old.variance),
+        np.where(new, 0, old.away),
+        ~new & old.moved,
+        tracks.number,
+        ~new & old.target,
+        where(new, line, steady.follow(old.line, seen.hit, seen.position, seen.time)),
+    )
+
+
+def moving(anchors: Anchors, at: IntArray, seen: Standing, learnt: bool) -> Anchors:
+    """The anchors after a scan in which the tracks were at the places `at` [N], -1 for none.
+
+    Before the map is learnt, a track that goes from plot to plot along a quay is off every place,
+    too; then only a line through its plots tells that a track moves.
+    """
+    apart = ((seen.position - anchors.position) ** 2).sum(1)
+    clear = apart > GATE * (seen.variance + anchors.variance + 2 * WANDER**2)
+    under_way = steady.under_way(anchors.line, seen.variance + WANDER**2)
+    step = np.where((at < 0) & learnt, OFF, np.where(under_way, ALONG, 0)) * clear
+    away = np.where(seen.hit, np.where(step > 0, anchors.away + step, 0), anchors.away)
+    return anchors._replace(away=away, moved=anchors.moved | (away >= AWAY))
+
+
+def settle(
+    tracks: Tracks, was: BoolArray, anchors: Anchors, at: IntArray, places: Places, others: IntArray
+) -> tuple[Tracks, Places]:
+    """The tracks with STATIONARY ones marked and numbered, and the places without those left.
+
+    was     [N] it was stationary before this scan; at [N]: its established place, -1 for none
+    others  numbers of tracks that were not in this scan
+    """
+    live = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
+    still = live & ~anchors.moved & ((at >= 0) | was)
+    crowd = np.append(places.crowded, False)[at] | (was & (at < 0))
+    leaves = live & (anchors.away >= AWAY)
+    number, named = tracks.number.copy(), places.number
+    # A track on a place that has no name lends it its number; a place lends its own to a track.
+    lend = (live & (at >= 0) & (number > 0)).nonzero()[0]
+    lend = lend[(named[at[lend]] == UNNAMED) & ~np.isin(number[lend], named)]
+    named = named.copy()
+    named[at[lend]] = number[lend]
+    borrow = (still & (number == 0) & (at >= 0)).nonzero()[0]
+    taken = np.append(number, others)
+    borrow = borrow[(named[at[borrow]] > 0) & ~np.isin(named[at[borrow]], taken)]
+    _, first = np.unique(named[at[borrow]], return_index=True)
+    number[borrow[first]] = named[at[borrow[first]]]
+    gone = np.isin(named, number[leaves]) & (named > 0)
+    tracks = tracks._replace(
+        status=np.where(still & crowd, STATIONARY, tracks.status).astype(np.int8), number=number
+    )
+    return tracks, take(places._replace(number=named), ~gone)
+
+
+def name(places: Places, next_number: int) -> tuple[Places, int]:
+    """Numbers for the established places that no track lent one; and the next free number."""
+    rows = (places.number == UNNAMED).nonzero()[0]
+    number = places.number.copy()
+    number[rows] = next_number + np.arange(len(rows))
+    return places._replace(number=number), next_number + len(rows)
+
+
+class Shown(NamedTuple):
+    """The places that are shown, S rows, in the order of their numbers.
+
+    number    [S]
+    position  [S, 2]  m, east and north
+    variance  [S]     m^2, of that position, each axis
+    share     [S]     of the last revolutions with a plot
+    idle      [S]     revolutions since the last plot
+    """
+
+    number: IntArray
+    position: Array
+    variance: Array
+    share: Array
+    idle: IntArray
+
+
+NOTHING_SHOWN = Shown(
+    np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0), np.zeros(0), np.zeros(0, np.int64)
+)
+
+
+def shown(ground: Ground) -> Shown:
+    """The established places, without those for which a target stands."""
+    places, targets = ground.places, ground.anchors.number[ground.anchors.target]
+    chosen = (places.number > 0) & ~np.isin(places.number, targets)
+    there = take(places, chosen.nonzero()[0][places.number[chosen].argsort()])
+    return Shown(
+        there.number,
+        there.position,
+        there.variance / np.maximum(there.plots, 1) + WANDER**2,
+        there.share,
+        there.idle,
+    )
+
+
+def at_places(places: Places, seen: Standing) -> IntArray:
+    """Row [N] of the established place at which each track is, -1 for none."""
+    rows = places.established.nonzero()[0]
+    found = nearest(take(places, rows), seen.position, seen.variance)
+    return np.where(found >= 0, np.append(rows, -1)[found], -1)
+
+
+def standing(
+    hit: BoolArray, chosen: Plots, ahead: Extrapolation, expected: Array, time: Array
+) -> Standing:
+    """What is known of the N tracks of a scan.
+
+    hit       [N] they had a plot; chosen: those plots, in the order of the tracks; time [N] s
+    ahead     the tracks before the scan, with covariances `expected` [N0, 2, 2] m^2; those that are
+              missing are new, and had a plot
+    """
+    count, before = len(hit), len(ahead.time)
+    position, variance = np.zeros((count, 2)), np.zeros(count)
+    position[:before], variance[:before] = ahead.position, larger(expected)
+    position[hit], variance[hit] = chosen.position, larger(chosen.covariance)
+    return Standing(position, variance, hit, time)
+
+
+def larger(covariance: Array) -> Array:
+    """The larger eigenvalue [N] of matrices [N, 2, 2]."""
+    a, b, d = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
+    found: Array = 0.5 * (a + d) + np.hypot(0.5 * (a - d), b)
+    return found

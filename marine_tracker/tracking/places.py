@@ -1,0 +1,175 @@
+"""Places where plots always are: a slowly learnt map, fixed to the ground.
+
+A quay, a mark, a moored craft gives a plot in many revolutions, always at the same place. Each such
+place is a row of the map: the mean of its plots, the share of revolutions with one, and a straight
+line through them in time. It is established when it had plots often enough, for long enough, and
+the line says that it surely does not move. So a slow ship far away, whose plots scatter widely,
+needs longer than a quay close by, and never becomes a place.
+
+Plots of tracks that have moved are not learnt from, so a ship under way leaves nothing behind.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..types import Array, BoolArray, IntArray, append, take
+
+GATE = 9.0  # squared deviations within which a plot belongs to a place
+WANDER = 4.0  # m, each axis: a thing on the ground echoes here and there
+MEMORY = 60  # revolutions
+LEAST_LOOKS, LEAST_PLOTS = 15, 8
+BECOMES, ENDS = 0.3, 0.1  # share of revolutions with a plot
+AT_REST = 0.8  # m/s; a place surely moves less
+TRIAL = 6  # revolutions without a plot after which a place that is not established is forgotten
+MOST = 20_000  # rows
+UNNAMED = -1
+NEAR, CROWD = 500.0, 4  # m; so many places within it, itself among them, are a crowd
+
+
+class Places(NamedTuple):
+    """P places, or what may become one.
+
+    position  [P, 2]  m, east and north, the mean
+    variance  [P]     m^2, of a plot there, the larger axis
+    share     [P]     of the last MEMORY revolutions with a plot
+    looks     [P]     revolutions
+    idle      [P]     revolutions since the last plot
+    plots     [P]     number of plots, older ones count less
+    time      [P]     s, mean of their times; spread [P] s^2, sum of the squares about it
+    slope     [P, 2]  m s, sum of the products of time and position about their means
+    number    [P]     target number of an established place; 0 before, UNNAMED at first
+    crowded   [P]     others are established near by, as along a quay
+    """
+
+    position: Array
+    variance: Array
+    share: Array
+    looks: IntArray
+    idle: IntArray
+    plots: Array
+    time: Array
+    spread: Array
+    slope: Array
+    number: IntArray
+    crowded: BoolArray
+
+    @property
+    def established(self) -> BoolArray:
+        """Mask [P] of the places that are sure."""
+        found: BoolArray = self.number != 0
+        return found
+
+
+def empty() -> Places:
+    """Nothing is known."""
+    none, count = np.zeros(0), np.zeros(0, np.int64)
+    pairs = np.zeros((0, 2))
+    return Places(pairs, none, none, count, count, none, none, none, pairs, count, count > 0)
+
+
+def nearest(places: Places, position: Array, variance: Array) -> IntArray:
+    """Row [M] of the nearest place of each position [M, 2] m, of variance [M] m^2 each axis; -1
+    where none is near enough."""
+    if not len(places.share) or not len(position):
+        return np.full(len(position), -1)
+    reach = np.sqrt(GATE * (variance + WANDER**2))
+    distance, row = cKDTree(places.position).query(position)
+    return np.where(distance <= reach, row, -1)
+
+
+def learn(
+    before: Places, position: Array, variance: Array, time: Array, visible: BoolArray
+) -> Places:
+    """The map after one revolution.
+
+    position [M, 2] m, variance [M] m^2, time [M] s: of the plots that no moving track took
+    visible  [P]  places that the radar could see
+
+    A place takes the nearest of the plots in its gate; the others there are of no other place.
+    """
+    row = nearest(before, position, variance)
+    known, apart = row >= 0, np.full(len(row), np.inf)
+    apart[known] = np.linalg.norm(position[known] - before.position[row[known]], axis=1)
+    order = np.lexsort((apart, row))
+    first = order[np.append(True, np.diff(row[order]) > 0)[: len(order)] & known[order]]
+    after = _looked(before, row[first], visible)
+    after = _with_plots(after, row[first], position[first], variance[first], time[first])
+    keep = (after.idle < TRIAL) | after.established | ((after.plots >= 3) & (after.share >= ENDS))
+    keep &= ~(after.established & (after.share < ENDS) & (after.looks > LEAST_LOOKS))
+    after = append(take(after, keep), _new(position[~known], variance[~known], time[~known]))
+    after = take(after, slice(0, MOST))
+    sure = ~after.established & _at_rest(after) & (after.share >= BECOMES)
+    sure &= (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS)
+    number = np.where(sure, UNNAMED, after.number)
+    return after._replace(number=number, crowded=_crowded(after.position, number != 0))
+
+
+def _looked(places: Places, hit: IntArray, visible: BoolArray) -> Places:
+    """One revolution counted for the places that are visible or were hit."""
+    seen = np.zeros(len(places.share), bool)
+    seen[hit] = True
+    counted = visible | seen
+    looks = places.looks + counted
+    gain = counted / np.minimum(np.maximum(looks, 1), MEMORY)
+    return places._replace(
+        share=places.share + gain * (seen - places.share),
+        looks=looks,
+        idle=np.where(seen, 0, places.idle + counted),
+    )
+
+
+def _with_plots(places: Places, row: IntArray, at: Array, variance: Array, time: Array) -> Places:
+    """One more plot for each of the rows [K], by the recursion of means and sums of squares."""
+    keeps = 1 - 1 / MEMORY  # what older plots count for
+    old = keeps * places.plots[row]
+    count = old + 1
+    late, off = time - places.time[row], at - places.position[row]
+    columns = {name: getattr(places, name).copy() for name in Places._fields}
+    columns['time'][row] += late / count
+    columns['position'][row] += off / count[:, None]
+    columns['variance'][row] += (variance - places.variance[row]) / count
+    columns['spread'][row] = keeps * places.spread[row] + late**2 * old / count
+    columns['slope'][row] = keeps * places.slope[row] + (late * old / count)[:, None] * off
+    columns['plots'][row] = count
+    return Places(**columns)
+
+
+def _new(position: Array, variance: Array, time: Array) -> Places:
+    """What may become places, of one plot each."""
+    count = len(time)
+    none, one = np.zeros(count), np.ones(count)
+    whole = np.ones(count, np.int64)
+    return Places(
+        position,
+        variance,
+        one,
+        whole,
+        0 * whole,
+        one,
+        time,
+        none,
+        np.zeros((count, 2)),
+        0 * whole,
+        whole > 1,
+    )
+
+
+def _crowded(position: Array, established: BoolArray) -> BoolArray:
+    """Mask [P] of the established places that have enough others near by."""
+    found = np.zeros(len(established), bool)
+    rows = established.nonzero()[0]
+    if len(rows) >= CROWD:
+        tree = cKDTree(position[rows])
+        found[rows] = tree.query_ball_point(position[rows], NEAR, return_length=True) >= CROWD
+    return found
+
+
+def _at_rest(places: Places) -> BoolArray:
+    """Mask [P] of those that surely move less than AT_REST: by three deviations of the slope."""
+    spread = np.maximum(places.spread, 1e-9)
+    speed = np.hypot(*places.slope.T) / spread
+    sigma = np.sqrt((places.variance + WANDER**2) / spread)
+    found: BoolArray = speed + 3 * sigma < AT_REST
+    return found

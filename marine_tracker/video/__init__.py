@@ -1,0 +1,1 @@
+"""Radar video to plots: spokes in, plots with their covariance out."""

@@ -1,0 +1,184 @@
+"""The level of noise and clutter around each cell of radar video.
+
+Strengths are display values: mostly the logarithm of power, after the radar's own gain and clutter
+controls, cut off at 0. The scale is not known, so nothing here depends on it. Spokes and samples
+are put into blocks. The level of a block comes from the mean of the blocks around it, on the side
+where it is greatest, and without those that hold an echo. Sea near own ship, rain and land so get
+their own level.
+
+Where noise has exponential power, its logarithm is s times a Gumbel variable plus a location u.
+The mean of what is left of it above 0 gives u, even where most of it is cut off.
+
+Sources: Skolnik, Radar Handbook, 3rd ed., 7.4 (cell averaging, greatest of, censoring); Goldstein,
+"False-alarm regulation in log-normal and Weibull clutter", IEEE T-AES 9(1), 1973.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..types import Array, FloatArray, IntArray, StrengthArray
+
+DYNAMIC_NEPERS = 13.8  # of power, 60 dB: what a radar's scale is taken to span, to begin with
+GUARD_M = 40.0  # m: echoes that long do not raise their own level
+RING_BLOCKS = 4  # depth of the ring of blocks beyond the guard
+GUARD_BLOCKS = 2
+OCCUPIED = 4.0  # deviations of a block's mean above the level, from which it holds an echo
+LEAST_OFFSET = -1.7  # lowest u / s that is told from a mean: 0.5 % of cells above 0
+
+
+class Grid(NamedTuple):
+    """Blocks of spokes and samples; C columns of samples.
+
+    rows      spokes in a block
+    edge      [C + 1]  first sample of each column; the last one is the number of samples
+    centre    [C]      samples, the middle of each column
+    """
+
+    rows: int
+    edge: IntArray
+    centre: Array
+
+    @property
+    def cells(self) -> FloatArray:
+        """[C] number of cells in a block."""
+        return (self.rows * np.diff(self.edge)).astype(np.float32)
+
+
+def grid(samples: int, range_step: float, spacing: float, beam: float, pulse: float) -> Grid:
+    """Blocks for spokes of `samples` samples of `range_step` m, `spacing` rad apart.
+
+    beam rad and pulse m are the radar's. Near own ship columns are narrower, as the level there
+    falls steeply with range.
+    """
+    rows = int(np.clip(round(0.5 * beam / spacing), 1, 16))
+    widest = int(np.clip(max(GUARD_M / 2, pulse) / range_step, 8, max(samples // 16, 8)))
+    edges = [0]
+    while edges[-1] < samples:
+        edges.append(edges[-1] + int(np.clip(edges[-1] // 8, 2, widest)))
+    edges[-1] = samples
+    edge = np.array(edges)
+    return Grid(rows, edge, 0.5 * (edge[:-1] + edge[1:]))
+
+
+def block_means(of: Grid, strength: StrengthArray) -> FloatArray:
+    """[blocks, C] mean strength; a strength v stands for the values from v to v + 1."""
+    spokes = strength.reshape(-1, of.rows, strength.shape[1])
+    kind = np.uint16 if strength.dtype == np.uint8 else np.uint32
+    total = spokes.sum(1, dtype=kind)
+    # A strength v above 0 lies half a step above v, and 0 is one step below the first.
+    above = np.add(spokes > 0, 0, dtype=np.uint8).sum(1, dtype=np.uint8)
+    value = total - np.float32(0.5) * above
+    return np.add.reduceat(value, of.edge[:-1], axis=1) / of.cells
+
+
+def scale(full: int) -> float:
+    """Steps of the strength in a factor e of power, as assumed until the tail is known."""
+    return (full + 1) / DYNAMIC_NEPERS
+
+
+def levels(
+    of: Grid, mean: FloatArray, step: float, texture: FloatArray
+) -> tuple[FloatArray, NDArray[np.bool_], FloatArray]:
+    """Location [blocks, C] of the noise around each block, which blocks hold an echo, and by how
+    much [C] the means of blocks differ, over what noise alone would give.
+
+    mean     [blocks, C]  from block_means; step: steps in a factor e of power
+    texture  [C]          how much they usually differ, at least 1
+    """
+    reach = GUARD_BLOCKS + RING_BLOCKS
+    cells = np.broadcast_to(of.cells, mean.shape)
+    total, every = _integral(mean * cells), _integral(cells)
+    first = _around(total, every)
+    residual = mean - first
+    noise = np.float32(1.28 * step) / np.sqrt(of.cells)
+    occupied = residual > OCCUPIED * texture * noise
+    free = np.where(occupied, np.float32(0), cells)
+    total, left = _integral(mean * free), _integral(free)
+    level = _around(total, left)
+    # Where hardly anything is free, as on land, its own level counts.
+    in_box = [_columns(_rows(a, reach), -reach, reach) for a in (left, every)]
+    few = in_box[0] < 0.25 * in_box[1]
+    level = np.where(few, np.maximum(level, first), level)
+    # From the lower half alone: echoes lie in the upper one.
+    count = len(residual)
+    ranked = np.partition(residual, (count // 4, count // 2), axis=0)
+    spread = 1.48 * (ranked[count // 2] - ranked[count // 4]) / noise
+    return location(level / step) * np.float32(step), occupied, spread
+
+
+def _around(total: Array, cells: Array) -> FloatArray:
+    """Mean in the ring around each block, on the nearer or farther side: the greater one.
+
+    total, cells  [blocks + 1, C + 1]  integrals (_integral) of the sums and numbers of cells
+    """
+    guard, reach = GUARD_BLOCKS, GUARD_BLOCKS + RING_BLOCKS
+    sides = []
+    for low, high in ((-reach, -guard - 1), (guard + 1, reach)):
+        sums, counts = (
+            _columns(_rows(a, reach) - _rows(a, guard), -guard, guard)
+            + _columns(_rows(a, reach), low, high)
+            for a in (total, cells)
+        )
+        sides.append(sums / np.maximum(counts, 1))
+    return np.maximum(*sides).astype(np.float32)
+
+
+def _integral(a: FloatArray) -> Array:
+    """[R + 1, C + 1] sums of all rows and columns before each."""
+    found = np.zeros((a.shape[0] + 1, a.shape[1] + 1))
+    np.cumsum(a, axis=0, out=found[1:, 1:])
+    np.cumsum(found[1:, 1:], axis=1, out=found[1:, 1:])
+    return found
+
+
+def _rows(integral: Array, half: int) -> Array:
+    """[R, C + 1] what the rows within `half` of each row add to an integral."""
+    count = len(integral) - 1
+    at = np.arange(count)
+    last, first = np.minimum(at + half + 1, count), np.maximum(at - half, 0)
+    return integral.take(last, 0) - integral.take(first, 0)
+
+
+def _columns(rows: Array, low: int, high: int) -> Array:
+    """[R, C] sums over the columns from `low` to `high` beside each column."""
+    count = rows.shape[1] - 1
+    at = np.arange(count)
+    first, last = np.clip(at + low, 0, count), np.clip(at + high + 1, 0, count)
+    return rows.take(last, 1) - rows.take(first, 1)
+
+
+def _clipped_means() -> tuple[Array, Array]:
+    """u and the mean of max(u + g, 0) for g = ln(E), E exponential of mean 1; the integral of
+    exp(-exp(t)) from -u on."""
+    t = np.arange(-60.0, 4.0, 1e-3)
+    survival = np.exp(-np.exp(t))
+    above = np.cumsum(survival[::-1])[::-1] * 1e-3
+    offset = np.linspace(LEAST_OFFSET, 50.0, 4000)
+    return offset, np.interp(-offset, t, above)
+
+
+_OFFSET, _MEAN = _clipped_means()
+
+
+def location(mean: FloatArray) -> FloatArray:
+    """u of the noise whose values cut off at 0 have this mean, all in steps s."""
+    beyond = np.maximum(mean - _MEAN[-1], 0)  # a scale far above its noise
+    return (np.interp(mean, _MEAN, _OFFSET) + beyond).astype(np.float32)
+
+
+def at_samples(of: Grid, values: FloatArray) -> FloatArray:
+    """[blocks, samples]: values [blocks, C] of blocks, straight between their middles."""
+    left, right, share = between(of, np.arange(of.edge[-1]))
+    low = values[:, left]
+    return low + share.astype(np.float32) * (values[:, right] - low)
+
+
+def between(of: Grid, sample: IntArray) -> tuple[IntArray, IntArray, Array]:
+    """The columns on both sides of the middle of samples, and how far it is on the way."""
+    last = len(of.centre) - 1
+    right = np.clip(np.searchsorted(of.centre, sample + 0.5), min(1, last), last)
+    left = np.maximum(right - 1, 0)
+    apart = np.maximum(of.centre[right] - of.centre[left], 1e-9)
+    return left, right, np.clip((sample + 0.5 - of.centre[left]) / apart, 0.0, 1.0)

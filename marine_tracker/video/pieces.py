@@ -1,0 +1,139 @@
+"""Cells over the threshold put together: ship-sized pieces, split where two maxima stand apart."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ..types import Array, BoolArray, IntArray, StrengthArray
+from .lobes import Lobe
+
+DIP = 0.7  # of a factor e in power, 3 dB: a valley that deep parts two maxima
+ALONG = np.linspace(0.0, 1.0, 9)[1:-1]  # where the way between two maxima is looked at
+TOUCH = np.ones((3, 3), bool)
+
+
+class Pieces(NamedTuple):
+    """Cells [n], and the piece of each.
+
+    row, sample  [n]  of the stack of spokes
+    piece        [n]  0 to number - 1
+    number       how many pieces
+    peak         [number, 2]  row and sample of the strongest place of each, smoothed
+    origin       [number]     the component that each was a part of
+    """
+
+    row: IntArray
+    sample: IntArray
+    piece: IntArray
+    number: int
+    peak: IntArray
+    origin: IntArray
+
+
+def label(hits: BoolArray, lobe: Lobe) -> NDArray[np.int32]:
+    """[rows, samples] the component of each cell that is a hit, from 1; 0 elsewhere, and also in
+    the gaps that a component bridges: a quarter of a beam, and one sample."""
+    joined = hits.copy()
+    for gap in range(1, lobe.gap + 1):
+        joined[gap:] |= hits[:-gap]
+    joined[:, 1:] |= joined[:, :-1]
+    labels, _ = ndimage.label(joined, TOUCH)
+    return labels
+
+
+def split(
+    row: IntArray,
+    sample: IntArray,
+    component: IntArray,
+    count: int,
+    strength: StrengthArray,
+    lobe: Lobe,
+    slope: Array,
+) -> Pieces:
+    """Pieces of the components [n] of the cells.
+
+    strength  [rows, samples]  of the stack
+    slope     [count]          steps in a factor e of power where each component is
+    """
+    order = np.argsort(component, kind='stable')
+    row, sample, component = row[order], sample[order], component[order]
+    edge = np.searchsorted(component, np.arange(count + 1))
+    first, cells = edge[:-1], np.diff(edge)
+    low = np.stack([np.minimum.reduceat(a, first) for a in (row, sample)], 1)
+    high = np.stack([np.maximum.reduceat(a, first) for a in (row, sample)], 1) + 1
+    wide = ((high - low) > lobe.single).any(1)
+    value = strength[row, sample].astype(np.int64)
+    top = np.lexsort((value, component))[edge[1:] - 1]
+    peak = np.stack([row[top], sample[top]], 1)
+    piece = component.copy()
+    peaks, origins, total = [peak], [np.arange(count)], count
+    for k in np.flatnonzero(wide & (cells > 3)).tolist():
+        its = slice(edge[k], edge[k + 1])
+        found, which = _maxima(row[its], sample[its], low[k], high[k], strength, lobe, slope[k])
+        peaks[0][k] = found[0]
+        if len(found) > 1:
+            piece[its] = np.where(which == 0, k, total + which - 1)
+            peaks.append(found[1:])
+            origins.append(np.full(len(found) - 1, k))
+            total += len(found) - 1
+    return Pieces(row, sample, piece, total, np.concatenate(peaks), np.concatenate(origins))
+
+
+def _maxima(row, sample, low, high, strength, lobe: Lobe, slope):
+    """The maxima [P, 2] of a component, strongest first, and the maximum [n] of each cell."""
+    patch = strength[low[0] : high[0], low[1] : high[1]].astype(np.float32)
+    smooth = ndimage.uniform_filter(patch, lobe.smooth, mode='nearest')
+    at = (row - low[0], sample - low[1])
+    inside = np.zeros(patch.shape, bool)
+    inside[at] = True
+    peaked = inside & (smooth >= ndimage.maximum_filter(smooth, lobe.apart) - 1e-4)
+    if not peaked.any():  # its maxima belong to a neighbour that is stronger: it has one piece
+        return np.array([low + np.argwhere(inside)[smooth[inside].argmax()]]), np.zeros(
+            len(row), np.int64
+        )
+    plateau, count = ndimage.label(peaked, TOUCH)
+    places = np.argwhere(peaked)
+    if count == 1:
+        middle = np.rint(places.mean(0)).astype(np.int64)
+        return (middle + low)[None], np.zeros(len(row), np.int64)
+    owner = plateau[peaked] - 1
+    sums = np.stack([np.bincount(owner, column, count) for column in places.T], 1)
+    centre = sums / np.bincount(owner, minlength=count)[:, None]
+    height = np.zeros(count)
+    height[owner] = smooth[peaked]
+    group = _merged(smooth, centre, height, lobe, DIP * slope)
+    order = np.argsort(-height, kind='stable')
+    _, start = np.unique(group[order], return_index=True)
+    chosen = order[np.sort(start)]  # the strongest of each group
+    rank = np.zeros(count, np.int64)
+    rank[chosen] = np.arange(len(chosen))
+    rank = rank[chosen[np.argsort(group[chosen])]][group]
+    which = np.zeros(len(row), np.int64)
+    if len(chosen) > 1:
+        _, nearest = cKDTree(places / lobe.shape).query(np.stack(at, 1) / lobe.shape)
+        which = rank[owner[nearest]]
+    return np.rint(centre[chosen]).astype(np.int64) + low, which
+
+
+def _merged(smooth, centre, height, lobe: Lobe, dip) -> IntArray:
+    """The group [P] of each maximum: those without a valley in between are one."""
+    parent = np.arange(len(centre))
+    if len(centre) == 1:
+        return parent
+    pairs = cKDTree(centre / lobe.shape).query_pairs(4.0, output_type='ndarray')
+    one, other = pairs.T
+    way = centre[one, None] + ALONG[:, None] * (centre[other] - centre[one])[:, None]
+    place = np.rint(way).astype(np.int64)
+    valley = smooth[place[..., 0], place[..., 1]].min(1)
+    joined = np.minimum(height[one], height[other]) - valley < dip
+
+    graph = coo_array(
+        (np.ones(joined.sum()), (one[joined], other[joined])), shape=(len(centre),) * 2
+    )
+    _, group = connected_components(graph, directed=False)
+    return group.astype(np.int64)
