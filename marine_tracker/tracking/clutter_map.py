@@ -26,7 +26,7 @@ CROWD = 50.0  # plots a scan in one large cell, beyond which they are no sample 
 # Plots that what is known of the surroundings weighs as much as: for a large cell its ring, for a
 # small cell the large one.
 RING_WEIGHS, LARGE_WEIGHS = 1.0, 0.1
-A_TRACK, FEW = 2.0, 5  # plots that begin a track; scans that tell little
+A_TRACK, FEW = 3.0, 5  # plots that confirm a track; scans that tell little
 
 _EDGES = NEAREST * 2.0 ** (np.arange(RINGS + 1) / RINGS_AN_OCTAVE)
 _EDGES[0] = 0.0

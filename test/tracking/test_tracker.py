@@ -327,7 +327,7 @@ def test_a_plot_dead_ahead_of_a_nearby_coasting_track(parameters, vessel_class):
     tracker = Tracker(parameters(vessel_class=vessel_class, max_drift=1000.0, range_sigma_m=5.0))
     own, memory = np.zeros((1, 2)), tracker.start()
     for k in range(12):
-        near = k < 3 or k > 6
+        near = k < 5 or k > 8
         distance = np.r_[np.full(20, 3000.0 + k), [300.0 + k] * near]
         bearing = np.r_[np.arange(20) * 0.3 + 0.1, [0.0] * near]
         at = np.full(len(bearing), k * PERIOD)
