@@ -1,6 +1,6 @@
 // Bundles the parts of OpenBridge that the page uses, with the colours that these use:
 // `npm ci && npm run build`. The result is committed, so that nobody needs Node.js to install.
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import * as esbuild from 'esbuild';
 
@@ -46,7 +46,8 @@ function want(text) {
   }
 }
 want(code);
-for (const name of ['colours.css', 'style.css']) want(readFileSync(join(folder, name), 'utf8'));
+const own = readdirSync(folder).filter((name) => /^(?!openbridge).*\.css$/.test(name));
+for (const name of own) want(readFileSync(join(folder, name), 'utf8'));
 const kept = blocks
   .map(({ selector, lines }) => [selector, lines.filter(([name]) => wanted.has(name))])
   .filter(([selector, lines]) => lines.length && !selector.startsWith('@'))

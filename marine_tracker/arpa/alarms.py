@@ -87,7 +87,7 @@ WARNING, CAUTION = RANK == 1, RANK == 2
 MOMENTARY = np.arange(len(NAMES)) == LOST_TARGET
 REMEMBERED = np.arange(len(NAMES)) == DANGER
 # Categories of MSC.302: A is judged by the picture, B needs none. C, beyond the bridge, are none.
-BY_PICTURE = (DANGER, LOST_TARGET, NEW_TARGET, SWAP_RISK)
+BY_PICTURE = (DANGER, LOST_TARGET, NEW_TARGET, SWAP_RISK, STATIONARY_DANGER)
 CATEGORY = tuple('A' if kind in BY_PICTURE else 'B' for kind in range(len(NAMES)))
 IDENTIFIER = tuple(10001 + kind for kind in range(len(NAMES)))  # makers' own begin at 10000
 NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level that keeps an alert

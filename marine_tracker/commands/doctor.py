@@ -35,6 +35,7 @@ REQUIRED = {
 }
 OPTIONAL = {
     'matplotlib': ('matplotlib', 'to draw plots'),
+    'mcap_ros2': ('mcap-ros2-support', 'to record topics and read such recordings'),
     'stonesoup': ('stonesoup', 'bench compares with it'),
     'distributed': ('distributed', 'to run experiments on a cluster'),
     'textual': ('textual', 'the picture in a terminal: top'),

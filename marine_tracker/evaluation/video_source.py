@@ -8,12 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..parameters import VideoParameters
+from ..parameters import GLINT_SIGMA, VideoParameters
 from ..recording import spokes_file
 from ..simulation import video
 from ..simulation.scenario import Scenario
 from ..types import Array, OwnShip, Scan, Sweep, Truth, append, take
 from ..video import chain
+from ..video.lobes import SHORTEST
 from .source import Source
 
 
@@ -128,10 +129,12 @@ def tracker_parameters(parameters: VideoParameters, sweep: Sweep) -> dict[str, A
     range_ = sweep.range[np.isfinite(sweep.range) & (sweep.range > 0)]
     longest = float(range_.max(initial=100.0))
     step = float(np.median(range_)) / sweep.strength.shape[1] if len(range_) else 1.0
-    pulse = parameters.pulse_length_m or 2 * step
+    pulse = parameters.pulse_length_m or max(2 * step, SHORTEST)
     return {
         'range_sigma_m': min(max(0.3 * pulse, 1.0), 1000.0),
         'bearing_sigma_deg': min(max(0.15 * parameters.beam_width_deg, 0.01), 10.0),
+        # Close by the parts of a ship are resolved: what echoes wanders over less than the ship.
+        'glint_sigma_m': min(GLINT_SIGMA['ship'], longest / 200.0),
         'range_resolution_m': min(max(pulse, 1.0), 1000.0),
         'beam_width_deg': parameters.beam_width_deg,
         'min_range_m': parameters.blind_range_m,

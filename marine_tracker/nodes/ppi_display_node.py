@@ -56,6 +56,7 @@ class PpiDisplayNode(RunnableNode):
         self._own_told = -math.inf  # s of the wall
         self._plots_topic = p.plots_topic  # of a tracker with one radar
         self._plots: dict[str, Any] = {}  # the subscriptions, by topic
+        self._names = ['']  # of the radars
         self._trails = Trails()
         self._scanned: deque[float] = deque(maxlen=6)  # s of the wall
         self._health: dict[str, dict[str, str]] = {}
@@ -129,6 +130,7 @@ class PpiDisplayNode(RunnableNode):
                 'at': time.monotonic(),
                 'stamp': stamp_ns * 1e-9,
                 'radar': radar,
+                'name': self._names[radar],
                 'x': display_messages.plain(position[good, 0], 0),
                 'y': display_messages.plain(position[good, 1], 0),
                 'amplitude': display_messages.plain(plots.amplitude[good], 0),
@@ -251,8 +253,10 @@ class PpiDisplayNode(RunnableNode):
 
     def _hear_parameters(self, values: dict[str, Any]) -> None:
         """The tracker's parameters: what changed goes to the page."""
-        topics_of, self._own.radars = radars_told(values, self._plots_topic)
-        self._hear_radars(topics_of)
+        radars = radars_told(values, self._plots_topic)
+        self._own.radars = [radar.parameters for radar in radars]
+        self._names = [radar.name for radar in radars]
+        self._hear_radars([radar.topic for radar in radars])
         for kind, told in (
             ('limits', {name: values[name] for name in LIMITS}),
             ('zones', zones_told(values)),

@@ -27,7 +27,8 @@ class VideoParameters:
     )
     pulse_length_m: float = parameter(
         0.0,
-        'Depth of the echo of a point, at half power; 0: two samples of the video.',
+        'Depth of the echo of a point, at half power; 0: two samples of the video, and 7.5 m at '
+        'least.',
         unit='m',
         low=0.0,
         high=1000.0,

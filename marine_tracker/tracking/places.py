@@ -25,7 +25,7 @@ AT_REST = 0.8  # m/s; a place surely moves less
 TRIAL = 6  # revolutions without a plot after which a place that is not established is forgotten
 MOST = 20_000  # rows
 UNNAMED = -1
-NEAR, CROWD = 500.0, 4  # m; so many places within it, itself among them, are a crowd
+NEAR, CROWD = 1000.0, 4  # m; so many places within it, itself among them, are a crowd
 
 
 class Places(NamedTuple):

@@ -7,7 +7,6 @@ from . import level, tail
 from .stack import Stack
 
 LONE = 2.8  # nepers, 12 dB: a sample so far above both its neighbours in bearing is no echo ...
-FAR = 3.6  # nepers above the level: noise never is, and the spikes of the sea hardly ever
 LEAST_SPOKES = 3.0  # ... where the beam spreads an echo over that many spokes
 
 
@@ -48,19 +47,10 @@ def over_threshold(
 
     # One spoke of each block is enough to tell the noise by.
     blocks = np.arange(end - begin)
-    row = begin * rows + blocks * rows + (begin + blocks) % rows
-    drawn = held.strength[row]
+    drawn = strength[blocks * rows + (begin + blocks) % rows]
     busy = np.repeat(_near(occupied), np.diff(held.grid.edge), axis=1)
     busy[:, :blind] = True
     free = ~busy
-    if held.lobe.shape[0] >= LEAST_SPOKES:  # the pulses of other radars are no noise
-        beside = np.maximum(
-            held.strength[np.maximum(row - 1, 0)],
-            held.strength[np.minimum(row + 1, len(held.strength) - 1)],
-        )
-        step = level.scale(full)
-        lone = drawn > beside + np.float32(LONE * step)
-        free &= ~(lone & (drawn > level_ + np.float32(FAR * step)))
     above = drawn[free] - level_[free]
     known = tail.count(known, above, np.broadcast_to(zone, free.shape)[free], full)
 

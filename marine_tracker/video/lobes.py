@@ -10,6 +10,7 @@ import numpy as np
 
 from ..types import Array
 
+SHORTEST = 7.5  # m: a pulse of 50 ns
 BEAM_FALL = 8 * np.log(2)  # ln(power) is -BEAM_FALL * (bearing / beam width)^2
 PULSE_FALL = 4 * np.log(2)  # ln(power) is -PULSE_FALL * (range / pulse length)^2
 
@@ -43,5 +44,7 @@ class Lobe(NamedTuple):
 
 
 def lobe(spacing: float, range_step: float, beam: float, pulse: float) -> Lobe:
-    """For spokes `spacing` rad apart with samples of `range_step` m; pulse 0: two samples."""
-    return Lobe(np.maximum([beam / spacing, (pulse or 2 * range_step) / range_step], 1.0))
+    """For spokes `spacing` rad apart with samples of `range_step` m; pulse 0: not known, two
+    samples, or the shortest pulse that marine radars have."""
+    depth = pulse or max(2 * range_step, SHORTEST)
+    return Lobe(np.maximum([beam / spacing, depth / range_step], 1.0))

@@ -12,7 +12,8 @@ from . import level
 from .lobes import Lobe, lobe
 
 FIRST = 48  # spokes that tell how far apart spokes are
-MISSING = 3.5  # spokes left out before a gap ends the stack
+MISSING = 3.5  # spokes left out before a gap ends the stack, beside
+JITTER = np.radians(1.5)  # that a heading may jump from spoke to spoke
 FULL = (15, 255, 4095, 65535)  # greatest strengths of radars
 
 
@@ -50,7 +51,7 @@ def runs(spokes: Spokes) -> Iterator[Spokes]:
         return
     turn = wrap_angle(np.diff(spokes.bearing))
     usual = max(float(np.median(turn)), 1e-5) if len(turn) else np.inf
-    apart = (np.diff(spokes.range_step) != 0) | (turn < -usual / 2) | (turn > MISSING * usual)
+    apart = (np.diff(spokes.range_step) != 0) | ~_goes_on(turn, usual)
     edge = [0, *(np.flatnonzero(apart) + 1).tolist(), len(spokes.time)]
     for first, last in zip(edge, edge[1:]):
         yield _rows(spokes, slice(first, last))
@@ -60,6 +61,13 @@ def _rows(spokes: Spokes, rows: slice | BoolArray) -> Spokes:
     own_ship = spokes.own_ship
     first = (spokes.time, spokes.bearing, spokes.range_step, spokes.strength)
     return Spokes(*take(first, rows), own_ship)
+
+
+def _goes_on(turn: Array, usual: float) -> BoolArray:
+    """Whether a spoke so many rad farther on is the next one: a heading that is told in steps moves
+    it to and fro."""
+    good: BoolArray = (turn > -JITTER - usual / 2) & (turn < MISSING * usual + JITTER)
+    return good
 
 
 def follows(stack: Stack, run: Spokes) -> bool:
@@ -76,7 +84,7 @@ def follows(stack: Stack, run: Spokes) -> bool:
     gap = wrap_angle(float(run.bearing[0] - stack.bearing[-1]))
     return bool(
         same
-        and -spacing / 2 < gap < MISSING * max(spacing, 1e-5)
+        and _goes_on(np.array(gap), max(spacing, 1e-5))
         and run.time[0] >= stack.time[-1] - 1e-6
     )
 

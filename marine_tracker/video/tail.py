@@ -19,9 +19,12 @@ from .level import scale
 BINS = 256  # of strength above the level
 UPPER, LOWER = 0.01, 0.0005  # probabilities between which the tail is fitted
 ENOUGH = 40.0  # cells above, for a probability to be read
+FAR = 3.6  # nepers above the level: farther up are echoes and other radars; noise never is, and
+# the spikes of the sea hardly ever
 MEMORY = 1.0e7  # cells; older counts fade beyond that many
 PRIOR = 300.0  # cells: weight of the exponential tail that is assumed to begin with
-MOST_TEXTURE = 6.0
+MOST_TEXTURE = 3.0
+LEAST_SLOPE = 0.4  # of the assumed one: no radar shows more than 150 dB
 POOLED = 1000.0  # cells: weight of the tail of all zones in that of each
 
 
@@ -67,7 +70,8 @@ def count(tail: Tail, above: Array, zone: IntArray, full: int) -> Tail:
     bins = np.floor(above * (BINS / (full + 1))).astype(np.int64)
     zones = len(tail.cells)
     cells = np.bincount(zone, minlength=zones)
-    bins, zone = bins[bins >= 0], zone[bins >= 0]
+    inside = (bins >= 0) & (above < FAR * scale(full))
+    bins, zone = bins[inside], zone[inside]
     counts = np.bincount(zone * BINS + np.minimum(bins, BINS - 1), minlength=zones * BINS)
     keep = MEMORY / np.maximum(tail.cells + cells, MEMORY)
     return tail._replace(
@@ -123,7 +127,7 @@ def _line(edge: Array, survival: FloatArray, cells: float, rate: float, full: in
     at = np.interp(-np.log([high, low]), -logs, edge)
     reach = np.log(-np.log([high, low]))
     slope = (at[1] - at[0]) / (reach[1] - reach[0])
-    slope = max(slope, 0.02 * scale(full))
+    slope = max(slope, LEAST_SLOPE * scale(full))
     wanted = np.log(-np.log(rate))
     if rate >= low:
         over = float(np.interp(-np.log(rate), -logs, edge))

@@ -1,6 +1,9 @@
 """A scene that stands still, shown by a real page in a real browser; and what is drawn where."""
 
 import asyncio
+import atexit
+import contextlib
+import functools
 import math
 import time
 from concurrent.futures import Future
@@ -139,6 +142,14 @@ class Scene:
             await asyncio.sleep(0.1)
 
 
+@functools.cache
+def one_browser():
+    """The browser of all scenes; its port."""
+    running = contextlib.ExitStack()
+    atexit.register(running.close)
+    return running.enter_context(browser.running())
+
+
 def on_scene(act, orientation, own=None, ship=None, alarms=ALARMS, query='', **changed):
     async def run():
         commands = []
@@ -164,7 +175,7 @@ def on_scene(act, orientation, own=None, ship=None, alarms=ALARMS, query='', **c
         player = asyncio.ensure_future(play())
         address = server.url.replace('/#', f'/?range=0.75&labels=off&rings=off{query}#')
         try:
-            async with browser.open_page(address, 1150, 900) as page:
+            async with browser.open_tab(one_browser(), address, 1150, 900) as page:
                 await page.until(f'ppi.state.targets.length == {len(PLACES)}')
                 await page.until("document.getElementById('stale').hidden")
                 await page.evaluate(

@@ -1,6 +1,7 @@
 """Crowds: what the page costs with very many ships on it."""
 
 import asyncio
+import os
 
 import pytest
 
@@ -28,6 +29,9 @@ addEventListener('click', event => {
 def test_among_1200_ships_on_a_slow_phone_a_tap_is_answered_in_a_fifth_of_a_second(
     visit, nautical_miles
 ):
+    if os.getloadavg()[0] > (os.cpu_count() or 1):
+        pytest.skip('this machine is busy with other work: nothing can be measured')
+
     async def act(page, sea):
         await page.evaluate(WATCH)
         await page.call('Emulation.setCPUThrottlingRate', rate=4)

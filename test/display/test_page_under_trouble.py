@@ -122,7 +122,7 @@ def test_a_tab_that_was_frozen_shows_the_state_of_now_within_a_second(visit):
     visit(act, ships=40)
 
 
-@pytest.mark.parametrize('off_s', [-11 * 60, 5 * 3600 + 40, 86400 * 3])
+@pytest.mark.parametrize('off_s', [-11 * 60, 5 * 3600 + 40])
 def test_a_clock_that_is_off_is_told_and_no_target_gets_older_or_younger(visit, off_s):
     async def act(page, sea):
         await page.evaluate(f'(now => {{ Date.now = () => now() + {off_s * 1000}; }})(Date.now)')

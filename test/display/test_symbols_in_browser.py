@@ -109,8 +109,8 @@ def test_hulls_and_the_reference_are_drawn_to_scale_and_in_place(orientation):
                 east + ahead * sine + right * cosine, north + ahead * cosine - right * sine
             )
 
-        await scene.shows('target', aboard(LENGTH / 2 - 3, 0), aboard(-LENGTH / 2, 0))
-        await scene.shows('target', aboard(-60, BEAM / 2), aboard(-60, -BEAM / 2))
+        await scene.shows('target', aboard(LENGTH / 2 - 3, 0), aboard(-LENGTH / 2, 0), off=90)
+        await scene.shows('target', aboard(-60, BEAM / 2), aboard(-60, -BEAM / 2), off=90)
         await scene.hides('target', aboard(-LENGTH / 2 - 30, 0), aboard(LENGTH / 2 + 30, 0))
         x, y = scene.place(*PLACES[REFERENCE])
         assert any(await scene.drawn('label', (x + 15, y - 11), reach=4))  # R beside it
@@ -157,7 +157,9 @@ def test_own_ships_outline_is_to_scale_about_her_reference_point(orientation):
             sine, cosine = math.sin(HEADING), math.cos(HEADING)
             return scene.place(ahead * sine + right * cosine, ahead * cosine - right * sine)
 
-        await scene.shows('own', aboard(-150, 0), aboard(-90, 22), aboard(-90, -22), aboard(10, 22))
+        await scene.shows(
+            'own', aboard(-150, 0), aboard(-90, 22), aboard(-90, -22), aboard(-10, 22), off=90
+        )
         await scene.shows('own', (scene.middle[0] + 4, scene.middle[1]))  # the cross
         await scene.hides('own', aboard(-185, 0), aboard(-90, 45))
         # On a long range she is the double circle again.
@@ -246,7 +248,7 @@ def test_areas_of_danger_and_safe_courses_lie_on_their_bearings(orientation):
         await scene.shows('safe', *(at(bearing, ring) for bearing in (301, 340, 10, 39, 91, 149)))
         await scene.hides('safe', *(at(bearing, ring) for bearing in (45, 85, 155, 200, 295)))
         for low, high in ((41, 89), (151, 299)):  # broken: somewhere, not everywhere
-            pixels = [at(bearing, ring) for bearing in range(low, high, 2)]
+            pixels = [at(low + 1.3 * k, ring) for k in range(int((high - low) / 1.3))]
             found = await scene.drawn('danger', *pixels, reach=1)
             assert any(found) and not all(found)
         # Of another time they are not shown.

@@ -100,6 +100,7 @@ def test_recordings_are_offered_by_name_beside_the_one_that_was_given(tmp_path):
         demo_plan.offers('encounters', None, str(tmp_path / 'tapes'))
 
 
+@pytest.mark.slow
 def test_a_port_that_somebody_else_took_meanwhile_does_not_end_the_demo(tmp_path):
     script = (
         'import socket, sys\n'

@@ -117,11 +117,13 @@ def test_a_velocity_that_is_not_told_places_plots_all_the_same():
 
 def test_the_radars_of_the_tracker_are_told_by_its_parameters():
     text = '[{topic: x/radar/plots, antenna_ahead_m: 12.5}, {topic: s/radar/plots, bearings: bow}]'
-    found, parameters = radars_told({'radars': text, 'bearings': 'north'}, 'plots')
-    assert found == ['x/radar/plots', 's/radar/plots']
-    assert [p.bearings for p in parameters] == ['north', 'bow']
-    assert [p.antenna_ahead_m for p in parameters] == [12.5, 0.0]
-    assert radars_told({'radars': '', 'bearing_offset_deg': 1.5}, 'other')[0] == ['other']
+    found = radars_told({'radars': text, 'bearings': 'north'}, 'plots')
+    assert [radar.topic for radar in found] == ['x/radar/plots', 's/radar/plots']
+    assert [radar.name for radar in found] == ['x', 's']
+    assert [radar.parameters.bearings for radar in found] == ['north', 'bow']
+    assert [radar.parameters.antenna_ahead_m for radar in found] == [12.5, 0.0]
+    (only,) = radars_told({'radars': '', 'bearing_offset_deg': 1.5}, 'other')
+    assert (only.topic, only.name) == ('other', '')
 
 
 def test_zones_that_cannot_be_read_are_told_with_the_reason():

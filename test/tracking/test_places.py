@@ -216,12 +216,13 @@ def test_one_warning_tells_of_the_quay_ahead_and_a_lone_ship_at_anchor_has_an_al
         'speed_kn': 0,
         'pd': 0.6,
     }
-    pier = {'corners_m': [[600, -150], [600, 150]], 'spacing_m': 30, 'pd': 0.8}
+    pier = {'corners_m': [[150, -150], [150, 150]], 'spacing_m': 30, 'pd': 0.8}
     made = scene(
         lambda **values: scenario.build(values, 'quays'),
         ahead,
         reflectors=[pier],
-        own_ship={'start': {'north_m': -500, 'east_m': 0}, 'course_deg': 0, 'speed_kn': 5},
+        radar={**RADAR, 'max_range_m': 2500},
+        own_ship={'start': {'north_m': -600, 'east_m': 0}, 'course_deg': 0, 'speed_kn': 5},
         duration_s=250,
     )
     known = Harbour(made, 4)

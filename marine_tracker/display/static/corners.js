@@ -5,14 +5,18 @@ import * as format from './format.js';
 import { placeAt } from './geodesic.js';
 import { STABILISED, element, say } from './panel.js';
 import { RANGES } from './settings.js';
+import { serverNow } from './state.js';
 import { bearingText, readouts } from './tools.js';
+
+const SILENT_RADAR_S = 15; // without plots: longer than three turns of a slow antenna
 
 /**
  * @param {import('./state.js').State} state @param {import('./settings.js').Settings} settings
  * @param {import('./scope.js').Scope} scope @param {import('./surround.js').Marks} marks
  * @param {[number, number]|null} pointer px @param {string} more  lines about dangers
+ * @param {number} local s
  */
-export function showCorners(state, settings, scope, marks, pointer, more) {
+export function showCorners(state, settings, scope, marks, pointer, more, local) {
   const [range, rings] = RANGES[settings.range];
   element('no-heading').hidden = scope.north;
   say(
@@ -31,7 +35,22 @@ export function showCorners(state, settings, scope, marks, pointer, more) {
   const lines = place && state.own ? cursorLines(place, state.own) : [];
   if (state.own) lines.push(...readouts(marks.tools, state.own));
   say(element('cursor'), lines.join('\n'));
-  say(element('time'), state.scan ? `${format.clock(state.scan.time)} UTC` : '');
+  const time = state.scan ? `${format.clock(state.scan.time)} UTC` : '';
+  say(element('time'), [...radars(state, local), time].join('\n'));
+}
+
+/** Which radars make the picture, a line each, where there are several; one that is silent says so. */
+export function radars(
+  /** @type {import('./state.js').State} */ state,
+  /** @type {number} */ local,
+) {
+  const newest = new Map(state.plots.map((scan) => [scan.radar ?? 0, scan]));
+  if (newest.size < 2) return [];
+  return [...newest.keys()].sort().map((radar) => {
+    const { at, name } = newest.get(radar);
+    const age = serverNow(state, local) - at;
+    return `${name || radar + 1}${age > SILENT_RADAR_S ? `: silent for ${Math.floor(age)} s` : ''}`;
+  });
 }
 
 /** Range and bearing of a map position from own ship, and where on Earth it is. */

@@ -5,6 +5,7 @@ import { turned } from './geometry.js';
 import { serverNow } from './state.js';
 
 const GLOW_S = 30; // an echo has faded after so long
+const SILENT_S = 60; // after which the last echoes of one of several radars go, too
 const FADE_STEP_S = 0.5; // between two steps of the fading
 const FRESH_PX = 3.5;
 const OLD_PX = 3;
@@ -37,8 +38,10 @@ export function paintEchoes(pen, state, view, color, local) {
   const [middleX, middleY] = [view.centreX * ratio, view.centreY * ratio];
   const last = new Map(state.plots.map((scan) => [scan.radar ?? 0, scan])); // of each radar
   state.plots.forEach((scan) => {
-    const newest = last.get(scan.radar ?? 0) === scan;
-    const fade = 1 - Math.max(now - scan.at, 0) / GLOW_S;
+    const age = Math.max(now - scan.at, 0);
+    // Of one radar the newest scan stays; of several one that is silent leaves nothing behind.
+    const newest = last.get(scan.radar ?? 0) === scan && (last.size === 1 || age < SILENT_S);
+    const fade = 1 - age / GLOW_S;
     if (fade <= 0 && !newest) return;
     const alpha = Math.round(255 * (newest ? 0.9 : 0.4 * fade ** 2));
     const value = ((alpha << 24) | (blue << 16) | (green << 8) | red) >>> 0;

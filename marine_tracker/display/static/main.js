@@ -144,7 +144,7 @@ function frame() {
   const scope = app.scopeNow();
   draw(pen, state, settings, scope, app.colors, marks, seconds());
   const more = dangersSay(state, settings, seconds());
-  showCorners(state, settings, scope, marks, app.pointer, more);
+  showCorners(state, settings, scope, marks, app.pointer, more, seconds());
   if (now - panelShown > PANEL_MS) {
     panelShown = now;
     showPanel();

@@ -8,7 +8,7 @@ const scope = await import(new URL('scope.js', page));
 const { RANGES, CHOICES } = await import(new URL('settings.js', page));
 const tools = await import(new URL('tools.js', page));
 const { placeAt } = await import(new URL('geodesic.js', page));
-const { cursorLines } = await import(new URL('corners.js', page));
+const { cursorLines, radars } = await import(new URL('corners.js', page));
 const { NAUTICAL_MILE, degrees, direction, radians, rangeBearing, toScreen } = geometry;
 
 const near = (a, b, within = 1e-6) => assert.ok(Math.abs(a - b) <= within, `${a} is not ${b}`);
@@ -294,4 +294,16 @@ test('the cursor has range, bearing and place; without fix or heading it says no
     `cursor 030.0° R ${(22000 / NAUTICAL_MILE).toFixed(2)} NM`,
     'no position',
   ]);
+});
+
+test('of several radars the picture says which they are, and which is silent', () => {
+  const scan = (radar, name, at) => ({ radar, name, at, x: [], y: [] });
+  const state = {
+    offset: 1000,
+    plots: [scan(1, 's', 1052), scan(0, 'x', 1049), scan(0, 'x', 1053)],
+  };
+  assert.deepEqual(radars(state, 54), ['x', 's']);
+  state.plots[0] = scan(1, 's', 1031.5);
+  assert.deepEqual(radars(state, 54), ['x', 's: silent for 22 s']);
+  assert.deepEqual(radars({ ...state, plots: [scan(0, '', 1052)] }, 54), []);
 });
