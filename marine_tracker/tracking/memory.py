@@ -65,10 +65,12 @@ class Report(NamedTuple):
 
 
 class Left(NamedTuple):
-    """What a scan left: mask [M] of the plots that are lone; and what is learnt from it."""
+    """What a scan left: mask [M] of the plots that are lone; what is learnt from it; and the rows
+    [D] of the plots of no sure target among that (surroundings.found)."""
 
     free: BoolArray
     found: sectors.Found
+    doubtful: IntArray
 
 
 def changed(memory: TrackerMemory, radar: int, **changes: Any) -> TrackerMemory:

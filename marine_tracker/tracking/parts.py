@@ -7,7 +7,7 @@ import numpy as np
 from ..estimators import Estimator
 from ..parameters import TrackerParameters
 from ..types import Array, Scan, append, take
-from . import late_plots, sectors
+from . import late_plots, sectors, surroundings
 from .expected import expect
 from .gate import gate, windows
 from .memory import Left, Report, TrackerMemory, changed
@@ -27,7 +27,9 @@ class Core(Protocol):
     ) -> tuple[TrackerMemory, Report, Left]:
         """The tracks of the memory with the plots of the scan."""
 
-    def learnt(self, memory: TrackerMemory, radar: int, found: sectors.Found) -> TrackerMemory:
+    def learnt(
+        self, memory: TrackerMemory, radar: int, end: float, found: sectors.Found
+    ) -> TrackerMemory:
         """The memory after a whole revolution."""
 
 
@@ -52,7 +54,8 @@ def step(tracker: Core, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemor
     every = take(every, every.id.argsort())
     gone = sectors.unseen(waiting, seen, scan)[: len(looked)]
     looked = np.where(decided.tracks | gone, seen.middle[: len(looked)], looked)
-    waiting = sectors.remember(waiting, pool, plots, tracks.id, looked, every, left.found)
+    found = surroundings.without(left.found, ~again[left.doubtful])
+    waiting = sectors.remember(waiting, pool, plots, tracks.id, looked, every, found)
     free = take(after.radars[scan.radar].leftover, ~again[left.free])
     memory = changed(
         after._replace(tracks=every),
@@ -62,7 +65,7 @@ def step(tracker: Core, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemor
     )
     if not sectors.complete(waiting):
         return memory, report
-    memory = tracker.learnt(memory, scan.radar, sectors.found(waiting))
+    memory = tracker.learnt(memory, scan.radar, scan.end, sectors.found(waiting))
     return changed(memory, scan.radar, waiting=sectors.next_revolution(waiting)), report
 
 

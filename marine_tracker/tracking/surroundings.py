@@ -16,10 +16,16 @@ BEGIN = 0.1  # of the false plots of an empty sea: so many new targets may appea
 
 
 class Surroundings(NamedTuple):
-    """The density of false plots, and the probability of detection."""
+    """The density of false plots, and the probability of detection.
+
+    before  the density as it was known a revolution ago: for plots that came before
+    since   s, when the last revolution was learnt from
+    """
 
     clutter: clutter_map.ClutterMap
     detection: detection_map.DetectionMap
+    before: clutter_map.ClutterMap
+    since: float
 
 
 class Evidence(NamedTuple):
@@ -37,7 +43,8 @@ class Evidence(NamedTuple):
 
 def unknown() -> Surroundings:
     """Nothing is known: an empty sea."""
-    return Surroundings(clutter_map.empty(), detection_map.empty())
+    nothing = clutter_map.empty()
+    return Surroundings(nothing, detection_map.empty(), nothing, -np.inf)
 
 
 def weigh(
@@ -58,6 +65,10 @@ def weigh(
     place = to_range_bearing(expected.position[:count] - expected.origin[:count])
     prior = detection_map.probability(known.detection, *place, radar.detection_probability)
     density = share * clutter_map.density(known.clutter, plots.range, plots.bearing)
+    old = (plots.time < known.since).nonzero()[0]
+    if len(old):  # sectors: of the last revolution, whose own plots are not to count
+        place = plots.range[old], plots.bearing[old]
+        density[old] = share * clutter_map.density(known.before, *place)
     return Evidence(
         density, existence.likelihood(pairs, density), existence.detection(tracks, prior)
     )
@@ -100,29 +111,37 @@ def ratio(
 
 def found(
     sure: BoolArray, seen: Look, plot_of: IntArray, plots: Plots, lone: Plots
-) -> tuple[Array, ...]:
-    """What `learn` takes from a scan, or from a sector.
+) -> tuple[IntArray, tuple[Array, ...]]:
+    """Rows [D] of the plots of no sure target, and what `learn` takes from a scan, or a sector.
 
     sure  [N]  the tracks whose targets are beyond doubt: their plots are no clutter, and they tell
                how targets show
     lone       plots of the scan before that led to nothing
     """
-    doubtful = np.ones(len(plots.time), bool)
-    doubtful[plot_of[sure & (plot_of >= 0)]] = False
-    return (
+    no_target = np.ones(len(plots.time), bool)
+    no_target[plot_of[sure & (plot_of >= 0)]] = False
+    doubtful = no_target.nonzero()[0]
+    return doubtful, (
         *(lone.range, lone.bearing),
         *(plots.range[doubtful], plots.bearing[doubtful]),
         *(seen.distance[sure], seen.bearing[sure], seen.hit[sure].astype(float)),
     )
 
 
-def learn(known: Surroundings, *of_revolution: Array) -> Surroundings:
-    """The surroundings after one more revolution: what was `found` in its scans, put together."""
+def without(found: tuple[Array, ...], keep: BoolArray) -> tuple[Array, ...]:
+    """What was found, of the D plots of no sure target only those to keep."""
+    return (*found[:2], found[2][keep], found[3][keep], *found[4:])
+
+
+def learn(known: Surroundings, end: float, *of_revolution: Array) -> Surroundings:
+    """The surroundings after a revolution that ended at `end` s: what was `found`, put together."""
     lone, doubtful = of_revolution[:2], of_revolution[2:4]
     range_, bearing, hit = of_revolution[4:]
     return Surroundings(
         clutter_map.learn(known.clutter, (doubtful[0], doubtful[1]), (lone[0], lone[1])),
         detection_map.learn(known.detection, range_, bearing, hit > 0),
+        known.clutter,
+        end,
     )
 
 

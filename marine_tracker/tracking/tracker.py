@@ -93,12 +93,14 @@ class Tracker:
         if scan.sector is not None:
             return parts.step(self, memory, scan)
         memory, report, left = self.judge(memory, scan)
-        return self.learnt(memory, scan.radar, left.found), report
+        return self.learnt(memory, scan.radar, scan.end, left.found), report
 
-    def learnt(self, memory: TrackerMemory, radar: int, found: sectors.Found) -> TrackerMemory:
+    def learnt(
+        self, memory: TrackerMemory, radar: int, end: float, found: sectors.Found
+    ) -> TrackerMemory:
         """The memory after a whole revolution: false plots, and places where plots always are."""
         p, (*around, position, variance, time) = self.radars[radar], found
-        learnt = surroundings.learn(memory.radars[radar].known, *around)
+        learnt = surroundings.learn(memory.radars[radar].known, end, *around)
         known, number = at_rest.name(memory.ground.places, memory.next_number)
         distance = np.hypot(*(known.position - memory.origin).T)
         visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
@@ -176,10 +178,8 @@ class Tracker:
         fixed[plot_of[hit & ~learnable]] = False
         at = take(plots, fixed)
         sure = lifecycle.sure(tracks) & (tracks.status != STATIONARY)
-        found = (
-            *surroundings.found(sure, seen, plot_of, plots, nowhere),
-            *(at.position, at_rest.larger(at.covariance), at.time),
-        )
+        doubtful, found = surroundings.found(sure, seen, plot_of, plots, nowhere)
+        found = (*found, at.position, at_rest.larger(at.covariance), at.time)
         alive = tracks.status != LOST
         memory = TrackerMemory(
             tracks if alive.all() else take(tracks, alive),
@@ -192,7 +192,7 @@ class Tracker:
         told = seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan
         report = Report(*told, at_rest.shown(ground))
         memory = changed(memory, scan.radar, leftover=take(measured, free))
-        return memory, report, Left(free, found)
+        return memory, report, Left(free, found, doubtful)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """Takes over the memory of another tracker for this one's estimator. No track is lost.
