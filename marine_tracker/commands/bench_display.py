@@ -129,7 +129,9 @@ async def _measure(address: str, node: Any) -> list[report.Figure]:
         async with browser.open_tab(port, where) as page:
             await page.until('ppi.state.plots.length > 8')
             software = await page.evaluate(SOFTWARE)
+            spent, drawn = _browser_cpu(), await page.evaluate('ppi.frames()')
             frames = await page.evaluate(COUNT_FRAMES % (1000 * MEASURED_S / 2))
+            spent, drawn = _browser_cpu() - spent, await page.evaluate('ppi.frames()') - drawn
             plots = await page.evaluate('ppi.state.plots.at(-1).x.length')
             targets = await page.evaluate('ppi.state.targets.length')
     how = 'software rendering' if software else 'with a graphics processor'
@@ -138,11 +140,26 @@ async def _measure(address: str, node: Any) -> list[report.Figure]:
         report.Figure('targets shown', targets),
         report.Figure('plots in a scan', plots),
         report.at_least('frames, all drawn anew', frames, least, '1/s', how),
+        # Says what a free machine would do, where this one is busy.
+        report.Figure('processor time of a frame, whole browser', 1000 * spent / drawn, 'ms'),
         report.at_most('display node, 1 viewer', cpu_one, MOST_CPU, '% of a core'),
         report.at_most(f'display node, {MANY} viewers', cpu_many, MOST_CPU_MANY, '% of a core'),
         report.at_most('page loaded, picture drawn', sorted(loads)[LOADS // 2], MOST_LOAD_S, 's'),
         report.at_most('to a viewer', rate, MOST_RATE, 'kB/s'),
     ]
+
+
+def _browser_cpu() -> float:
+    """s that the processes of the browser have used so far."""
+    import psutil
+
+    used = 0.0
+    for child in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.Error):
+            if 'chrom' in child.name():
+                times = child.cpu_times()
+                used += times.user + times.system
+    return used
 
 
 class _Viewer:

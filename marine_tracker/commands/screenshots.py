@@ -22,6 +22,7 @@ from .node_processes import Children, children_of
 HELP = 'take pictures of the page, each of a scene that runs behind it'
 START_S = 60.0
 PATIENCE_S = 240.0
+LIT = 'performance.now() % 1000 < 250'  # what flashes shows at that moment
 DANGER = "ppi.state.alarms.some(a => a.kind === 'danger' && a.state === 'active unacknowledged')"
 SETTLED = f'{DANGER} && ppi.state.plots.length > 8 && (ppi.state.trails?.count ?? 0) > 12'
 
@@ -201,6 +202,7 @@ async def _take(port: int, children: Children, shots: list[Shot], folder: Path) 
                 if shot.act:
                     await shot.act(page, children)
                 await asyncio.sleep(1)
+                await page.until(LIT)
                 file.write_bytes(await page.screenshot())
                 wrong = page.errors
         except (TimeoutError, RuntimeError) as error:

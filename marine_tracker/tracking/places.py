@@ -75,7 +75,9 @@ def nearest(places: Places, position: Array, variance: Array) -> IntArray:
     if not len(places.share) or not len(position):
         return np.full(len(position), -1)
     reach = np.sqrt(GATE * (variance + WANDER**2))
-    distance, row = cKDTree(places.position).query(position)
+    # A tree that is quickly made: it is asked once.
+    tree = cKDTree(places.position, compact_nodes=False, balanced_tree=False)
+    distance, row = tree.query(position, distance_upper_bound=float(reach.max()) + 1.0)
     return np.where(distance <= reach, row, -1)
 
 

@@ -10,15 +10,19 @@ import numpy as np
 
 from ..types import Array
 
+SHIP = 300.0  # m
 SHORTEST = 7.5  # m: a pulse of 50 ns
 BEAM_FALL = 8 * np.log(2)  # ln(power) is -BEAM_FALL * (bearing / beam width)^2
 PULSE_FALL = 4 * np.log(2)  # ln(power) is -PULSE_FALL * (range / pulse length)^2
 
 
 class Lobe(NamedTuple):
-    """shape  [2]  spokes in a beam width and samples in a pulse length, each at least 1."""
+    """shape  [2]  spokes in a beam width and samples in a pulse length, each at least 1
+    ship   samples of the longest usual ship, SHIP
+    """
 
     shape: Array
+    ship: float = 0.0
 
     @property
     def gap(self) -> int:
@@ -47,4 +51,4 @@ def lobe(spacing: float, range_step: float, beam: float, pulse: float) -> Lobe:
     """For spokes `spacing` rad apart with samples of `range_step` m; pulse 0: not known, two
     samples, or the shortest pulse that marine radars have."""
     depth = pulse or max(2 * range_step, SHORTEST)
-    return Lobe(np.maximum([beam / spacing, depth / range_step], 1.0))
+    return Lobe(np.maximum([beam / spacing, depth / range_step], 1.0), SHIP / range_step)

@@ -20,6 +20,7 @@ from .lobes import BEAM_FALL, PULSE_FALL, Lobe
 BY_LOGARITHM, ITERATIONS = 3, 6
 AROUND = (0.8, 1.0)  # of beam and pulse: the cells that are fitted
 FLOOR = np.array([0.002, 0.004])  # of beam and pulse: no place is known better
+COARSE = 0.14  # times the square of a step of the display in nepers: of beam and pulse, likewise
 LONG = 0.1  # of its extent: how well the middle of something long is known
 
 

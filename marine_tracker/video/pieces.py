@@ -12,7 +12,8 @@ from scipy.spatial import cKDTree
 from ..types import Array, BoolArray, IntArray, StrengthArray
 from .lobes import Lobe
 
-DIP = 0.7  # of a factor e in power, 3 dB: a valley that deep parts two maxima
+DIP = 0.9  # of a factor e in power, 4 dB: a valley that deep parts two maxima
+LINE = 3  # maxima in a row, one behind the other: one long ship
 ALONG = np.linspace(0.0, 1.0, 9)[1:-1]  # where the way between two maxima is looked at
 TOUCH = np.ones((3, 3), bool)
 
@@ -110,6 +111,9 @@ def _maxima(row, sample, low, high, strength, lobe: Lobe, slope):
     order = np.argsort(-height, kind='stable')
     _, start = np.unique(group[order], return_index=True)
     chosen = order[np.sort(start)]  # the strongest of each group
+    span = np.ptp(centre[chosen], axis=0)
+    if len(chosen) >= LINE and span[0] < lobe.shape[0] and span[1] < lobe.ship:
+        chosen, group = chosen[:1], np.zeros(count, np.int64)
     rank = np.zeros(count, np.int64)
     rank[chosen] = np.arange(len(chosen))
     rank = rank[chosen[np.argsort(group[chosen])]][group]

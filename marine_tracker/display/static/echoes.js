@@ -40,7 +40,11 @@ export function paintEchoes(pen, state, view, color, local) {
   state.plots.forEach((scan) => {
     const age = Math.max(now - scan.at, 0);
     // Of one radar the newest scan stays; of several one that is silent leaves nothing behind.
-    const newest = last.get(scan.radar ?? 0) === scan && (last.size === 1 || age < SILENT_S);
+    // Of a radar that sends sectors the newest scan is what came in a revolution.
+    const head = last.get(scan.radar ?? 0);
+    const turn = 0.9 * (state.scan?.period ?? 0);
+    const fresh = head === scan || (head !== undefined && head.stamp - scan.stamp < turn);
+    const newest = fresh && (last.size === 1 || age < SILENT_S);
     const fade = 1 - age / GLOW_S;
     if (fade <= 0 && !newest) return;
     const alpha = Math.round(255 * (newest ? 0.9 : 0.4 * fade ** 2));

@@ -7,6 +7,7 @@ import { takeSpokes } from './spokes.js';
 
 export const SILENT_S = 3; // without fresh data for so long: the red cross
 const GLOW_SCANS = 12; // of plots that are kept for the afterglow
+const MOST_SECTORS = 64; // messages of plots that make a scan
 const DRIFT = 1e-4; // of two steady clocks against each other, at most
 
 export const ACQUIRING = 0;
@@ -137,8 +138,20 @@ function takePlots(/** @type {State} */ state, /** @type {Message} */ message) {
   const radar = message.radar ?? 0;
   const of = state.plots.filter((scan) => (scan.radar ?? 0) === radar);
   if (of.length && message.stamp < of[of.length - 1].stamp) state.plots = [];
-  else if (of.length >= GLOW_SCANS) state.plots.splice(state.plots.indexOf(of[0]), 1);
+  else if (of.length >= GLOW_SCANS * sectors(state, of)) {
+    state.plots.splice(state.plots.indexOf(of[0]), 1);
+  }
   state.plots.push(message);
+}
+
+/**
+ * Messages of one radar's plots in the time between two messages of targets: 1, or its sectors.
+ * @param {State} state @param {Message[]} of
+ */
+function sectors(state, of) {
+  const period = state.scan?.period ?? 0;
+  const gap = of.length > 1 ? (of[of.length - 1].stamp - of[0].stamp) / (of.length - 1) : 0;
+  return gap > 0 ? Math.min(Math.max(Math.round(period / gap), 1), MOST_SECTORS) : 1;
 }
 
 /** After a new connection the clocks are compared anew: it may be another server. */

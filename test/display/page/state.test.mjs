@@ -109,6 +109,15 @@ test('plots of another run push those of the last one out', () => {
   assert.ok(state.plots.length < 20);
 });
 
+test('of a radar that sends sectors as many scans are kept as of one that does not', () => {
+  const state = emptyState();
+  receive(state, { kind: 'targets', now: 1, at: 1, time: 9, period: 2.5, columns: none }, 1);
+  for (let k = 0; k < 600; k++) {
+    receive(state, { kind: 'plots', now: 1, at: 1, stamp: (k * 2.5) / 16 }, 1);
+  }
+  assert.equal(state.plots.length, 12 * 16);
+});
+
 test('what is not known is a dash, and north is north', () => {
   for (const show of [format.bearing, format.miles, format.knots, format.minutes]) {
     for (const nothing of [null, undefined, NaN, Infinity])
