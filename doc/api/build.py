@@ -45,5 +45,9 @@ def build(folder: Path) -> None:
 
 if __name__ == '__main__':
     warnings.simplefilter('error')
+    # Annotations of textual's classes, which `top` inherits, are for type checkers only.
+    warnings.filterwarnings(
+        'ignore', '(?s).* annotation .*for (textual|marine_tracker.commands.top)', UserWarning
+    )
     build(Path(sys.argv[1]))
     print(f'written: {sys.argv[1]}/index.html')

@@ -61,9 +61,9 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
     if kind == alarms.SWAP_RISK:
         other = f'TT{third:02.0f}' if third else 'a track that is not confirmed'
         return f'{name} may be swapped with {other}, at {where}'
-    if kind == alarms.STATIONARY_DANGER and not first:  # over: of what is gone nothing is known
-        return 'nothing stationary in the way'
     if kind == alarms.STATIONARY_DANGER:
+        if not first:  # over: of what is gone nothing is known
+            return 'nothing stationary in the way'
         when = f'in {fifth / 60:.1f} min' if math.isfinite(fifth) else 'at an unknown time'
         at = f'{second / NAUTICAL_MILE:.2f} NM'
         if math.isfinite(third):

@@ -5,18 +5,16 @@ import time
 from typing import Any, NamedTuple
 
 import numpy as np
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped
 from nav_msgs.msg import Odometry
-from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
 
 from ..geometry import NAUTICAL_MILE, unit_vector
-from . import convert, log_folder, topics
+from . import convert, topics
 from .diagnostics import OK, one_line
+from .visitor import visitor
 
 NODE = 'marine_tracker_explain'
 VIDEO_S = 1.0  # longest wait for the extractor's word, after the tracker's
@@ -33,26 +31,8 @@ class Question(NamedTuple):
 
 def ask(question: Question, namespace: str = '/', wait: float = 10.0) -> list[tuple[bool, str]]:
     """Whether each reason decides, and its words. ValueError if nobody answers in `wait` s."""
-    context = Context()
-    log_folder.provide()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        node = Node(
-            NODE,
-            context=context,
-            namespace=namespace,
-            enable_rosout=False,
-            start_parameter_services=False,
-        )
-        executor = SingleThreadedExecutor(context=context)
-        executor.add_node(node)
-        try:
-            return _asked(node, executor, question, time.monotonic() + wait)
-        finally:
-            executor.shutdown()
-            node.destroy_node()
-    finally:
-        context.try_shutdown()
+    with visitor(NODE, namespace) as (node, executor):
+        return _asked(node, executor, question, time.monotonic() + wait)
 
 
 def _asked(

@@ -10,15 +10,12 @@ import time
 from collections.abc import Iterable
 from typing import NamedTuple
 
-import rclpy
-from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.utilities import get_rmw_implementation_identifier
 
-from . import log_folder, topics
+from . import topics
+from .visitor import visitor
 
 NODE = 'marine_tracker_doctor'
 NEEDED = (topics.PLOTS, topics.ODOMETRY, topics.TRACKS)
@@ -53,44 +50,26 @@ def look(seconds: float, namespace: str = '/', names: Iterable[str] = NEEDED) ->
     names      `radar/plots` means any topic of plots that a tracker there listens to
     Raises the exceptions of rclpy if no middleware can be started.
     """
-    context = Context()
-    log_folder.provide()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        node = Node(
-            NODE,
-            context=context,
-            namespace=namespace,
-            enable_rosout=False,
-            start_parameter_services=False,
+    with visitor(NODE, namespace) as (node, executor):
+        deadline = time.monotonic() + seconds
+        while (left := deadline - time.monotonic()) > 0 and not _all_published(
+            node, _full_names(node, names)
+        ):
+            executor.spin_once(timeout_sec=min(0.1, left))
+        return Graph(
+            get_rmw_implementation_identifier(),
+            tuple(
+                sorted(
+                    f'{where.rstrip("/")}/{name}'
+                    for name, where in node.get_node_names_and_namespaces()
+                    if name != NODE and not name.startswith('_')
+                )
+            ),
+            {
+                name: Ends(node.count_publishers(name), node.count_subscribers(name))
+                for name in _full_names(node, names)
+            },
         )
-        executor = SingleThreadedExecutor(context=context)
-        executor.add_node(node)
-        try:
-            deadline = time.monotonic() + seconds
-            while (left := deadline - time.monotonic()) > 0 and not _all_published(
-                node, _full_names(node, names)
-            ):
-                executor.spin_once(timeout_sec=min(0.1, left))
-            return Graph(
-                get_rmw_implementation_identifier(),
-                tuple(
-                    sorted(
-                        f'{where.rstrip("/")}/{name}'
-                        for name, where in node.get_node_names_and_namespaces()
-                        if name != NODE and not name.startswith('_')
-                    )
-                ),
-                {
-                    name: Ends(node.count_publishers(name), node.count_subscribers(name))
-                    for name in _full_names(node, names)
-                },
-            )
-        finally:
-            executor.shutdown()
-            node.destroy_node()
-    finally:
-        context.try_shutdown()
 
 
 def _full_names(node: Node, names: Iterable[str]) -> list[str]:

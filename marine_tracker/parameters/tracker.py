@@ -232,7 +232,7 @@ class TrackerParameters:
         live=True,
     )
     stationary_places: bool = parameter(
-        True,
+        False,
         'Whether places where plots always are (quays, moored craft) are learnt and shown as '
         'stationary objects, not as ever new targets; see doc/tracking.md.',
         live=True,

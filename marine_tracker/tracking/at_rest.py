@@ -110,8 +110,8 @@ def step(
     anchors = moving(follow(ground.anchors, tracks, seen), at, seen, learnt)
     others = take(ground.anchors, ~np.isin(ground.anchors.id, tracks.id))
     along = steady.under_way(anchors.line, seen.variance + WANDER**2)
-    at = np.where(along & ~was, -1, at)  # what surely moves does not become a place
-    tracks, places = settle(tracks, was, anchors, at, ground.places, others.number)
+    rest = was | ~along  # what surely moves does not become a place
+    tracks, places = settle(tracks, was, rest, anchors, at, ground.places, others.number)
     target = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
     anchors = anchors._replace(number=tracks.number, target=target)
     every = append(others, take(anchors, tracks.status != LOST))
@@ -159,15 +159,23 @@ def moving(anchors: Anchors, at: IntArray, seen: Standing, learnt: bool) -> Anch
 
 
 def settle(
-    tracks: Tracks, was: BoolArray, anchors: Anchors, at: IntArray, places: Places, others: IntArray
+    tracks: Tracks,
+    was: BoolArray,
+    rest: BoolArray,
+    anchors: Anchors,
+    at: IntArray,
+    places: Places,
+    others: IntArray,
 ) -> tuple[Tracks, Places]:
     """The tracks with STATIONARY ones marked and numbered, and the places without those left.
 
-    was     [N] it was stationary before this scan; at [N]: its established place, -1 for none
+    was     [N] it was stationary before this scan
+    rest    [N] it may be stationary
+    at      [N] its established place, -1 for none
     others  numbers of tracks that were not in this scan
     """
     live = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
-    still = live & ~anchors.moved & ((at >= 0) | was)
+    still = live & rest & ~anchors.moved & ((at >= 0) | was)
     crowd = np.append(places.crowded, False)[at] | (was & (at < 0))
     leaves = live & (anchors.away >= AWAY)
     number, named = tracks.number.copy(), places.number
@@ -189,11 +197,18 @@ def settle(
 
 
 def name(places: Places, next_number: int) -> tuple[Places, int]:
-    """Numbers for the established places that no track lent one; and the next free number."""
-    rows = (places.number == UNNAMED).nonzero()[0]
+    """Numbers for the established places that no track lent one; and the next free number.
+
+    The plots of one thing may scatter over two places: one that is within reach of a place with a
+    number is the same thing, and is dropped.
+    """
+    named, rows = take(places, places.number > 0), (places.number == UNNAMED).nonzero()[0]
+    same = nearest(named, places.position[rows], places.variance[rows]) >= 0
     number = places.number.copy()
-    number[rows] = next_number + np.arange(len(rows))
-    return places._replace(number=number), next_number + len(rows)
+    number[rows[~same]] = next_number + np.arange((~same).sum())
+    kept = np.ones(len(number), bool)
+    kept[rows[same]] = False
+    return take(places._replace(number=number), kept), next_number + int((~same).sum())
 
 
 class Shown(NamedTuple):

@@ -237,7 +237,9 @@ def test_land_by_a_file_is_told(tmp_path):
 def test_a_place_where_plots_always_are_is_told():
     quay = [[1500 + 60.0 * k, 1800 + 11.0 * (k % 2)] for k in range(6)]
     rng = np.random.default_rng(3)
-    sea = Sea().sail(*[(np.array(quay) + rng.normal(0, 4, (6, 2))).tolist() for _ in range(90)])
+    sea = Sea(stationary_places=True).sail(
+        *[(np.array(quay) + rng.normal(0, 4, (6, 2))).tolist() for _ in range(90)]
+    )
     assert 'shown as a place' in sea.why(*quay[2]).get('place', ''), sea.why(*quay[2])
 
 

@@ -196,8 +196,8 @@ def test_targets_vectors_and_past_positions_lie_along_their_way(orientation):
         east, north = PLACES[TRACKED]
         end = scene.place(east - 1.4 * 360, north + 0.3 * 360)
         middle = scene.place(east - 0.7 * 360, north + 0.15 * 360)
-        assert any(await scene.drawn('target', middle, reach=4))  # dashes
-        assert any(await scene.drawn('target', end, reach=4))
+        assert any(await scene.drawn('target', middle, reach=4, off=90))  # dashes
+        assert any(await scene.drawn('target', end, reach=4, off=90))
         # Relative: own ship's own way is taken off, as it is stabilised.
         await scene.page.evaluate("document.querySelector('[data-next=vectors]').click()")
         relative = scene.place(east - (1.4 + 0.8) * 360, north + (0.3 - 0.5) * 360)

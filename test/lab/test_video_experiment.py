@@ -44,6 +44,7 @@ def test_pairs_are_resolved_in_half_of_the_scans(apart):
     assert points.resolved(*apart, video.PAIR_DB, 1, 2) >= 0.5
 
 
+@pytest.mark.slow
 def test_a_scene_of_a_minute_is_held_better_than_by_a_threshold_and_blobs():
     ours, theirs = whole.both(1.2, 1)
     assert ours.plots < theirs.plots / 5

@@ -145,6 +145,7 @@ def test_nodes_that_do_not_answer_are_killed_and_the_demo_ends_in_time(demo, nod
     assert 'tracker does not end, and is killed' in process.said
 
 
+@pytest.mark.slow
 def test_a_demo_that_hangs_while_it_leaves_the_network_ends_in_time():
     script = (
         'import ctypes, sys\n'

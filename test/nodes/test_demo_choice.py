@@ -42,6 +42,7 @@ def numbers(newest):
     return newest.get('targets', {}).get('columns', {}).get('number', [])
 
 
+@pytest.mark.slow
 def test_scenario_recording_and_rate_are_chosen_in_the_page(launch, command, tmp_path):
     written = command('scenario', 'write', 'imo_3', tmp_path / 'tapes' / 'trial_run')
     assert written.returncode == 0, written.stderr

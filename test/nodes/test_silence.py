@@ -106,6 +106,7 @@ def sailing(graph, node_helpers, strait):
     return Strait(graph, node_helpers, strait)
 
 
+@pytest.mark.slow
 def test_a_pause_above_rate_1_is_extrapolated_over(sailing):
     sailing.until(110)
     before = {name: ship for name, ship in sailing.shown.ships().items() if ship}
@@ -119,6 +120,7 @@ def test_a_pause_above_rate_1_is_extrapolated_over(sailing):
     assert not sailing.tracker.inputs[0].bad.counts[intake.REBASED]
 
 
+@pytest.mark.slow
 def test_single_stamps_ahead_of_plots_or_own_ship_cost_no_track(sailing):
     sailing.until(110)
     before = {name: ship for name, ship in sailing.shown.ships().items() if ship}
@@ -133,6 +135,7 @@ def test_single_stamps_ahead_of_plots_or_own_ship_cost_no_track(sailing):
     assert sailing.tracker.bad_own_ship.counts[own_ship.OWN_JUMPED_AHEAD] == 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('stopped', ['tracker', 'radar_simulator'])
 def test_a_stopped_process_goes_on_at_the_next_scan_with_its_tracks(
     launch, graph, node_helpers, strait, stopped

@@ -26,7 +26,7 @@ PIER = {
 @pytest.fixture(scope='module')
 def seen():
     scene = scenario.build(PIER, 'pier')
-    service = service_for(scene.tracker_parameters(), estimator='imm')
+    service = service_for(scene.tracker_parameters(), estimator='imm', stationary_places=True)
     memory = service.start()
     for scan, _ in radar.simulate(scene, 6):
         memory, output = service.step(memory, scan)

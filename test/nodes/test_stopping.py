@@ -126,6 +126,7 @@ def stopped(process, number, again=()):
     return Stop(time.monotonic() - began, process.returncode, said)
 
 
+@pytest.mark.slow
 def test_a_node_that_holds_the_interpreter_for_ever_ends_in_time(domain):
     """In each of the ways, all side by side, for each takes the whole time of grace."""
     whens = ('callback', 'close', 'asleep', 'destroy', 'exit')

@@ -198,6 +198,7 @@ def test_a_radar_that_comes_up_later_joins_the_scene_where_it_is(graph, node_hel
     )
 
 
+@pytest.mark.slow
 def test_two_simulators_and_a_tracker_as_processes(launch, graph, node_helpers, tmp_path):
     wait, listener = node_helpers
     ears = listener(graph.bystander(), DiagnosticArray, topics.TARGETS, topics.latched(50))

@@ -49,7 +49,14 @@ def follow(seed, estimator):
     return held[1:] / detectable[1:], np.mean(false), np.array(resident)
 
 
-@pytest.mark.parametrize('estimator', ['gwnn', 'imm', 'cs_kalman'])
+@pytest.mark.parametrize(
+    'estimator',
+    [
+        'gwnn',
+        pytest.param('imm', marks=pytest.mark.slow),
+        pytest.param('cs_kalman', marks=pytest.mark.slow),
+    ],
+)
 def test_every_ship_is_held_and_clutter_gives_hardly_a_track(estimator):
     held, false, resident = follow(1, estimator)
     assert len(held) == 40

@@ -77,7 +77,8 @@ class Harbour:
 
     def __init__(self, scene, seed, **parameters):
         self.scene = scene
-        service = service_for(scene.tracker_parameters(), estimator='imm', **parameters)
+        parameters = {'estimator': 'imm', 'stationary_places': True, **parameters}
+        service = service_for(scene.tracker_parameters(), **parameters)
         memory = service.start()
         self.truth, self.tracks, self.place, self.shown, self.alerts = [], [], [], [], []
         for scan, truth in radar.simulate(scene, seed):

@@ -149,7 +149,7 @@ function drawBeyond(canvas, { view, middleX, middleY, radius }, target, colors) 
 function drawEllipse(canvas, view, target, colors) {
   const { long, short, bearing } = ellipse(target.xx, target.xy, target.yy);
   canvas.strokeStyle = colors.selected;
-  canvas.lineWidth = 1;
+  canvas.lineWidth = 2;
   canvas.beginPath();
   const [x, y] = toScreen(view, target.x, target.y);
   const size = ELLIPSE_SIGMA * view.scale;

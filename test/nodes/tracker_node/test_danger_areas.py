@@ -1,6 +1,7 @@
 """Areas of danger over DDS: to a listener, to viewers of the page; alerts silenced there."""
 
 import asyncio
+import threading
 import time
 
 import numpy as np
@@ -116,8 +117,11 @@ def test_own_ships_way_for_the_page_is_that_of_the_targets_courses(bridge, sea, 
     node = display(here)
 
     async def act(viewer):
-        await asyncio.to_thread(here.sail, 6)
+        told = threading.Event()
+        sailing = asyncio.ensure_future(asyncio.to_thread(here.sail_on, told.is_set, 400))
         await viewer.until(lambda me: me.newest.get('own', {}).get('stabilised') == 'sea')
+        told.set()
+        await sailing
         return viewer.newest['own']
 
     own = look(node, act)
