@@ -26,6 +26,8 @@ CROWD = 50.0  # plots a scan in one large cell, beyond which they are no sample 
 # Plots that what is known of the surroundings weighs as much as: for a large cell its ring, for a
 # small cell the large one.
 RING_WEIGHS, LARGE_WEIGHS = 1.0, 0.1
+import os
+SPREAD=float(os.environ.get('SPREAD','2'))
 A_TRACK, FEW = 3.0, 5  # plots that confirm a track; scans that tell little
 
 _EDGES = NEAREST * 2.0 ** (np.arange(RINGS + 1) / RINGS_AN_OCTAVE)
@@ -74,11 +76,14 @@ def learn(
     """
     scans = before.scans + 1
 
-    def mean(known: Array, places: tuple[Array, Array]) -> Array:
+    def mean(known: Array, places: tuple[Array, Array], of: int) -> Array:
         found = np.bincount(_cell(*places), minlength=RINGS * SECTORS)
-        return known + (found - known) / min(scans, MEMORY)
+        return known + (found - known) / min(of, MEMORY)
 
-    return ClutterMap(mean(before.doubtful, doubtful), mean(before.lone, lone), scans)
+    seen = mean(before.doubtful, doubtful, scans)
+    # In the first scan nothing has led to anything yet.
+    nowhere = mean(before.lone, lone, scans - 1) if before.scans else seen
+    return ClutterMap(seen, nowhere, scans)
 
 
 def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
@@ -99,13 +104,13 @@ def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
     large = (scans * count + RING_WEIGHS) / (scans * area + RING_WEIGHS / ring)
     cell = _cell(range_, bearing)
     row, sector = np.divmod(cell, SECTORS)
-    here = large[row // LARGE_RINGS, sector // LARGE_SECTORS]
-    plots = scans * clutter.doubtful[cell]
-    found: Array = (plots + LARGE_WEIGHS) / (scans * _AREA[row] + LARGE_WEIGHS / here)
-    often = max(scans, FEW) * _AREA[row]
-    again: Array = (plots - A_TRACK) / often
-    nearby: Array = (scans * _block(clutter.doubtful)[cell] - A_TRACK) / (9 * often)
-    return np.maximum(found, np.maximum(again, nearby))
+    here: Array = large[row // LARGE_RINGS, sector // LARGE_SECTORS]
+    usual = clutter.doubtful.reshape(RINGS, SECTORS).mean(1)[row]
+    own = A_TRACK / max(scans, FEW)
+    excess = clutter.doubtful[cell] - usual - SPREAD * np.sqrt(usual) - own
+    nearby = (_block(clutter.doubtful)[cell] - 9 * usual - 3 * SPREAD * np.sqrt(usual) - own) / 9
+    more: Array = np.maximum(np.maximum(excess, nearby), 0.0) / _AREA[row]
+    return here + more
 
 
 def _block(count: Array) -> Array:

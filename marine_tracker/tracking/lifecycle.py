@@ -38,6 +38,14 @@ def sure(tracks: Tracks) -> BoolArray:
     return found
 
 
+def given_up(tracks: Tracks, reason: CodeArray) -> IntArray:
+    """Plots [N] of each track that ends, with its reason [N], before its target was beyond doubt:
+    they were clutter's. 0 for all others."""
+    none = (reason == MISSED) & (tracks.age < SURE)
+    found: IntArray = np.where(none, hits(tracks.history, HISTORY), 0)
+    return found
+
+
 def held_by_another(
     tracks: Tracks, radar: int, time: Array, track: IntArray, held: Array
 ) -> BoolArray:

@@ -12,6 +12,8 @@ from .expected import Expected
 from .gate import Pairs
 from .look import Look
 
+import os
+UNSEEN=float(os.environ.get('UNSEEN','1e-8'))
 BEGIN = 0.1  # of the false plots of an empty sea: so many new targets may appear
 
 
@@ -39,6 +41,7 @@ class Evidence(NamedTuple):
     density: Array
     likelihood: Array
     detected: Array
+    scans: int
 
 
 def unknown() -> Surroundings:
@@ -70,7 +73,7 @@ def weigh(
         place = plots.range[old], plots.bearing[old]
         density[old] = share * clutter_map.density(known.before, *place)
     return Evidence(
-        density, existence.likelihood(pairs, density), existence.detection(tracks, prior)
+        density, existence.likelihood(pairs, density), existence.detection(tracks, prior), max(known.clutter.scans-1,0)
     )
 
 
@@ -102,7 +105,7 @@ def ratio(
         begun,
         now,
         evidence.density[second],
-        BEGIN * clutter_map.least(now.range),
+        BEGIN * clutter_map.least(now.range) + UNSEEN * (1 - radar.detection_probability) ** evidence.scans,
         radar.max_target_speed_mps,
         radar.detection_probability,
     )
@@ -110,19 +113,26 @@ def ratio(
 
 
 def found(
-    sure: BoolArray, seen: Look, plot_of: IntArray, plots: Plots, lone: Plots
+    sure: BoolArray,
+    given_up: IntArray,
+    seen: Look,
+    plot_of: IntArray,
+    plots: Plots,
+    lone: Plots,
 ) -> tuple[IntArray, tuple[Array, ...]]:
     """Rows [D] of the plots of no sure target, and what `learn` takes from a scan, or a sector.
 
     sure  [N]  the tracks whose targets are beyond doubt: their plots are no clutter, and they tell
                how targets show
+    given_up [N]  plots of each track that has just ended as none of a target
     lone       plots of the scan before that led to nothing
     """
     no_target = np.ones(len(plots.time), bool)
     no_target[plot_of[sure & (plot_of >= 0)]] = False
     doubtful = no_target.nonzero()[0]
     return doubtful, (
-        *(lone.range, lone.bearing),
+        np.append(lone.range, seen.distance.repeat(given_up)),
+        np.append(lone.bearing, seen.bearing.repeat(given_up)),
         *(plots.range[doubtful], plots.bearing[doubtful]),
         *(seen.distance[sure], seen.bearing[sure], seen.hit[sure].astype(float)),
     )

@@ -178,7 +178,8 @@ class Tracker:
         fixed[plot_of[hit & ~learnable]] = False
         at = take(plots, fixed)
         sure = lifecycle.sure(tracks) & (tracks.status != STATIONARY)
-        doubtful, found = surroundings.found(sure, seen, plot_of, plots, nowhere)
+        gone = lifecycle.given_up(tracks, reason)
+        doubtful, found = surroundings.found(sure, gone, seen, plot_of, plots, nowhere)
         found = (*found, at.position, at_rest.larger(at.covariance), at.time)
         alive = tracks.status != LOST
         memory = TrackerMemory(
