@@ -27,7 +27,7 @@ CROWD = 50.0  # plots a scan in one large cell, beyond which they are no sample 
 # small cell the large one.
 RING_WEIGHS, LARGE_WEIGHS = 1.0, 0.1
 import os
-SPREAD=float(os.environ.get('SPREAD','2'))
+W1=float(os.environ.get('W1','1'));W2=float(os.environ.get('W2','1'))
 A_TRACK, FEW = 3.0, 5  # plots that confirm a track; scans that tell little
 
 _EDGES = NEAREST * 2.0 ** (np.arange(RINGS + 1) / RINGS_AN_OCTAVE)
@@ -105,12 +105,11 @@ def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
     cell = _cell(range_, bearing)
     row, sector = np.divmod(cell, SECTORS)
     here: Array = large[row // LARGE_RINGS, sector // LARGE_SECTORS]
-    usual = clutter.doubtful.reshape(RINGS, SECTORS).mean(1)[row]
-    own = A_TRACK / max(scans, FEW)
-    excess = clutter.doubtful[cell] - usual - SPREAD * np.sqrt(usual) - own
-    nearby = (_block(clutter.doubtful)[cell] - 9 * usual - 3 * SPREAD * np.sqrt(usual) - own) / 9
-    more: Array = np.maximum(np.maximum(excess, nearby), 0.0) / _AREA[row]
-    return here + more
+    area = _AREA[row]
+    block = scans * _block(clutter.lone)[cell]
+    here = (block + W1) / (scans * 9 * area + W1 / here)
+    found: Array = (scans * clutter.lone[cell] + W2) / (scans * area + W2 / here)
+    return found
 
 
 def _block(count: Array) -> Array:
