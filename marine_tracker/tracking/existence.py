@@ -16,7 +16,7 @@ from ..types import Array, BoolArray, IntArray, Plots, Tracks
 from .gate import Pairs
 from .history import hits
 
-SURVIVAL = 0.9999  # a scan
+SURVIVAL = 0.999  # a scan
 EVEN = 0.5  # existence of a new track before its plots are weighed
 RECENT, PRIOR_SCANS = 20, 5.0  # scans that tell a track's P_D; what is known before weighs as five
 LEAST_DETECTION, MOST_DETECTION = 0.5, 0.95

@@ -13,7 +13,7 @@ STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost', 'stationary')
 MISSED, OUT_OF_RANGE, MERGED = range(1, 4)
 REASONS = ('', 'missed', 'out of range', 'merged')
 TEN, SHOWS = 10, 5  # a target that shows in so many scans of ten is kept (IMO A.823)
-SURE = 20  # scans
+SURE, SURE_PLOTS = 20, 10  # scans, or plots in the last 20 of them, that leave no doubt
 IN_THE_DARK = 30  # scans without a plot after which even a track in the blind zone is lost
 
 
@@ -34,7 +34,8 @@ def record(tracks: Tracks, hit: BoolArray, visible: BoolArray, ratio: Array) -> 
 
 def sure(tracks: Tracks) -> BoolArray:
     """Mask [N] of the targets that have been followed long enough to be beyond doubt."""
-    found: BoolArray = (tracks.status != TENTATIVE) & (tracks.age >= SURE)
+    known = (tracks.age >= SURE) | (hits(tracks.history, HISTORY) >= SURE_PLOTS)
+    found: BoolArray = (tracks.status != TENTATIVE) & known
     return found
 
 

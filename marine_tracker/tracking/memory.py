@@ -65,12 +65,10 @@ class Report(NamedTuple):
 
 
 class Left(NamedTuple):
-    """What a scan left: mask [M] of the plots that are lone; what is learnt from it; and the rows
-    [D] of the plots of no sure target among that (surroundings.found)."""
+    """What a scan left: mask [M] of the plots that are lone; and what is learnt from it."""
 
     free: BoolArray
     found: sectors.Found
-    doubtful: IntArray
 
 
 def changed(memory: TrackerMemory, radar: int, **changes: Any) -> TrackerMemory:

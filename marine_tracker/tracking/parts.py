@@ -7,7 +7,7 @@ import numpy as np
 from ..estimators import Estimator
 from ..parameters import TrackerParameters
 from ..types import Array, Scan, append, take
-from . import late_plots, sectors, surroundings
+from . import late_plots, sectors
 from .expected import expect
 from .gate import gate, windows
 from .memory import Left, Report, TrackerMemory, changed
@@ -54,8 +54,7 @@ def step(tracker: Core, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemor
     every = take(every, every.id.argsort())
     gone = sectors.unseen(waiting, seen, scan)[: len(looked)]
     looked = np.where(decided.tracks | gone, seen.middle[: len(looked)], looked)
-    found = surroundings.without(left.found, ~again[left.doubtful])
-    waiting = sectors.remember(waiting, pool, plots, tracks.id, looked, every, found)
+    waiting = sectors.remember(waiting, pool, plots, tracks.id, looked, every, left.found)
     free = take(after.radars[scan.radar].leftover, ~again[left.free])
     memory = changed(
         after._replace(tracks=every),

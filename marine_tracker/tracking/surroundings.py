@@ -12,9 +12,8 @@ from .expected import Expected
 from .gate import Pairs
 from .look import Look
 
-import os
-UNSEEN=float(os.environ.get('UNSEEN','1e-8'))
-BEGIN = 0.1  # of the false plots of an empty sea: so many new targets may appear
+BEGIN = 0.1  # of the false plots of an empty sea: so many new targets may appear in a scan
+FIRST = 0.01  # of the plots that the radar sees first: so many targets may be there already
 
 
 class Surroundings(NamedTuple):
@@ -36,12 +35,14 @@ class Evidence(NamedTuple):
     density     [M]  of false plots at the plots that would pass for a target's, per scan and m^2
     likelihood  [P]  of each pair: of the track, if its target was seen, over clutter
     detected    [N]  probability that the target of a track gives a plot
+    unseen           of the plots that begin tracks, the part that is of targets which were there
+                     when the radar began
     """
 
     density: Array
     likelihood: Array
     detected: Array
-    scans: int
+    unseen: float
 
 
 def unknown() -> Surroundings:
@@ -72,9 +73,9 @@ def weigh(
     if len(old):  # sectors: of the last revolution, whose own plots are not to count
         place = plots.range[old], plots.bearing[old]
         density[old] = share * clutter_map.density(known.before, *place)
-    return Evidence(
-        density, existence.likelihood(pairs, density), existence.detection(tracks, prior), max(known.clutter.scans-1,0)
-    )
+    unseen = FIRST * (1 - radar.detection_probability) ** max(known.clutter.scans - 1, 0)
+    likelihood, detected = existence.likelihood(pairs, density), existence.detection(tracks, prior)
+    return Evidence(density, likelihood, detected, unseen)
 
 
 def ratio(
@@ -100,55 +101,42 @@ def ratio(
         len(plots.time),
     )
     second = plot_of[seam:]
-    now = take(plots, second)
+    now, density = take(plots, second), evidence.density[second]
     of_new = existence.ratio_of_two(
         begun,
         now,
-        evidence.density[second],
-        BEGIN * clutter_map.least(now.range) + UNSEEN * (1 - radar.detection_probability) ** evidence.scans,
+        density,
+        BEGIN * clutter_map.least(now.range) + evidence.unseen * density,
         radar.max_target_speed_mps,
         radar.detection_probability,
     )
     return np.append(of_old, of_new)
 
 
-def found(
-    sure: BoolArray,
-    given_up: IntArray,
-    seen: Look,
-    plot_of: IntArray,
-    plots: Plots,
-    lone: Plots,
-) -> tuple[IntArray, tuple[Array, ...]]:
-    """Rows [D] of the plots of no sure target, and what `learn` takes from a scan, or a sector.
+def found(sure: BoolArray, given_up: IntArray, seen: Look, nowhere: Plots) -> tuple[Array, ...]:
+    """What `learn` takes from a scan, or a sector.
 
-    sure  [N]  the tracks whose targets are beyond doubt: their plots are no clutter, and they tell
-               how targets show
-    given_up [N]  plots of each track that has just ended as none of a target
-    lone       plots of the scan before that led to nothing
+    sure      [N]  the tracks whose targets are beyond doubt: they tell how targets show
+    given_up  [N]  plots of each track that has just ended as none of a target
+    nowhere        plots of the scan before that led to nothing
     """
-    no_target = np.ones(len(plots.time), bool)
-    no_target[plot_of[sure & (plot_of >= 0)]] = False
-    doubtful = no_target.nonzero()[0]
-    return doubtful, (
-        np.append(lone.range, seen.distance.repeat(given_up)),
-        np.append(lone.bearing, seen.bearing.repeat(given_up)),
-        *(plots.range[doubtful], plots.bearing[doubtful]),
+    return (
+        np.append(nowhere.range, seen.distance.repeat(given_up)),
+        np.append(nowhere.bearing, seen.bearing.repeat(given_up)),
         *(seen.distance[sure], seen.bearing[sure], seen.hit[sure].astype(float)),
     )
 
 
-def without(found: tuple[Array, ...], keep: BoolArray) -> tuple[Array, ...]:
-    """What was found, of the D plots of no sure target only those to keep."""
-    return (*found[:2], found[2][keep], found[3][keep], *found[4:])
+def learn(known: Surroundings, end: float, lone: Plots, *of_revolution: Array) -> Surroundings:
+    """The surroundings after a revolution that ended at `end` s: what was `found`, put together.
 
-
-def learn(known: Surroundings, end: float, *of_revolution: Array) -> Surroundings:
-    """The surroundings after a revolution that ended at `end` s: what was `found`, put together."""
-    lone, doubtful = of_revolution[:2], of_revolution[2:4]
-    range_, bearing, hit = of_revolution[4:]
+    lone  plots of this revolution that are of no track: the first one has nothing else to tell
+    """
+    nowhere, (range_, bearing, hit) = of_revolution[:2], of_revolution[2:]
+    if not known.clutter.scans:
+        nowhere = lone.range, lone.bearing
     return Surroundings(
-        clutter_map.learn(known.clutter, (doubtful[0], doubtful[1]), (lone[0], lone[1])),
+        clutter_map.learn(known.clutter, *nowhere),
         detection_map.learn(known.detection, range_, bearing, hit > 0),
         known.clutter,
         end,

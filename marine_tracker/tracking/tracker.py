@@ -100,7 +100,8 @@ class Tracker:
     ) -> TrackerMemory:
         """The memory after a whole revolution: false plots, and places where plots always are."""
         p, (*around, position, variance, time) = self.radars[radar], found
-        learnt = surroundings.learn(memory.radars[radar].known, end, *around)
+        of_radar = memory.radars[radar]
+        learnt = surroundings.learn(of_radar.known, end, of_radar.leftover, *around)
         known, number = at_rest.name(memory.ground.places, memory.next_number)
         distance = np.hypot(*(known.position - memory.origin).T)
         visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
@@ -179,7 +180,7 @@ class Tracker:
         at = take(plots, fixed)
         sure = lifecycle.sure(tracks) & (tracks.status != STATIONARY)
         gone = lifecycle.given_up(tracks, reason)
-        doubtful, found = surroundings.found(sure, gone, seen, plot_of, plots, nowhere)
+        found = surroundings.found(sure, gone, seen, nowhere)
         found = (*found, at.position, at_rest.larger(at.covariance), at.time)
         alive = tracks.status != LOST
         memory = TrackerMemory(
@@ -193,7 +194,7 @@ class Tracker:
         told = seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan
         report = Report(*told, at_rest.shown(ground))
         memory = changed(memory, scan.radar, leftover=take(measured, free))
-        return memory, report, Left(free, found, doubtful)
+        return memory, report, Left(free, found)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """Takes over the memory of another tracker for this one's estimator. No track is lost.

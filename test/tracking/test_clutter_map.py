@@ -14,8 +14,7 @@ def sea(rng, density, reach, sectors=(0.0, 2 * np.pi)):
 def learnt(rng, scans, before=None, **about):
     clutter = clutter_map.empty() if before is None else before
     for _ in range(scans):
-        plots = sea(rng, **about)
-        clutter = clutter_map.learn(clutter, plots, plots)
+        clutter = clutter_map.learn(clutter, *sea(rng, **about))
     return clutter
 
 
@@ -62,14 +61,14 @@ def test_clutter_that_has_gone_is_forgotten():
     clutter = learnt(rng, 60, density=2e-5, reach=5000.0)
     nothing = np.zeros(0), np.zeros(0)
     for _ in range(150):
-        clutter = clutter_map.learn(clutter, nothing, nothing)
+        clutter = clutter_map.learn(clutter, *nothing)
     assert (clutter_map.density(clutter, *sea(rng, 1e-6, 4000.0)) < 0.01 * 2e-5).all()
 
 
 def test_an_empty_sea_has_a_small_positive_density_everywhere():
     where = np.array([0.0, 1e-9, 10.0, 50.0, 3e3, 4.4e4, 2e5, 1e6])
     nothing = np.zeros(0), np.zeros(0)
-    for clutter in (clutter_map.empty(), clutter_map.learn(clutter_map.empty(), nothing, nothing)):
+    for clutter in (clutter_map.empty(), clutter_map.learn(clutter_map.empty(), *nothing)):
         found = clutter_map.density(clutter, where, np.linspace(0, 2 * np.pi, 8))
         assert np.isfinite(found).all() and (found > 0).all()
         # Much less than one false plot in the gate of a track, 1 / (pi (3 x 60 m)^2).
@@ -78,9 +77,8 @@ def test_an_empty_sea_has_a_small_positive_density_everywhere():
 
 def test_learning_leaves_the_map_before_it_alone():
     clutter = clutter_map.empty()
-    one = np.array([100.0]), np.array([1.0])
-    clutter_map.learn(clutter, one, one)
-    assert not clutter.doubtful.any() and not clutter.lone.any() and clutter.scans == 0
+    clutter_map.learn(clutter, np.array([100.0]), np.array([1.0]))
+    assert not clutter.plots.any() and clutter.scans == 0
 
 
 def test_a_crowd_in_one_cell_says_nothing_of_the_other_side_of_the_ring():
@@ -89,24 +87,35 @@ def test_a_crowd_in_one_cell_says_nothing_of_the_other_side_of_the_ring():
     clutter = clutter_map.empty()
     for _ in range(40):
         crowd = 5000 + rng.uniform(-100, 100, 4000), 1.0 + rng.uniform(-0.02, 0.02, 4000)
-        clutter = clutter_map.learn(clutter, crowd, crowd)
+        clutter = clutter_map.learn(clutter, *crowd)
     there, abeam = clutter_map.density(clutter, np.full(2, 5000.0), np.array([1.0, 3.0]))
     assert there > 3e-4
     assert abeam < 5e-6
 
 
-def test_a_quay_whose_plots_make_tracks_is_known_in_its_small_cells():
-    """Its plots are of tracks, so they are never lone; those of a clear sea are few."""
+def test_a_shore_is_known_in_its_small_cells():
+    """Two plots a scan at one place, among few that are anywhere."""
     rng = np.random.default_rng(10)
     clutter = clutter_map.empty()
-    for _ in range(12):
-        quay = 700 + rng.normal(0, 3, 2), 2.0 + rng.normal(0, 0.004, 2)
-        clutter = clutter_map.learn(clutter, quay, sea(rng, 2e-7, 3000.0))
-    range_, bearing = np.array([700.0, 700.0, 800.0]), np.array([2.0, 2.3, 2.0])
+    for _ in range(32):
+        shore = 700 + rng.normal(0, 3, 2), 2.0 + rng.normal(0, 0.004, 2)
+        found = np.concatenate([shore, sea(rng, 2e-7, 3000.0)], 1)
+        clutter = clutter_map.learn(clutter, *found)
+    range_, bearing = np.array([700.0, 700.0, 1400.0]), np.array([2.0, 2.6, 2.0])
     there, beside, behind = clutter_map.density(clutter, range_, bearing)
     assert there > 30 * max(beside, behind)
     # Two plots a scan in a cell of 69 m by 63 m.
-    assert 0.7 * 2 / (69 * 63) < there < 1.3 * 2 / (69 * 63)
+    assert 0.7 * 2 / (69 * 63) < there < 1.1 * 2 / (69 * 63)
+
+
+def test_the_first_scan_is_forgotten_with_the_second():
+    """In the first all plots are lone; in the second those of targets are not."""
+    rng = np.random.default_rng(11)
+    first = clutter_map.learn(clutter_map.empty(), *sea(rng, 5e-5, 3000.0))
+    clutter = clutter_map.learn(first, *sea(rng, 8e-6, 3000.0))
+    where = sea(rng, 1e-5, 2500.0)
+    assert clutter_map.density(first, *where).mean() == pytest.approx(5e-5, rel=0.2)
+    assert clutter_map.density(clutter, *where).mean() == pytest.approx(8e-6, rel=0.3)
 
 
 def test_an_empty_sea_has_the_least_density():
