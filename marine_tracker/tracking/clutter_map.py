@@ -84,6 +84,8 @@ def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
     cell = _cell(range_, bearing)
     row, sector = np.divmod(cell, SECTORS)
     found: Array = large[row // LARGE_RINGS, sector // LARGE_SECTORS]
+    if clutter.scans < 2:  # a target's own first plot would make its small cell one of clutter
+        return found
     area = scans * _AREA[row]
     for plots, cells in ((_block(clutter.plots, row, sector), 9), (clutter.plots[cell], 1)):
         found = (scans * plots + WEIGHT) / (cells * area + WEIGHT / found)

@@ -8,6 +8,7 @@ from ..geometry import to_range_bearing
 from ..parameters import TrackerParameters
 from ..types import Array, BoolArray, IntArray, Plots, Tracks, take
 from . import clutter_map, detection_map, existence
+from .doppler import Shares
 from .expected import Expected
 from .gate import Pairs
 from .look import Look
@@ -32,17 +33,19 @@ class Surroundings(NamedTuple):
 class Evidence(NamedTuple):
     """What a scan tells of targets and clutter.
 
-    density     [M]  of false plots at the plots that would pass for a target's, per scan and m^2
+    density     [M]  of false plots at the plots, per scan and m^2
     likelihood  [P]  of each pair: of the track, if its target was seen, over clutter
     detected    [N]  probability that the target of a track gives a plot
     unseen           of the plots that begin tracks, the part that is of targets which were there
                      when the radar began
+    share            of false second plots that would pass for a target's by their radial speed
     """
 
     density: Array
     likelihood: Array
     detected: Array
     unseen: float
+    share: float
 
 
 def unknown() -> Surroundings:
@@ -54,7 +57,7 @@ def unknown() -> Surroundings:
 def weigh(
     known: Surroundings,
     pairs: Pairs,
-    share: float,
+    share: Shares,
     tracks: Tracks,
     expected: Expected,
     plots: Plots,
@@ -68,14 +71,15 @@ def weigh(
     count = len(tracks.id)
     place = to_range_bearing(expected.position[:count] - expected.origin[:count])
     prior = detection_map.probability(known.detection, *place, radar.detection_probability)
-    density = share * clutter_map.density(known.clutter, plots.range, plots.bearing)
+    density = clutter_map.density(known.clutter, plots.range, plots.bearing)
     old = (plots.time < known.since).nonzero()[0]
     if len(old):  # sectors: of the last revolution, whose own plots are not to count
         place = plots.range[old], plots.bearing[old]
-        density[old] = share * clutter_map.density(known.before, *place)
+        density[old] = clutter_map.density(known.before, *place)
     unseen = FIRST * (1 - radar.detection_probability) ** max(known.clutter.scans - 1, 0)
-    likelihood, detected = existence.likelihood(pairs, density), existence.detection(tracks, prior)
-    return Evidence(density, likelihood, detected, unseen)
+    likelihood = existence.likelihood(pairs, share.tracks * density)
+    detected = existence.detection(tracks, prior)
+    return Evidence(density, likelihood, detected, unseen, share.lone)
 
 
 def ratio(
@@ -101,12 +105,13 @@ def ratio(
         len(plots.time),
     )
     second = plot_of[seam:]
-    now, density = take(plots, second), evidence.density[second]
+    now, density = take(plots, second), evidence.share * evidence.density[second]
     of_new = existence.ratio_of_two(
         begun,
         now,
         density,
-        BEGIN * clutter_map.least(now.range) + evidence.unseen * density,
+        # A first plot may have any radial speed: of false ones none are left out.
+        BEGIN * clutter_map.least(now.range) * evidence.share + evidence.unseen * density,
         radar.max_target_speed_mps,
         radar.detection_probability,
     )

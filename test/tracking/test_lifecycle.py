@@ -124,7 +124,7 @@ def test_a_young_track_lives_until_its_target_is_hardly_there(loss, doubt):
     found = live(pattern, gain=9.0, loss=loss, lose_existence=doubt)
     there, gone = 0.5, 0.5
     for what, (status, _, tracks) in zip(pattern, found):
-        there, gone = there * 0.9999, gone + there * 0.0001
+        there, gone = there * 0.999, gone + there * 0.001
         there *= 9.0 if what == '1' else loss
         assert tracks.existence[0] == pytest.approx(there / (there + gone))
         assert (status == LOST) == (tracks.existence[0] < doubt)
@@ -138,11 +138,11 @@ def test_nothing_is_ever_quite_certain():
 
 
 def test_a_sure_target_that_shows_in_five_of_ten_scans_is_kept():
-    """However little one believes in it; a young one is not."""
+    """However little one believes in it; one of few plots is not."""
     half = '0101100110' * 8
     about = {'gain': 1.1, 'loss': 0.1}
     assert LOST not in statuses('1' * 19 + half, believed=0.999, status=CONFIRMED, **about)
-    assert LOST in statuses('1' * 8 + half, believed=0.999, status=CONFIRMED, **about)
+    assert LOST in statuses('1' * 3 + half, believed=0.999, status=CONFIRMED, **about)
     fewer = '0101000110' * 8
     assert LOST in statuses('1' * 19 + fewer, believed=0.999, status=CONFIRMED, **about)
 
