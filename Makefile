@@ -18,7 +18,7 @@ BIN := .venv/bin
 DESCRIPTION := setup.py setup.cfg pyproject.toml package.xml Makefile .ci/setup
 # What each target needs, the extras of setup.py. Every one has more than the one before.
 FOR_DEMO := ros,display,record
-FOR_TEST := $(FOR_DEMO),top,test,parallel,plot,bench,cluster
+FOR_TEST := $(FOR_DEMO),top,test,parallel,plot,bench,cluster,nmea2000
 FOR_CHECK := $(FOR_TEST),dev
 # A stamp for each, and for each choice of interpreter: asking for another one makes .venv anew.
 CHOICE := $(addprefix -,$(notdir $(PYTHON)))
@@ -26,19 +26,19 @@ DEMO := .venv/.for-demo$(CHOICE)
 TEST := .venv/.for-test$(CHOICE)
 CHECK := .venv/.for-check$(CHOICE)
 
-.PHONY: demo test nodes arithmetic check api slow fuzz clean
+.PHONY: demo test nodes arithmetic check types api slow fuzz clean
 
 demo: $(DEMO)
 	@exec $(BIN)/python .ci/foreground.py $(BIN)/marine_tracker demo $(ARGS)
 
-# Two halves side by side: the nodes, which run in real time and mostly wait, three files at a time; the
+# Two halves side by side: the nodes, which run in real time and mostly wait, four files at a time; the
 # arithmetic in the time that they leave, its output at its end.
 test: $(TEST)
 	@$(MAKE) --no-print-directory --jobs=2 --keep-going --output-sync=target nodes arithmetic
 
 # Code 5: ARGS leaves no test in this half. A `+` line is not held back.
 nodes:
-	+@$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' -n 3 --dist loadfile $(ARGS) || [ $$? = 5 ]
+	+@$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' -n 4 --dist loadfile $(ARGS) || [ $$? = 5 ]
 
 arithmetic:
 	@nice -n 19 $(BIN)/python -m pytest -m 'not slow and not fuzz and not nodes' -n auto --maxprocesses 4 \
@@ -47,11 +47,13 @@ arithmetic:
 check: $(CHECK)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy
-	@$(MAKE) --no-print-directory api test
+	@$(MAKE) --no-print-directory --jobs=3 --keep-going --output-sync=target nodes arithmetic types api
+
+types:
+	nice -n 19 $(BIN)/mypy
 
 api: $(CHECK)
-	$(BIN)/python doc/api/build.py build/api
+	nice -n 19 $(BIN)/python doc/api/build.py build/api
 
 slow: $(TEST)
 	$(BIN)/python -m pytest -m slow $(ARGS)

@@ -36,6 +36,7 @@ setup(
     install_requires=[
         'numpy>=1.26.4',
         'PyWavelets>=1.4',
+        'pyais>=3.0',
         'pynmea2>=1.19',
         'pyproj>=3.4',
         'rich>=13.3',
@@ -60,6 +61,8 @@ setup(
         'top': ['textual>=1.0'],
         # Recordings of topics: node recorder, replay and score of MCAP files.
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.6'],
+        # Targets on NMEA 2000: nmea_output with nmea2000_udp.
+        'nmea2000': ['nmea2000>=2026.10'],
         'parallel': ['pytest-xdist>=3.3'],
         # Parts of experiments on other machines: --scheduler.
         'cluster': ['distributed>=2024.1', 'threadpoolctl>=3.1'],
@@ -70,6 +73,7 @@ setup(
     entry_points={
         'console_scripts': [
             'marine_tracker = marine_tracker.cli:main',
+            'ais_input = marine_tracker.nodes.run:ais_input',
             'nmea_output = marine_tracker.nodes.run:nmea_output',
             'plot_extractor = marine_tracker.nodes.run:plot_extractor',
             'ppi_display = marine_tracker.nodes.run:ppi_display',

@@ -18,6 +18,7 @@ COMMANDS = (
     'replay',
     'incident',
     'score',
+    'draw',
     'bench',
     'experiments',
     'train',

@@ -67,6 +67,13 @@ class LocalFrame:
         )
         return distance[..., None] * unit_vector(np.radians(bearing_deg))
 
+    def to_local_or_nan(self, latitude: Array, longitude: Array) -> Array:
+        """As `to_local`, for places [R] that may be nan, and are nan [R, 2] then."""
+        found = np.full((len(latitude), 2), np.nan)
+        known = np.isfinite(latitude) & np.isfinite(longitude)
+        found[known] = self.to_local(latitude[known], longitude[known])
+        return found
+
     def to_geodetic(self, position: ArrayLike) -> tuple[Array, Array]:
         """Latitude [...] and longitude [...] deg of positions [..., 2] m.
 

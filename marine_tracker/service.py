@@ -15,18 +15,28 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .ais import ais_alarms, fusion
+from .ais.ais import Ais, AisMemory, AisPicture
+from .ais.join import Seen
+from .ais.reports import Reports
+from .arpa import motion
+from .arpa.alerts import Alerts
 from .arpa.arpa import Arpa, ArpaMemory, Picture
+from .arpa.cpa import OwnMotion
 from .arpa.stabilisation import ALL_WELL, OwnSensors
 from .arpa.view import Standing, standing
 from .estimators import Estimator
 from .extent.extents import Extents, ExtentsMemory
 from .extent.hulls import Shapes
 from .geometry import heading_from
-from .parameters import ArpaParameters, TrackerParameters, from_mapping
+from .parameters import AisParameters, ArpaParameters, TrackerParameters, from_mapping
+from .tracking import late_plots
+from .tracking.lifecycle import CONFIRMED, LOST, STATIONARY
 from .tracking.mounting import mounted
+from .tracking.offsets import corrected
 from .tracking.revolution import Turn, report_of, whole
 from .tracking.tracker import Report, Tracker, TrackerMemory
-from .types import Extrapolation, OwnShip, Scan, take
+from .types import Array, Extrapolation, OwnShip, Scan, Tracks, append, take
 
 
 class ServiceMemory(NamedTuple):
@@ -39,6 +49,7 @@ class ServiceMemory(NamedTuple):
     extents: ExtentsMemory
     arpa: ArpaMemory
     turns: tuple[Turn, ...]
+    ais: AisMemory
 
 
 class Tracking(NamedTuple):
@@ -63,6 +74,7 @@ class Output(NamedTuple):
 
     standing  how the estimator fares with the confirmed tracks
     picture   targets and alarms
+    ais       ships of AIS; None where none was ever heard
     """
 
     scan: Scan
@@ -71,6 +83,7 @@ class Output(NamedTuple):
     shapes: Shapes | None
     standing: Standing
     picture: Picture
+    ais: AisPicture | None = None
 
 
 class Service:
@@ -85,15 +98,18 @@ class Service:
         tracker: TrackerParameters,
         arpa: ArpaParameters | None = None,
         estimator: Estimator | None = None,
+        ais: AisParameters | None = None,
     ) -> None:
         self.tracker = Tracker(tracker, estimator)
         self.extents = Extents(tracker)
         self.arpa = Arpa(arpa or ArpaParameters(), self.tracker.parameters)
+        self.ais = Ais(ais or AisParameters(), self.arpa)
 
     def start(self) -> ServiceMemory:
         """No tracks yet."""
         turns = (Turn(),) * len(self.tracker.radars)
-        return ServiceMemory(self.tracker.start(), self.extents.start(), self.arpa.start(), turns)
+        parts = self.tracker.start(), self.extents.start(), self.arpa.start()
+        return ServiceMemory(*parts, turns, self.ais.start())
 
     def take(
         self,
@@ -159,10 +175,72 @@ class Service:
     ) -> tuple[ServiceMemory, Output]:
         """The second half of `step`: targets and alarms."""
         fares = standing(done.report, self.tracker.estimator)
+        tracks, heard = done.report.tracks, bool(len(memory.ais.ships.id))
+        known = memory.arpa
+        if heard:
+            alerts = ais_alarms.to_ships(known.alerts, *memory.ais[:2], tracks)
+            known = known._replace(alerts=alerts)
         known, picture = self.arpa.step(
-            memory.arpa, done.scan, done.report, heading, fares.fallen_at, sensors
+            known, done.scan, done.report, heading, fares.fallen_at, sensors
         )
-        return memory._replace(arpa=known), Output(*done, fares, picture)
+        memory = memory._replace(arpa=known)
+        if not heard:
+            return memory, Output(*done, fares, picture)
+        seen, before = _seen(known.motion, tracks, done.scan.end), memory.ais.time
+        against = picture.stabilised.drift
+        memory, ships, changed = self.ships(
+            memory, seen, picture.own, against, sensors, done.scan.end
+        )
+        picture = picture._replace(
+            alerts=memory.arpa.alerts, changed=append(picture.changed, changed)
+        )
+        if self.ais.parameters.ais_fusion:
+            memory = self._fused(memory, ships, picture.own.position, before, done.scan.radar)
+        return memory, Output(*done, fares, picture, ships)
+
+    def _fused(
+        self, memory: ServiceMemory, ships: AisPicture, own: Array, since: float, radar: int
+    ) -> ServiceMemory:
+        """The memory with places of AIS, heard after `since` s, in the tracks of their ships."""
+        tracks = memory.tracker.tracks
+        plots, rows = fusion.plots_of(
+            ships.ships, ships.joined, ships.registration, tracks, own, since
+        )
+        if not len(rows):
+            return memory
+        fused = late_plots.update(self.tracker.estimator, tracks, plots, rows, radar)
+        tracks = fused._replace(last_time=tracks.last_time, radar=tracks.radar)
+        return memory._replace(tracker=memory.tracker._replace(tracks=tracks))
+
+    def hear(self, memory: ServiceMemory, reports: Reports, position: Array) -> ServiceMemory:
+        """The memory with reports of AIS, whose places are at `position` [R, 2] m in the frame
+        `map`; nan for none. They count from the next step on."""
+        return memory._replace(ais=self.ais.hear(memory.ais, reports, position))
+
+    def without_radar(
+        self, memory: ServiceMemory, own: OwnMotion, now: float, sensors: OwnSensors = ALL_WELL
+    ) -> tuple[ServiceMemory, AisPicture, Alerts]:
+        """Ships of AIS where no scan comes: to be called by the clock; now s, of scans' time.
+
+        Returns the alerts that changed last. own: own ship over ground
+        """
+        return self.ships(memory, None, own, np.zeros(2), sensors, now)
+
+    def ships(
+        self,
+        memory: ServiceMemory,
+        seen: Seen | None,
+        own: OwnMotion,
+        drift: Array,
+        sensors: OwnSensors,
+        now: float,
+    ) -> tuple[ServiceMemory, AisPicture, Alerts]:
+        """Ships of AIS beside the tracks that are seen, as Ais.step; the alerts that changed."""
+        known = memory.arpa
+        ais, alerts, changed, ships = self.ais.step(
+            memory.ais, seen, known.alerts, own, known.own, drift, sensors, now
+        )
+        return memory._replace(ais=ais, arpa=known._replace(alerts=alerts)), ships, changed
 
     def track(
         self, memory: ServiceMemory, scan: Scan, heading: float | None = None
@@ -172,6 +250,7 @@ class Service:
         if heading is None:
             heading = heading_of(scan.own_ship)
         scan = mounted(scan, tracker.radars[scan.radar], heading)
+        scan = corrected(scan, memory.tracker.radars[scan.radar].offsets.applied)
         seen = None
         if extents.on:
             sure = take(memory.tracker.tracks, memory.tracker.tracks.number > 0)
@@ -200,6 +279,21 @@ class Service:
         )
 
 
+def _seen(known: motion.MotionMemory, tracks: Tracks, now: float) -> Seen:
+    """The radar's tracks at the time now, s, as AIS is compared with them."""
+    moving = motion.at(known, now)
+    alive = tracks.status != LOST
+    return Seen(
+        tracks.id,
+        tracks.number,
+        moving.position,
+        moving.velocity,
+        moving.covariance,
+        alive & (tracks.number > 0),
+        np.isin(tracks.status, (CONFIRMED, STATIONARY)),
+    )
+
+
 def _turned(memory: ServiceMemory, radar: int, turn: Turn) -> ServiceMemory:
     """The memory with what came of the radar's revolution so far."""
     turns = list(memory.turns)
@@ -211,6 +305,11 @@ def service_for(values: Mapping[str, Any], **changes: Any) -> Service:
     """A service with the tracker parameters that a scenario or a recording gives, and `changes`;
     else with shipped defaults. ValueError where one is unknown or wrong."""
     return Service(from_mapping(TrackerParameters, {**values, **changes}))
+
+
+def service_of(tracker: TrackerParameters, arpa: ArpaParameters, ais: AisParameters) -> Service:
+    """A service with these parameters. ValueError where they are wrong."""
+    return Service(tracker, arpa, ais=ais)
 
 
 def heading_of(own_ship: OwnShip) -> float:

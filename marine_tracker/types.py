@@ -78,6 +78,7 @@ class Scan(NamedTuple):
     radar       which of the tracker's radars it comes from, counted from 0
     antenna     the same K samples of the antenna; None: it is at own ship's reference point
     sector      the part of a revolution that was swept; None: a whole one. Parts follow one another
+    unswept     [G, 2]  rad, gaps in it: where each begins, and its width clockwise; None: none
     """
 
     start: float
@@ -87,6 +88,7 @@ class Scan(NamedTuple):
     radar: int = 0
     antenna: OwnShip | None = None
     sector: Sector | None = None
+    unswept: Array | None = None
 
     @property
     def measured_from(self) -> OwnShip:

@@ -41,7 +41,7 @@ def test_simulated_targets_are_tracked():
     assert len([error for error in errors if error < 100]) == 3
 
 
-@pytest.mark.parametrize('source', ['scenario', 'recording'])
+@pytest.mark.parametrize('source', ['scenario', pytest.param('recording', marks=pytest.mark.slow)])
 def test_recording_is_replayed_and_scored(source, request):
     arguments = []
     if source == 'recording':

@@ -26,6 +26,7 @@ ROSDEP_KEY = {
     'mcap-ros2-support': 'python3-mcap-ros2-support',
     'numpy': 'python3-numpy',
     'psutil': 'python3-psutil',
+    'pyais': 'python3-pyais',
     'pynmea2': 'python3-pynmea2',
     'pyproj': 'python3-pyproj',
     'pytest': 'python3-pytest',
@@ -156,7 +157,7 @@ def test_every_ros_package_imported_is_in_package_xml():
 
 def test_every_rosdep_key_of_our_own_has_a_rule_for_debian_and_ubuntu():
     rules = read_yaml('rosdep.yaml')
-    lacking = {'python3-mcap', 'python3-mcap-ros2-support', 'python3-pywavelets'}
+    lacking = {'python3-mcap', 'python3-mcap-ros2-support', 'python3-pyais', 'python3-pywavelets'}
     assert set(rules) == lacking <= manifest('exec_depend')
     assert all({'debian', 'ubuntu'} <= set(rule) for rule in rules.values())
 
@@ -195,6 +196,7 @@ def test_package_is_in_the_ament_index(installed):
 def test_executables_stand_where_ros2_run_looks(installed, distribution):
     folder = installed / 'lib' / 'marine_tracker'
     names = {
+        'ais_input',
         'marine_tracker',
         'nmea_output',
         'plot_extractor',

@@ -42,13 +42,13 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
     where = f'{first / NAUTICAL_MILE:.2f} NM'
     if math.isfinite(second):  # nan without a heading
         where += f', {round(math.degrees(second), 1) % 360:05.1f} deg'
-    if kind == alarms.DANGER:
+    if kind in (alarms.DANGER, alarms.AIS_DANGER):
         when = f'in {fourth / 60:.1f} min' if math.isfinite(fourth) else 'at an unknown time'
         return (
             f'{name} dangerous: CPA {third / NAUTICAL_MILE:.2f} NM {when}, probability '
             f'{100 * fifth:.0f} %, then at {where}'
         )
-    if kind == alarms.LOST_TARGET:
+    if kind in (alarms.LOST_TARGET, alarms.AIS_LOST):
         return f'{name} lost, last at {where}'
     if kind == alarms.NEW_TARGET:
         return f'{name} in guard zone {part}, at {where}'
@@ -72,9 +72,22 @@ def _sentence(kind: int, name: str, part: str, values: list[float]) -> str:
             f'{first:.0f} stationary in the way: the first {when}, '
             f'CPA {fourth / NAUTICAL_MILE:.2f} NM, now at {at}'
         )
+    if kind in alarms.OF_AIS:
+        return _of_ais(kind, name, where if math.isfinite(first) else 'a place not told', third)
+    if kind == alarms.AIS_CAPACITY:
+        return f'{first:.0f} ships of AIS, {second:.0f} may be'
     if kind == alarms.OWN_SPEED:
         return f"own ship's speed as told is {first / KNOT:.1f} kn off the way of her positions"
     silent = f'for {first:.0f} s' if math.isfinite(first) else 'so far'
     of = f' of radar {part}' if kind == alarms.PLOTS_MISSING and part != NO_LONGER else ''
     then = ': relative bearings only' if kind == alarms.HEADING_MISSING and second == 1 else ''
     return f'no {alarms.NAMES[kind].removesuffix(" missing")}{of} {silent}{then}'
+
+
+def _of_ais(kind: int, name: str, where: str, value: float) -> str:
+    if kind == alarms.AIS_MISMATCH:
+        return f'{name} says {where}: {value:.0f} m off her echo, or not the same ship'
+    if kind == alarms.AIS_TWICE:
+        return f'{name} is used by two ships, one at {where}'
+    what = 'distress beacon' if kind == alarms.AIS_SART else 'test of a distress beacon'
+    return f'{name}: {what} at {where}'

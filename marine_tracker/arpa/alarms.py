@@ -20,18 +20,26 @@ alerts.py has the states of an alert. These are the kinds and their causes:
     own speed        what is told of own ship's velocity is not the way that her positions make
     stationary danger    own ship will pass stationary objects (stationary.py) within the limits;
                      one alert for all of them
+    AIS danger       as danger, of a ship of AIS that is not joined to a target
+    AIS lost         an activated or joined ship of AIS is silent for too long
+    AIS mismatch     a target and its ship of AIS have come apart: one of them is wrong
+    AIS number twice two ships send one number
+    AIS-SART         a distress beacon is heard, wherever it is; a test of one is a caution
+    AIS capacity     nearly as many ships of AIS as may be
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from ..tracking.lifecycle import CONFIRMED, LOST, STATIONARY
-from ..types import Array, CodeArray, IntArray, row_of, take
+from ..types import Array, IntArray, row_of, take
 from . import alerts as machine
 from . import encounters, sounding
 from .acquisition import Acquisition, how_acquired
-from .alerts import KEEP, OFF, ON, VALUES, Alerts, Causes, Rule
+from .alarm_causes import causes_of, of_tracks, single
+from .alerts import KEEP, OFF, ON, Alerts, Causes, Rule
 from .situation import Limits, Situation
 from .targets import LOST_FROM_SIGHT, Events
 from .zones import Zones
@@ -50,6 +58,13 @@ NAMES = (
     'own speed doubtful',
     'log missing',
     'stationary danger',
+    'AIS danger',
+    'AIS lost',
+    'AIS mismatch',
+    'AIS number twice',
+    'AIS-SART',
+    'AIS-SART test',
+    'AIS capacity',
 )
 (
     DANGER,
@@ -65,6 +80,13 @@ NAMES = (
     OWN_SPEED,
     LOG_MISSING,
     STATIONARY_DANGER,
+    AIS_DANGER,
+    AIS_LOST,
+    AIS_MISMATCH,
+    AIS_TWICE,
+    AIS_SART,
+    AIS_SART_TEST,
+    AIS_CAPACITY,
 ) = range(len(NAMES))
 PRIORITY = (
     'alarm',
@@ -80,17 +102,25 @@ PRIORITY = (
     'warning',
     'warning',
     'warning',
+    'alarm',
+    'warning',
+    'caution',
+    'caution',
+    'alarm',
+    'caution',
+    'caution',
 )
 PRIORITIES = ('alarm', 'warning', 'caution')
 RANK = np.array([PRIORITIES.index(priority) for priority in PRIORITY])
 WARNING, CAUTION = RANK == 1, RANK == 2
 MOMENTARY = np.arange(len(NAMES)) == LOST_TARGET
-REMEMBERED = np.arange(len(NAMES)) == DANGER
+REMEMBERED = np.isin(np.arange(len(NAMES)), (DANGER, AIS_DANGER))
 # Categories of MSC.302: A is judged by the picture, B needs none. C, beyond the bridge, are none.
-BY_PICTURE = (DANGER, LOST_TARGET, NEW_TARGET, SWAP_RISK, STATIONARY_DANGER)
+OF_AIS = (AIS_DANGER, AIS_LOST, AIS_MISMATCH, AIS_TWICE, AIS_SART, AIS_SART_TEST)
+BY_PICTURE = (DANGER, LOST_TARGET, NEW_TARGET, SWAP_RISK, STATIONARY_DANGER, *OF_AIS)
 CATEGORY = tuple('A' if kind in BY_PICTURE else 'B' for kind in range(len(NAMES)))
 IDENTIFIER = tuple(10001 + kind for kind in range(len(NAMES)))  # makers' own begin at 10000
-NEARLY_FULL, NO_LONGER = 0.9, 0.95  # share of the capacity; share of a level that keeps an alert
+NEARLY_FULL = 0.9  # share of the capacity
 APART = 1.44  # overlap of gates (see swap_risk) that ends a swap risk
 
 
@@ -182,27 +212,27 @@ def step(
         (
             DANGER,
             0,
-            _of_tracks(
+            of_tracks(
                 situation, numbered, danger, situation.cpa, situation.tcpa, situation.probability
             ),
         ),
-        (LOST_TARGET, 0, _of_tracks(situation, lost, np.full(len(situation.id), ON))),
-        (NEAR_CAPACITY, 0, _single(count, np.ceil(NEARLY_FULL * capacity), count, capacity)),
-        (CAPACITY, 0, _single(count, capacity, count, capacity, acquisition.waiting)),
+        (LOST_TARGET, 0, of_tracks(situation, lost, np.full(len(situation.id), ON))),
+        (NEAR_CAPACITY, 0, single(count, np.ceil(NEARLY_FULL * capacity), count, capacity)),
+        (CAPACITY, 0, single(count, capacity, count, capacity, acquisition.waiting)),
         (
             FALLBACK,
             0,
-            _single(fallen, max(settings.fallback_share * confirmed, 1), fallen, confirmed),
+            single(fallen, max(settings.fallback_share * confirmed, 1), fallen, confirmed),
         ),
-        (SWAP_RISK, 0, _of_tracks(situation, numbered, swap, partner)),
+        (SWAP_RISK, 0, of_tracks(situation, numbered, swap, partner)),
         (
             STATIONARY_DANGER,
             0,
-            _causes(tracking.in_the_way[0] > 0, *tracking.in_the_way, keep=tracking.nearly),
+            causes_of(tracking.in_the_way[0] > 0, *tracking.in_the_way, keep=tracking.nearly),
         ),
         *_in_guard_zones(alerts, situation, acquisition, zones),
     ]
-    return _advance(alerts, causes, settings, now)
+    return advance(alerts, causes, settings, now)
 
 
 def watch(
@@ -219,11 +249,11 @@ def watch(
         *((PLOTS_MISSING, radar, silent) for radar, silent in enumerate(silence.plots)),
     ]
     causes = [
-        (kind, part, _causes(silent > settings.sensor_timeout, silent, silence.bow_only))
+        (kind, part, causes_of(silent > settings.sensor_timeout, silent, silence.bow_only))
         for kind, part, silent in sensors
     ]
-    causes.append((OWN_SPEED, 0, _causes(silence.speed_off > 0, silence.speed_off)))
-    return _advance(alerts, causes, settings, now)
+    causes.append((OWN_SPEED, 0, causes_of(silence.speed_off > 0, silence.speed_off)))
+    return advance(alerts, causes, settings, now)
 
 
 def acknowledge(
@@ -246,7 +276,7 @@ def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
     """How each kind behaves."""
     return tuple(
         Rule(
-            settings.danger_after if kind == DANGER else 0.0,
+            settings.danger_after if kind in (DANGER, AIS_DANGER) else 0.0,
             settings.end_after,
             settings.lapse_after,
             bool(CAUTION[kind]),
@@ -257,10 +287,11 @@ def rules(settings: AlarmSettings) -> tuple[Rule, ...]:
     )
 
 
-def _advance(
-    alerts: Alerts, causes: list[Named], settings: AlarmSettings, now: float
+def advance(
+    alerts: Alerts, causes: Sequence[Named], settings: AlarmSettings, now: float
 ) -> tuple[Alerts, Alerts]:
-    """Each kind and zone separately; then what the time brings to all."""
+    """The alerts after a check of these causes, each kind and zone separately; then what the time
+    brings to all."""
     by_kind, parts, changes = rules(settings), [], [machine.begin()]
     first = 1 + int(alerts.instance.max(initial=0))
     rest = np.ones(len(alerts.kind), bool)
@@ -293,45 +324,11 @@ def _in_guard_zones(
     keys = zones.key[guard].tolist()
     gone = set(alerts.zone[alerts.kind == NEW_TARGET].tolist()) - set(keys)
     return [
-        (NEW_TARGET, key, _of_tracks(situation, rows, ON * situation.inside[:, zone]))
+        (NEW_TARGET, key, of_tracks(situation, rows, ON * situation.inside[:, zone]))
         for key, zone in zip(keys, guard)
     ] + [
-        (NEW_TARGET, key, _of_tracks(situation, rows[:0], situation.danger)) for key in sorted(gone)
+        (NEW_TARGET, key, of_tracks(situation, rows[:0], situation.danger)) for key in sorted(gone)
     ]
-
-
-def _of_tracks(
-    situation: Situation, rows: IntArray, level: CodeArray | IntArray, *told: Array
-) -> Causes:
-    """Causes of the tracks at the rows; level [N], and the other numbers of each [N]."""
-    values = np.full((len(rows), VALUES), np.nan)
-    for column, value in enumerate((situation.range, situation.bearing, *told)):
-        values[:, column] = value[rows]
-    return Causes(
-        situation.id[rows],
-        situation.number[rows],
-        level[rows].astype(np.int8),
-        situation.position[rows],
-        values,
-    )
-
-
-def _single(value: float, limit: float, *told: float) -> Causes:
-    """The cause of a kind that concerns no track. It is present from a value of `limit` on."""
-    return _causes(value >= limit, *told, keep=value >= NO_LONGER * limit)
-
-
-def _causes(there: bool, *told: float, keep: bool = False) -> Causes:
-    values = np.full((1, VALUES), np.nan)
-    values[0, : len(told)] = told
-    none = np.zeros(1, np.int64)
-    return Causes(
-        none,
-        none,
-        np.array([ON if there else KEEP if keep else OFF], np.int8),
-        np.full((1, 2), np.nan),
-        values,
-    )
 
 
 def _join(parts: list[Alerts]) -> Alerts:

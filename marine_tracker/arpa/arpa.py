@@ -153,7 +153,7 @@ class Arpa:
         past = past_positions.step(memory.past, tracks.id, tracks.first_time, moving, own, now)
 
         # cpa: how the tracks pass own ship
-        own, no_danger = self._anchored(samples, moving, own, now, sensors)
+        own, no_danger = self.anchored(samples, moving, own, now, sensors)
         rest = stationary.look(report.places, own, self.limits, now)
         moving, own, against = self._stabilised(moving, own, sensors, tracks)
         passing = self._approach(moving, own, memory.acquisition, tracks)
@@ -189,12 +189,13 @@ class Arpa:
         against = stabilisation(self.parameters, own, sensors, stationary)
         return *sea_stabilised(moving, own, against.drift), against
 
-    def _anchored(
+    def anchored(
         self, samples: OwnShip, moving: Motion, own: OwnMotion, now: float, sensors: OwnSensors
     ) -> tuple[OwnMotion, BoolArray]:
         """Own ship, at rest if she is at anchor; and the tracks [N] that are no danger then."""
         status = self.parameters.own_ship_status
-        if sensors.way == NONE or not at_anchor(samples, own, now, status):
+        known = sensors.way != NONE and len(samples.time)
+        if not known or not at_anchor(samples, own, now, status):
             return own, np.zeros(len(moving.position), bool)
         return own._replace(velocity=np.zeros(2)), harmless(moving, own)
 

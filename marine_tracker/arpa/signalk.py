@@ -24,32 +24,30 @@ STATE = {'alarm': 'alarm', 'warning': 'warn', 'caution': 'alert'}  # of a notifi
 
 
 def context(namespace: uuid.UUID, number: int) -> str:
-    """A target's vessel context; the same namespace and number always give the same."""
+    """A target's vessel context; the same namespace and number always give the same.
+
+    namespace  distinguishes this radar's targets from those of others
+    number     the target's own, not shortened to two digits
+    """
     return f'vessels.urn:mrn:signalk:uuid:{uuid.uuid5(namespace, str(number))}'
 
 
 def deltas(
-    targets: Targets,
-    numbers: Sequence[int],
-    latitude: Array,
-    longitude: Array,
-    time: float,
-    namespace: uuid.UUID,
+    targets: Targets, contexts: Sequence[str], latitude: Array, longitude: Array, time: float
 ) -> list[str]:
     """One delta a target, JSON without line ends.
 
     targets              N of them
-    numbers              their own numbers, not shortened to two digits
+    contexts             the vessel of each, as `context` makes it
     latitude, longitude  [N] deg; nan if unknown
     time                 s of UTC since 1970
-    namespace            distinguishes this radar's targets from those of others
 
     Unknown values are left out. For a lost target all values of its motion are null, which tells
     the server that they are no longer known.
     """
     said = []
-    for number, status, name, north, east, *figures in zip(
-        numbers,
+    for vessel, status, name, north, east, *figures in zip(
+        contexts,
         targets.status.tolist(),
         targets.name.tolist(),
         np.asarray(latitude).tolist(),
@@ -71,7 +69,7 @@ def deltas(
             for path, value in values.items()
             if lost or value is not None
         ]
-        said.append(_delta(context(namespace, number), time, told))
+        said.append(_delta(vessel, time, told))
     return said
 
 

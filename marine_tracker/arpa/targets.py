@@ -65,8 +65,12 @@ class Events(NamedTuple):
 
 
 def label(ids: IntArray, number: IntArray) -> list[str]:
-    """TT07 for a target with a number; Q and the track's id, as Q123, for one without."""
-    return [f'TT{n:02d}' if n else f'Q{i}' for i, n in zip(ids.tolist(), number.tolist())]
+    """TT07 for a target with a number; Q and the track's id, as Q123, for one without; AIS and the
+    MMSI for a ship of AIS, whose id is below 0."""
+    return [
+        f'AIS {n:09d}' if i < 0 else f'TT{n:02d}' if n else f'Q{i}'
+        for i, n in zip(ids.tolist(), number.tolist())
+    ]
 
 
 def carry_over(

@@ -10,6 +10,7 @@ from ..evaluation.replay import fuse, write_tracks
 from ..files import written
 from ..processes import keep_freed_memory
 from ..service import Service
+from ..tracking import offsets
 from ..types import Scan
 from . import tracker_options
 
@@ -67,6 +68,11 @@ def run(args: Namespace) -> int:
         f'{summary.moving} of them moving{at_rest}, {summary.cpu_ms:.2f} ms CPU a scan{left_out}',
         file=sys.stderr if args.out == '-' else sys.stdout,
     )
+    for place, found in enumerate(summary.offsets, 1):
+        if set(found.values()) != {offsets.NOT_KNOWN}:
+            radar = f'radar {place}' if len(summary.offsets) > 1 else 'radar'
+            told = ', '.join(f'{name} {value}' for name, value in found.items())
+            print(f'{radar}: {told}', file=sys.stderr if args.out == '-' else sys.stdout)
     if parameters.estimator in WANT_DOPPLER and not summary.doppler:
         print(
             f'warning: the plots tell no radial speeds, which {parameters.estimator} wants',

@@ -15,15 +15,16 @@ depend on the accuracy of the plots, nor on the period of the scans.
 """
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import gammaincinv
 
 from ..networks.rough_weights import Quiet
 from ..types import Array, IntArray
 
 LAMBDA = 0.3
 KAPPA = 3.0
-LOW = float(chi2.ppf(0.5, 1))
-HIGH = KAPPA * float(chi2.ppf(0.95, 1))
+# Quantiles of chi-square with one degree of freedom.
+LOW = 2 * float(gammaincinv(0.5, 0.5))
+HIGH = KAPPA * 2 * float(gammaincinv(0.5, 0.95))
 MOST = HIGH**0.5  # of |d|; harder manoeuvres were not in the training
 
 

@@ -19,6 +19,7 @@ from ..recording.mcap_topics import CHANGES, OWN_SHIP, TRUTH, Contents, Event
 from ..recording.message_faults import ConversionError, bare, check_frame
 from ..recording.ros_messages import (
     FRAME,
+    cloud_to_gaps,
     cloud_to_plots,
     heading_of_odometry,
     nanoseconds,
@@ -147,6 +148,7 @@ class _Heard:
             [other.order for other in self.inputs.values() if other is not heard],
             NOT_KNOWN,
             self._heading,
+            cloud_to_gaps(message),
         )
         if found is not None:
             scan, _, self._log = found

@@ -20,6 +20,7 @@ from ..recording.mcap_name import is_mcap
 from ..recording.track_file import TargetColumns, TrackRows
 from ..service import Output, Service, service_for
 from ..simulation import radar, scenario
+from ..tracking import offsets
 from ..tracking.lifecycle import CONFIRMED, STATUS_NAMES
 from ..tracking.radars import fused, merged
 from ..types import Scan
@@ -34,7 +35,8 @@ ALARM_COLUMNS = ('time_s', 'alarm', 'target', 'where', 'priority', 'state', 'tex
 class Summary(NamedTuple):
     """Number of scans; number of tracks ever confirmed; the service's mean CPU time a scan in ms;
     whether any plots had radial speeds; pairs left out in crowds (tracking/pair_budget.py); tracks
-    ever confirmed that surely moved; stationary objects ever shown (tracking/at_rest.py).
+    ever confirmed that surely moved; stationary objects ever shown (tracking/at_rest.py); what is
+    known of each radar's offsets (tracking/offsets.py).
     """
 
     scans: int
@@ -44,6 +46,7 @@ class Summary(NamedTuple):
     left_out: int
     moving: int
     stationary: int
+    offsets: tuple[dict[str, str], ...]
 
 
 def open_source(name: str, seed: int = 1, video: VideoOptions = DEFAULT_VIDEO) -> Source:
@@ -141,7 +144,8 @@ def write_tracks(
         doppler |= scan.plots.radial_speed is not None
     cpu_ms = 1e3 * cpu / max(count, 1)
     moving = len(confirmed & moved)
-    return Summary(count, len(confirmed), cpu_ms, doppler, left_out, moving, len(stationary))
+    off = tuple(offsets.in_words(radar.offsets) for radar in memory.tracker.radars)
+    return Summary(count, len(confirmed), cpu_ms, doppler, left_out, moving, len(stationary), off)
 
 
 def target_columns(output: Output) -> TargetColumns:

@@ -8,6 +8,7 @@ parts run.
 from types import ModuleType
 
 from . import marine_table
+from .ais import ais
 from .alarms import alarms
 from .alpha_beta import alpha_beta
 from .clutter import clutter
@@ -42,4 +43,5 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'danger_areas': danger_areas,
     'clutter': clutter,
     'crossings': crossings,
+    'ais': ais,
 }

@@ -15,6 +15,7 @@ ABOUT = {
     'recording_player': 'Plays a recorded folder, or a file of spokes.',
     'nmea_output': 'Sends targets and own ship as NMEA 0183 and Signal K.',
     'recorder': 'Records the topics of the service into MCAP files.',
+    'ais_input': 'Takes AIS sentences, by UDP, TCP, serial port or file.',
     'ppi_display': 'Serves the radar picture (PPI) as a page for a browser.',
 }
 

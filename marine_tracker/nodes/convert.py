@@ -23,6 +23,7 @@ from ..recording.ros_messages import (  # noqa: F401
     CLOUD_REASONS,
     COVARIANCE,
     FLOATS,
+    GAP,
     MISSING_FIELD,
     MISTYPED_FIELD,
     NEEDED,
@@ -30,6 +31,7 @@ from ..recording.ros_messages import (  # noqa: F401
     RADIAL_SPEED,
     TRUNCATED,
     ConversionError,
+    cloud_to_gaps,
     cloud_to_plots,
     heading_of_odometry,
     nanoseconds,
@@ -95,15 +97,21 @@ def plots_to_cloud(scan: Scan, start_ns: int) -> PointCloud2:
     """One antenna revolution; the stamp is its start.
 
     A field radial_speed is there where the radar tells it, and xx, xy, yy where plots have a
-    covariance of their own.
+    covariance of their own. Points with a gap after the plots tell what was not swept.
     """
     plots, position = scan.plots, plots_positions(scan)
+    gaps = np.zeros((0, 2)) if scan.unswept is None else scan.unswept
     names: tuple[str, ...] = PLOT_FIELDS
     if plots.radial_speed is not None:
         names += (RADIAL_SPEED,)
     if plots.covariance is not None:
         names += COVARIANCE
-    rows = np.zeros(len(plots.time), [(name, '<f4') for name in names])
+    if len(gaps):
+        names += (GAP,)
+    every = np.zeros(len(plots.time) + len(gaps), [(name, '<f4') for name in names])
+    rows = every[: len(plots.time)]
+    if len(gaps):
+        every['bearing'][len(rows) :], every[GAP][len(rows) :] = gaps.T
     rows['x'], rows['y'] = position.T
     rows['range'], rows['bearing'], rows['amplitude'] = plots.range, plots.bearing, plots.amplitude
     rows['time_offset'] = plots.time - scan.start
@@ -112,7 +120,7 @@ def plots_to_cloud(scan: Scan, start_ns: int) -> PointCloud2:
     if plots.covariance is not None:
         for name, (i, j) in zip(COVARIANCE, ((0, 0), (0, 1), (1, 1))):
             rows[name] = plots.covariance[:, i, j]
-    return cloud_message(rows, start_ns)
+    return cloud_message(every, start_ns)
 
 
 def own_ship_to_odometry(

@@ -31,7 +31,7 @@ from ..files import shown
 from ..geodesy import LocalFrame
 from ..geometry import AT_REST, KNOT, on_deck, to_range_bearing
 from ..tracking import lifecycle, own_ship
-from ..types import Array
+from ..types import Array, IntArray
 from . import targets_cloud
 from .convert import heading_of_odometry, nanoseconds, odometry_to_own_ship
 from .diagnostics import one_line
@@ -51,11 +51,13 @@ class Heard(NamedTuple):
     targets    with their own numbers: TT07 has 7; Q123, which is being acquired, -123
     relative   whether bearings count from the bow, without a heading
     reference  number of the stationary target that tells the motion of the ground, 0 for none
+    mmsi       [T]  of the ships of AIS that they are, 0 for none
     """
 
     targets: Targets
     relative: bool
     reference: int
+    mmsi: IntArray
 
 
 def read_targets(message: PointCloud2) -> Heard:
@@ -78,7 +80,8 @@ def read_targets(message: PointCloud2) -> Heard:
         *figures.values(),
     )
     fixed = number[rows['reference'] > 0]
-    return Heard(as_acquired(targets), bool(from_bow.any()), int(fixed[-1]) if len(fixed) else 0)
+    told = as_acquired(targets), bool(from_bow.any()), int(fixed[-1]) if len(fixed) else 0
+    return Heard(*told, rows['mmsi'].astype(np.int64))
 
 
 def read_alerts(message: DiagnosticArray) -> list[Alert]:

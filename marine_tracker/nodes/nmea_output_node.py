@@ -1,4 +1,5 @@
-"""NMEA 0183 out: targets and own ship as sentences on the topic `nmea`, over UDP and TCP.
+"""NMEA 0183 out: targets and own ship as sentences on the topic `nmea`, over UDP and TCP; targets
+also as NMEA 2000 and to Signal K.
 
 Each message on `targets_cloud` gives own ship's sentences first, then one TTM for each target, all
 for the moment of its stamp. Between scans, own ship's sentences are sent alone. A target that was
@@ -16,7 +17,7 @@ from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import NavSatFix, PointCloud2
 from std_msgs.msg import String
 
-from ..arpa import nmea, nmea_fields, signalk
+from ..arpa import nmea, nmea2000, nmea_fields, signalk
 from ..arpa.nmea_targets import nothing_told, word
 from ..files import shown
 from ..geometry import NAUTICAL_MILE, unit_vector
@@ -29,6 +30,7 @@ from .convert import CLOUD_REASONS, nanoseconds
 from .declare import declare
 from .diagnostics import ERROR, FAILED, OK, WARN, one_line
 from .faults import HEADER_REASONS, ConversionError
+from .nmea_output_ais import NO_SENTENCE, AisOutput, contexts
 from .nmea_output_input import (
     BAD_FIX,
     FIX_BY_ARRIVAL,
@@ -72,6 +74,9 @@ class NmeaOutputNode(RunnableNode):
             lambda reason, detail: self._bad.add(reason, time.monotonic(), detail=detail),
         )
         self._udp, self._signalk = Datagrams('udp', p.udp), Datagrams('signalk_udp', p.signalk_udp)
+        self._bus, self._frames = Datagrams('nmea2000_udp', p.nmea2000_udp), None
+        if p.nmea2000_udp:
+            self._frames = _encoder()
         self._tcp = Clients('tcp', p.tcp)
         self._told = nothing_told()
         self._heard = {topics.ODOMETRY: -np.inf, topics.TARGETS_CLOUD: -np.inf}  # s of the wall
@@ -91,12 +96,17 @@ class NmeaOutputNode(RunnableNode):
                 REFUSED,
                 NO_ROOM,
                 TOO_SLOW,
+                NO_SENTENCE,
             ),
             self.tell,
         )
         # Targets of two radars, or of two runs of different nodes, are different vessels.
         self._vessels = uuid.uuid5(uuid.NAMESPACE_OID, self.get_fully_qualified_name())
 
+        self._mmsi: dict[int, int] = {}  # of the targets by their own numbers
+        self._ais = AisOutput(
+            self, self._bad, p.pass_ais, self._send, self._tell_vessels if p.signalk_udp else None
+        )
         self._topic = self.publisher(String, topics.NMEA, topics.reliable(topics.BURST))
         self._diagnostics = self.publisher(DiagnosticArray, topics.DIAGNOSTICS, topics.reliable())
         for kind, topic, callback, quality in (
@@ -118,7 +128,7 @@ class NmeaOutputNode(RunnableNode):
     def close(self) -> None:
         """A last word on /diagnostics; the clients are let go."""
         self._on_second()
-        for link in (self._udp, self._signalk, self._tcp):
+        for link in (self._udp, self._signalk, self._bus, self._tcp):
             link.close()
 
     # -- in ------------------------------------------------------------------------------------
@@ -154,7 +164,11 @@ class NmeaOutputNode(RunnableNode):
             return
         self._last_ns = time_ns
         self._heard[topics.TARGETS_CLOUD] = time.monotonic()
-        self._told, now = word(self._told, heard.targets, self._settings.target_numbers)
+        targets = heard.targets._replace(name=self._ais.named(heard.targets.name, heard.mmsi))
+        self._mmsi.update(zip(targets.number.tolist(), heard.mmsi.tolist()))
+        self._told, now = word(self._told, targets, self._settings.target_numbers)
+        numbers = now.numbers.tolist()
+        self._mmsi = {number: self._mmsi.get(number, 0) for number in numbers}
         self._count['targets'] = len(self._told.numbers)
         self._count['targets waiting for a number'] = now.waiting
         p, seconds = self._settings, time_ns * 1e-9
@@ -174,21 +188,23 @@ class NmeaOutputNode(RunnableNode):
         if 'TLL' in self._wanted:
             lines += nmea.tll(now.targets, latitude, longitude, seconds, p.talker, slot)
         self._send(lines)
+        if self._frames:
+            frames = self._frames(now.targets._replace(bearing=bearing), seconds, slot)
+            self._send_datagrams(self._bus, [f'{frame}\r\n'.encode() for frame in frames])
         if self._signalk.destinations:
-            self._send_datagrams(
-                self._signalk,
-                [
-                    delta.encode()
-                    for delta in signalk.deltas(
-                        now.targets,
-                        now.numbers.tolist(),
-                        latitude,
-                        longitude,
-                        seconds,
-                        self._vessels,
-                    )
-                ],
-            )
+            mmsi = [self._mmsi[number] for number in numbers]
+            placed = now.targets._replace(bearing=bearing)
+            self._tell_vessels(placed, numbers, mmsi, time_ns)
+
+    def _tell_vessels(
+        self, targets: nmea.Targets, numbers: list[int], mmsi: list[int], time_ns: int
+    ) -> None:
+        """Signal K deltas of targets, or of ships of AIS."""
+        offset = targets.range[:, None] * unit_vector(targets.bearing)
+        latitude, longitude = self._own.target_places(time_ns, offset)
+        who = contexts(numbers, mmsi, self._vessels)
+        told = signalk.deltas(targets, who, latitude, longitude, time_ns * 1e-9)
+        self._send_datagrams(self._signalk, [delta.encode() for delta in told])
 
     def _on_alarms(self, message: DiagnosticArray) -> None:
         if not self._signalk.destinations:
@@ -286,6 +302,7 @@ class NmeaOutputNode(RunnableNode):
             **self._count,
             'datagrams': self._udp.sent,
             'Signal K datagrams': self._signalk.sent,
+            'NMEA 2000 datagrams': self._bus.sent,
             'TCP clients': len(self._tcp),
             **self._bad.counts,
             FAILED: sum(self.failures.counts.values()),
@@ -309,3 +326,13 @@ class NmeaOutputNode(RunnableNode):
                 ],
             )
         )
+
+
+def _encoder() -> nmea2000.Lines:
+    try:
+        return nmea2000.encoder()
+    except ImportError as error:
+        raise ValueError(
+            'parameter nmea2000_udp asks for the package nmea2000, which is not installed here '
+            f'({error}): pip install "marine_tracker[nmea2000]"'
+        ) from error

@@ -19,13 +19,18 @@ from geometry_msgs.msg import PointStamped
 from std_msgs.msg import UInt32
 from std_srvs.srv import SetBool, Trigger
 
+from ..ais.ais import AisPicture
+from ..ais.reports import Reports
 from ..arpa import acquisition, alarms, alert_list, alerts, sounding
 from ..arpa.acquisition import Acquisition
 from ..arpa.alerts import NORMAL, Alerts
 from ..arpa.arpa import Arpa, Picture
+from ..arpa.own_motion import lately, own_motion
 from ..arpa.targets import EVENTS, NO_ROOM, NOTHING_THERE, Events
 from ..service import Output, Service, Tracking
-from ..types import Array, Scan, append, take
+from ..tracking.own_ship import OwnShipLog
+from ..tracking.own_velocity import chosen
+from ..types import Array, OwnShip, Scan, append, take
 from . import diagnostics, topics
 from .alarm_log import AlarmLog
 from .arpa_messages import alarms_message, alarms_past_message, trial_message
@@ -131,6 +136,30 @@ class Operator:
                 )
             )
         return done, output
+
+    def hear_ais(self, reports: Reports, position: Array) -> None:
+        """Reports of AIS, as Service.hear."""
+        self.memory = self.service.hear(self.memory, reports, position)
+
+    def activate_ais(self, mmsi: int, awake: bool) -> None:
+        """Activates a ship of AIS, or puts it to sleep. ValueError if there is none."""
+        ais = self.service.ais.activate(self.memory.ais, mmsi, awake)
+        self.memory = self.memory._replace(ais=ais)
+
+    def ais_alone(self, own: OwnShipLog) -> tuple[AisPicture | None, int]:
+        """The ships of AIS, and the stamp, where radar is silent; None where it is not, or where
+        own ship was not heard either."""
+        now, heard = self._now(), bool(len(self.memory.ais.ships.id))
+        if not heard or not self._since_end() or not len(own.taken.time):
+            return None, 0
+        told = own.taken
+        velocity, _ = chosen(told, own.off, self.arpa.radars[0].parameters.own_ship_velocity)
+        samples = lately(self.memory.arpa.own, OwnShip(told.time, told.position, velocity), now)
+        heading, sensors = self.sensors.told(self.arpa.parameters, self.arpa.radars, '')
+        at = own_motion(samples, now, heading)._replace(north=sensors.north)
+        self.memory, ships, changed = self.service.without_radar(self.memory, at, now, sensors)
+        self._publish_alarms(changed)
+        return ships, self._stamp()
 
     def watch(self, speed_off: float) -> None:
         """To be called every second: are heading, position and plots still heard?

@@ -211,6 +211,14 @@ class Playback:
         at, time = self._anchor
         return time + (self._elapsed() - at) * self.rate
 
+    @property
+    def moment(self) -> tuple[float, float] | None:
+        """The scenario's or recording's time now, s, and the stamp of it, s; None: not begun."""
+        if self._start_ns is None:
+            return None
+        now = self._now()
+        return now, self._stamp(now) * 1e-9
+
     def _stamp(self, time) -> int:
         assert self._start_ns is not None
         return self._start_ns + round((float(time) - self._first) * 1e9)

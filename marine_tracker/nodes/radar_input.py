@@ -9,7 +9,7 @@ from sensor_msgs.msg import PointCloud2
 from ..estimators import WANT_DOPPLER
 from ..tracking import intake, own_ship
 from ..tracking.radars import Radar
-from ..tracking.scan_input import MISSED, Came, ScanInput
+from ..tracking.scan_input import MISSED, PART_UNKNOWN, Came, ScanInput
 from ..types import Array, Scan
 from . import convert
 from .diagnostics import OK, WARN, Tally
@@ -46,6 +46,7 @@ class RadarInput(ScanInput):
                 *intake.PLOT_REASONS,
                 *intake.SCAN_REASONS,
                 MISSED,
+                PART_UNKNOWN,
                 NO_DOPPLER,
                 own_ship.OWN_BY_ARRIVAL,
             ),
@@ -73,8 +74,9 @@ class RadarInput(ScanInput):
         try:
             check_frame(message.header.frame_id, (FRAME, OWN_SHIP_FRAME, came.own_frame))
             start_ns = convert.nanoseconds(message.header.stamp)
+            gaps = None
             if isinstance(message, PointCloud2):
-                plots = convert.cloud_to_plots(message)
+                plots, gaps = convert.cloud_to_plots(message), convert.cloud_to_gaps(message)
             else:
                 plots = scan_to_plots(message, self.radar.parameters.bearings)
         except ConversionError as error:
@@ -84,7 +86,7 @@ class RadarInput(ScanInput):
         if estimator in WANT_DOPPLER and plots.radial_speed is None and len(plots.time):
             self.bad.add(NO_DOPPLER, wall, detail=estimator)
         how = Came(came.arrival, came.now_ns, start_ns, came.seconds)
-        return self.scan_of(plots, how, own_log, others, way, heading)
+        return self.scan_of(plots, how, own_log, others, way, heading, gaps)
 
     def state(self, wall: float) -> tuple[bytes, str, dict[str, object]]:
         """Level, message and values for /diagnostics."""

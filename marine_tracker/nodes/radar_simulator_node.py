@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from rclpy.clock import Clock, ClockType
 
 from ..geometry import heading_at, own_ship_at
 from ..parameters import RadarSimulatorParameters
@@ -21,8 +22,10 @@ from .base_node import RunnableNode
 from .declare import declare
 from .diagnostics import one_line
 from .playback import NO_PLOTS, Playback, Revolution, own_ship_period
+from .simulated_ais import SimulatedAis
 
 SECTOR = 128  # spokes in a message
+AIS_S = 0.1  # s between two looks for sentences
 
 
 def _with_video(chosen: Scenario, seed: int, step: float) -> Iterator[Revolution]:
@@ -72,6 +75,13 @@ class RadarSimulatorNode(RunnableNode):
             chosen.fleet.origin,
             parameters.begin_at_s,
         )
+        self._ais: SimulatedAis | None = None
+        if chosen.fleet.ais is not None:
+            self._ais = SimulatedAis(self, chosen, parameters.seed, parameters.ais_udp)
+            self._duration = chosen.duration
+            self.create_timer(AIS_S, self._send_ais, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        elif parameters.ais_udp:
+            raise ValueError('parameter ais_udp is set, but the scenario has no ais.send')
         self.get_logger().info(
             f'scenario {one_line(parameters.scenario)}, seed {parameters.seed}, '
             f'rate {parameters.rate:g}'
@@ -85,3 +95,12 @@ class RadarSimulatorNode(RunnableNode):
     def close(self) -> None:
         """Let the last messages arrive."""
         self._playback.close()
+        if self._ais is not None:
+            self._ais.close()
+
+    def _send_ais(self) -> None:
+        """Sentences that are due; in a loop the scenario's time begins again."""
+        moment = self._playback.moment
+        if moment is not None and self._ais is not None:
+            now, stamp = moment
+            self._ais.send(now % self._duration, stamp - now)

@@ -34,6 +34,7 @@ NODES = {
     'nmea_output': 'NmeaOutputNode',
     'ppi_display': 'PpiDisplayNode',
     'recorder': 'RecorderNode',
+    'ais_input': 'AisInputNode',
 }
 LONGEST = 600  # characters of why a node cannot start
 ASKED = (signal.SIGINT, signal.SIGTERM)
@@ -133,6 +134,11 @@ def recording_player() -> int:
 def nmea_output() -> int:
     """The exit code of the NMEA output."""
     return run('nmea_output')
+
+
+def ais_input() -> int:
+    """The exit code of the AIS input."""
+    return run('ais_input')
 
 
 def ppi_display() -> int:

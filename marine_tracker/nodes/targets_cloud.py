@@ -11,6 +11,7 @@ from ..arpa.alerts import ACTIVE_ACKNOWLEDGED, WAITING, Alerts
 from ..arpa.stationary import Stationary
 from ..arpa.view import View
 from ..tracking.lifecycle import STATIONARY
+from ..types import IntArray
 from . import cloud_layout, convert
 from .faults import BAD_LAYOUT, MISSING_FIELD, MISTYPED_FIELD, TRUNCATED, ConversionError
 
@@ -53,11 +54,15 @@ TARGET_TYPE = np.dtype(
 )
 
 
-def message(seen: View, alerts: Alerts, time_ns: int) -> PointCloud2:
-    """The targets of a view, in its order; alerts: those that are not normal."""
+def message(seen: View, alerts: Alerts, time_ns: int, mmsi: IntArray | None = None) -> PointCloud2:
+    """The targets of a view, in its order; alerts: those that are not normal.
+
+    mmsi  [T] of the ship of AIS that each is joined to, 0 for none; None: of none
+    """
     rows = np.zeros(len(seen.id), TARGET_TYPE)
     motion, approach = seen.motion, seen.approach
     rows['number'], rows['id'] = seen.number, seen.id
+    rows['mmsi'] = 0 if mmsi is None else mmsi
     rows['x'], rows['y'] = motion.position.T
     rows['vx'], rows['vy'] = motion.velocity.T
     for name, (row, column) in COVARIANCE.items():

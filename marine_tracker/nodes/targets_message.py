@@ -5,13 +5,14 @@ import math
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from ..ais.ais import AisPicture
 from ..arpa.motion import MEMORY_NAMES
 from ..arpa.situation import DANGEROUS
 from ..arpa.targets import LETTERS
 from ..arpa.view import View
 from ..geometry import KNOT, NAUTICAL_MILE
 from ..tracking.lifecycle import COASTING, CONFIRMED, LOST, REASONS, STATIONARY, TENTATIVE
-from . import hull_columns
+from . import ais_columns, hull_columns
 from .convert import time_message
 from .diagnostics import ERROR, OK, STALE, WARN
 
@@ -69,11 +70,30 @@ class TargetsWriter:
         self._keys: tuple[str, ...] = COLUMNS
         self._entries: list[DiagnosticStatus] = []
 
-    def message(self, seen: View, estimator: str, time: float, time_ns: int) -> DiagnosticArray:
-        """The targets of a view at `time` s, stamped time_ns; valid until the next call."""
+    def message(
+        self,
+        seen: View,
+        estimator: str,
+        time: float,
+        time_ns: int,
+        ships: AisPicture | None = None,
+        symbol: str = 'ais',
+    ) -> DiagnosticArray:
+        """The targets of a view at `time` s, stamped time_ns; valid until the next call.
+
+        ships   of AIS then; symbol: whose data comes first of a target with both, ais or radar
+        """
         rows = table(seen, estimator, time)
         names, levels, places = stationary_rows(seen)
+        messages = [MESSAGE[STATIONARY]] * len(names)
         keys = COLUMNS if seen.hulls is None else COLUMNS + hull_columns.COLUMNS
+        if ships is not None:
+            keys += ais_columns.COLUMNS
+            of_ais = ais_columns.of_targets(seen, ships, figure, degrees, symbol)
+            rows = [row + more for row, more in zip(rows, of_ais)]
+            added = ais_columns.alone(ships, figure, degrees)
+            names, levels = names + added[0], levels + added[1]
+            messages, places = messages + added[2], places + added[3]
         if keys != self._keys:
             self._keys, self._entries = keys, []
         while len(self._entries) < len(rows) + len(places):
@@ -98,8 +118,10 @@ class TargetsWriter:
                 entry.level = WARN
             for pair, text in zip(entry.values, row):
                 pair.value = text
-        for entry, name, level, told in zip(self._entries[len(rows) :], names, levels, places):
-            entry.name, entry.message, entry.level = name, MESSAGE[STATIONARY], level
+        for entry, name, text, level, told in zip(
+            self._entries[len(rows) :], names, messages, levels, places
+        ):
+            entry.name, entry.message, entry.level = name, text, level
             for pair in entry.values:
                 pair.value = told.get(pair.key, '')
         message = DiagnosticArray(status=self._entries[: len(rows) + len(places)])

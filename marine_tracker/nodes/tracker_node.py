@@ -22,14 +22,15 @@ from sensor_msgs.msg import PointCloud2
 
 from ..arpa.arpa import Picture
 from ..arpa.view import Standing
-from ..parameters import NODES, ArpaParameters, TrackerParameters
-from ..service import Service
-from ..tracking import clocks, own_ship
+from ..parameters import NODES
+from ..service import Service, service_of
+from ..tracking import clocks, offsets, own_ship
 from ..tracking.lifecycle import COASTING, CONFIRMED, TENTATIVE
 from ..tracking.mounting import needs_heading
 from ..tracking.own_velocity import AUTO, POSITIONS
 from ..tracking.radars import radars_of
 from . import convert, diagnostics, messages_of_others, topics
+from .ais_in_tracker import AisInTracker
 from .base_node import RunnableNode
 from .declare import declare, follow
 from .diagnostics import FAILED, OK, WARN, Durations, Tally
@@ -48,8 +49,10 @@ class TrackerNode(RunnableNode):
 
     def __init__(self, **node_arguments: Any) -> None:
         super().__init__('tracker', **node_arguments)
-        parameters, arpa_parameters, output_parameters = declare(self, *NODES['tracker'])
-        service = Service(parameters, arpa_parameters)
+        parameters, arpa_parameters, ais_parameters, output_parameters = declare(
+            self, *NODES['tracker']
+        )
+        service = service_of(parameters, arpa_parameters, ais_parameters)
         self._base_ns: int | None = None  # stamps are seconds after this
         self._own_log, self._own_frame = own_ship.empty_log(), topics.OWN_SHIP_FRAME
         self._fallback = own_ship.OWN_NEVER_HEARD
@@ -69,7 +72,8 @@ class TrackerNode(RunnableNode):
         )
 
         self._operator = Operator(self, service, self._sensors, self.hardware_id)
-        follow(self, (TrackerParameters, ArpaParameters), Service, self._change)
+        self._ais = AisInTracker(self, self._operator, self._own_place, self._seconds)
+        follow(self, NODES['tracker'][:3], service_of, self._change)
         self._output = TrackerOutput(self, self.hardware_id, output_parameters)
         p = output_parameters
         self._send_transform = messages_of_others.transforms(self) if p.broadcast_tf else None
@@ -142,6 +146,10 @@ class TrackerNode(RunnableNode):
         if placed and self._send_transform is not None:
             self._send_transform(message)
 
+    def _own_place(self, time: float) -> np.ndarray:
+        """Own ship's position [2] m as her odometry tells it, at a time, s; nan: not known."""
+        return own_ship.now(self._own_log, time, self._trusted)[0]
+
     def _arrival(self) -> Arrival:
         """How a message comes that comes now: in simulated time where there is one."""
         clock = self.get_clock()
@@ -172,6 +180,7 @@ class TrackerNode(RunnableNode):
             status = self._own_ship_status(time.monotonic())
             self._to_state.publish(diagnostics.array(end_ns, [status]))
             self._output.publish_targets(service, output, stamps)
+            self._ais.publish(output.ais, end_ns)
             self._status_count = np.bincount(output.report.tracks.status, minlength=5)
             self._standing = output.standing
             self._left_out_lately = output.report.left_out
@@ -222,6 +231,7 @@ class TrackerNode(RunnableNode):
             self.get_logger().info(f'{topic} is published best effort: taken so')
         wall, now = time.monotonic(), self.get_clock().now().nanoseconds
         self._operator.watch(0.0 if self._trusted == POSITIONS else self._own_log.off)
+        self._ais.publish(*self._operator.ais_alone(self._own_log))
         self._to_diagnostics.publish(
             diagnostics.array(
                 now,
@@ -229,6 +239,7 @@ class TrackerNode(RunnableNode):
                     *(self._input_status(heard, wall, now) for heard in self.inputs),
                     self._tracking_status(wall),
                     self._own_ship_status(wall),
+                    *self._ais.state(),
                 ],
             )
         )
@@ -237,6 +248,8 @@ class TrackerNode(RunnableNode):
         level, message, values = heard.state(wall)
         if now == 0:
             level, message = WARN, message + '; use_sim_time is set and /clock is silent'
+        radar = self._operator.memory.tracker.radars[self.inputs.index(heard)]
+        values = {**values, **offsets.in_words(radar.offsets)}
         return self._status(f'input {heard.radar.name}'.rstrip(), level, message, values)
 
     def _tracking_status(self, wall: float) -> DiagnosticStatus:

@@ -14,6 +14,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import MarkerArray
 
+from ..ais.join import joined_to
 from ..arpa.view import view
 from ..geometry import wrap_bearing
 from ..parameters import TrackerOutputParameters
@@ -80,8 +81,14 @@ class TrackerOutput:
         name = service.tracker.parameters.estimator
         arpa = service.arpa
         seen = view(output.picture, output.report, service.tracker.estimator, output.shapes)
-        self._to_numeric.publish(targets_cloud.message(seen, output.picture.alerts, end_ns))
-        self._tell_targets(self._targets.message(seen, name, output.scan.end, end_ns))
+        ships, mmsi = output.ais, None
+        if ships is not None:
+            row = joined_to(ships.joined, ships.ships, seen.id)
+            mmsi = np.where(row >= 0, np.append(ships.ships.mmsi, 0)[row], 0)
+        self._to_numeric.publish(targets_cloud.message(seen, output.picture.alerts, end_ns, mmsi))
+        symbol = service.ais.parameters.ais_symbol
+        end = output.scan.end
+        self._tell_targets(self._targets.message(seen, name, end, end_ns, ships, symbol))
         if self._to_areas.get_subscription_count():
             self._to_areas.publish(danger_areas_cloud.message(arpa, output.picture, end_ns))
         if self._to_markers.get_subscription_count():

@@ -5,6 +5,7 @@ all derive from the frozen dataclasses here. A wrong value raises ValueError at 
 names the parameter, the value and the limit.
 """
 
+from .ais import AisInputParameters, AisParameters
 from .arpa import ArpaParameters
 from .description import from_mapping, from_mappings
 from .display import PpiDisplayParameters
@@ -19,13 +20,14 @@ from .tracker import EXTENTS, GLINT_SIGMA, VESSEL_CLASSES, TrackerParameters
 from .video import PlotExtractorParameters, VideoParameters
 
 NODES: dict[str, tuple[type, ...]] = {
-    'tracker': (TrackerParameters, ArpaParameters, TrackerOutputParameters),
+    'tracker': (TrackerParameters, ArpaParameters, AisParameters, TrackerOutputParameters),
     'radar_simulator': (RadarSimulatorParameters,),
     'plot_extractor': (VideoParameters, PlotExtractorParameters),
     'recording_player': (RecordingPlayerParameters,),
     'nmea_output': (NmeaOutputParameters,),
     'ppi_display': (PpiDisplayParameters,),
     'recorder': (RecorderParameters,),
+    'ais_input': (AisInputParameters,),
 }
 
 __all__ = [
@@ -33,6 +35,8 @@ __all__ = [
     'GLINT_SIGMA',
     'NODES',
     'VESSEL_CLASSES',
+    'AisInputParameters',
+    'AisParameters',
     'ArpaParameters',
     'NmeaOutputParameters',
     'PlotExtractorParameters',

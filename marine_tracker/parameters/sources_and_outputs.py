@@ -28,6 +28,11 @@ class RadarSimulatorParameters:
         high=1e10,
     )
     loop: bool = parameter(False, 'Begin again when the scenario has ended.')
+    ais_udp: str = parameter(
+        '',
+        'Where the AIS sentences of the scenario (`ais: {send: ...}`) are sent as datagrams: '
+        'host:port, several separated by blanks; beside the topic `ais/simulated`. Empty: nowhere.',
+    )
     sectors: int = parameter(
         0,
         'Messages of plots a revolution: the antenna does not wait for its whole turn. 0: as the '
@@ -155,6 +160,14 @@ class NmeaOutputParameters:
     )
     signalk_udp: str = parameter(
         '', 'Where Signal K deltas are sent as datagrams, as for udp. Empty: nowhere.'
+    )
+    nmea2000_udp: str = parameter(
+        '',
+        'Where targets are sent as NMEA 2000 (PGN 128520), in lines as gateways of Yacht Devices '
+        'take them, a datagram each, as for udp. Needs the package nmea2000. Empty: nowhere.',
+    )
+    pass_ais: bool = parameter(
+        False, 'Whether the sentences on `ais/sentences` are passed on to UDP and TCP as they came.'
     )
     talker: str = parameter('RA', 'Talker of OSD, RSD, TTM and TLL.')
     target_numbers: int = parameter(

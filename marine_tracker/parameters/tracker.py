@@ -232,10 +232,21 @@ class TrackerParameters:
         live=True,
     )
     stationary_places: bool = parameter(
-        False,
+        True,
         'Whether places where plots always are (quays, moored craft) are learnt and shown as '
         'stationary objects, not as ever new targets; see doc/tracking.md.',
         live=True,
+    )
+    correct_plots: bool = parameter(
+        False,
+        'Whether the offsets of ranges and bearings and the lag of plots that stationary objects '
+        'show are taken off the plots; see doc/tracking.md.',
+        live=True,
+    )
+    known_marks: str = parameter(
+        '',
+        'Stationary objects whose positions are known: a list in YAML of [north_m, east_m]. They '
+        'show offsets of the radar also to a ship at rest.',
     )
     land_mask: str = parameter(
         '', 'GeoJSON file of polygons of land: plots on land begin no track. Empty: none.'

@@ -10,10 +10,16 @@ import numpy as np
 
 from ..files import Place
 from ..geodesy import LocalFrame
-from ..types import OwnShip, PolarPlots, Scan, Truth
+from ..types import Array, OwnShip, PolarPlots, Scan, Truth
 from .mcap_read import McapFiles
 from .message_faults import ConversionError
-from .ros_messages import cloud_to_plots, heading_of_odometry, nanoseconds, odometry_to_own_ship
+from .ros_messages import (
+    cloud_to_gaps,
+    cloud_to_plots,
+    heading_of_odometry,
+    nanoseconds,
+    odometry_to_own_ship,
+)
 
 PLOTS, OWN_SHIP, TRUTH, FIX = 'radar/plots', 'own_ship/odometry', 'truth', 'own_ship/fix'
 CLOUD = 'sensor_msgs/msg/PointCloud2'
@@ -100,7 +106,7 @@ def revolutions(inside: Contents, plots: str = PLOTS) -> list[Revolution]:
 
     A message that cannot be read is left out. ValueError if no plots can be.
     """
-    scans: list[tuple[float, PolarPlots]] = []
+    scans: list[tuple[float, PolarPlots, Array | None]] = []
     own: list[tuple[int, float, Any, Any, float]] = []  # before which scan, s, m, m/s, rad
     truths: list[tuple[int, float, int, Any, Any]] = []  # of which scan
     base: int | None = None
@@ -110,7 +116,7 @@ def revolutions(inside: Contents, plots: str = PLOTS) -> list[Revolution]:
             base = stamp if base is None else base
             time = (stamp - base) * 1e-9
             if event.topic == inside.full(plots):
-                scans.append((time, cloud_to_plots(event.message)))
+                scans.append((time, cloud_to_plots(event.message), cloud_to_gaps(event.message)))
                 continue
             position, velocity = odometry_to_own_ship(event.message)
         except ConversionError:
@@ -124,14 +130,14 @@ def revolutions(inside: Contents, plots: str = PLOTS) -> list[Revolution]:
     if not scans:
         raise ValueError(f'{inside.full(plots)}: no message can be read')
     result: list[Revolution] = []
-    for k, (start, of_scan) in enumerate(scans):
+    for k, (start, of_scan, gaps) in enumerate(scans):
         samples = _own_ship([row[1:] for row in own if row[0] == k] or [_last(own, k, start)])
         end = start + float(of_scan.time.max(initial=0.0))
         if k + 1 < len(scans) and scans[k + 1][0] > start:
             end = min(max(end, scans[k + 1][0]), start + 60.0)
         elif k and start > scans[k - 1][0]:
             end = max(end, 2 * start - scans[k - 1][0])
-        scan = Scan(start, end, of_scan._replace(time=of_scan.time + start), samples)
+        scan = Scan(start, end, of_scan._replace(time=of_scan.time + start), samples, unswept=gaps)
         result.append(Revolution(scan, _truth([row[1:] for row in truths if row[0] == k]), samples))
     return result
 

@@ -27,6 +27,7 @@ FRAME = 'map'  # ground-stabilised, east and north
 NEEDED = ('range', 'bearing', 'amplitude', 'time_offset')
 RADIAL_SPEED = 'radial_speed'  # of a radar with Doppler
 COVARIANCE = ('xx', 'xy', 'yy')  # m^2, where each plot tells its own
+GAP = 'gap'  # rad, of a point that is no plot: nothing was swept from its bearing on so far
 CLOUD_REASONS = (MISSING_FIELD, MISTYPED_FIELD, BAD_LAYOUT, TRUNCATED)
 NO_HEADING = math.pi**2 / 3  # rad^2, variance of a yaw of which there is no idea at all
 
@@ -43,7 +44,8 @@ def cloud_to_plots(message: Any) -> PolarPlots:
 
     Takes any order of fields, float32 or float64, either byte order, organised clouds, padding
     and fields beyond those needed (range, bearing, amplitude, time_offset); of those, radial_speed
-    and the covariance xx, xy, yy are read. ConversionError else.
+    and the covariance xx, xy, yy are read; points with a gap are no plots (cloud_to_gaps).
+    ConversionError else.
     """
     count = message.width * message.height
     if count == 0:
@@ -51,13 +53,15 @@ def cloud_to_plots(message: Any) -> PolarPlots:
             raise ConversionError(BAD_LAYOUT, f'no points, but {len(message.data)} bytes')
         none = np.empty(0)
         return PolarPlots(none, none, none, none)
-    optional = (RADIAL_SPEED, *COVARIANCE)
+    optional = (RADIAL_SPEED, *COVARIANCE, GAP)
     rows = cloud_rows.rows(
         message,
         [Wanted(name, FLOATS) for name in NEEDED]
         + [Wanted(name, FLOATS, needed=False) for name in optional],
     )
     there = rows.dtype.names or ()
+    if GAP in there:
+        rows = rows[~(rows[GAP] > 0)]
     with np.errstate(invalid='ignore'):  # signalling NaNs from a torn buffer
         range_, bearing, amplitude, offset = (rows[name].astype(float) for name in NEEDED)
         speed = rows[RADIAL_SPEED].astype(float) if RADIAL_SPEED in there else None
@@ -66,6 +70,17 @@ def cloud_to_plots(message: Any) -> PolarPlots:
             xx, xy, yy = (rows[name].astype(float) for name in COVARIANCE)
             covariance = np.stack([xx, xy, xy, yy], -1).reshape(-1, 2, 2)
     return PolarPlots(offset, range_, bearing, amplitude, speed, covariance)
+
+
+def cloud_to_gaps(message: Any) -> Array | None:
+    """What was not swept, as in Scan.unswept, of a cloud that cloud_to_plots has read; None where
+    it tells none."""
+    if not message.width * message.height or GAP not in {field.name for field in message.fields}:
+        return None
+    rows = cloud_rows.rows(message, [Wanted(name, FLOATS) for name in ('bearing', GAP)])
+    gaps = np.stack([rows['bearing'], rows[GAP]], 1).astype(float)
+    gaps = gaps[np.isfinite(gaps).all(1) & (gaps[:, 1] > 0)]
+    return gaps if len(gaps) else None
 
 
 def odometry_to_own_ship(message: Any) -> tuple[Array, Array]:

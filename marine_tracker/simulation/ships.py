@@ -10,7 +10,7 @@ from ..files import shortened, shown
 from ..geodesy import LocalFrame
 from ..geometry import KNOT, NAUTICAL_MILE, unit_vector
 from ..types import Array
-from . import ais, ais_file, motion
+from . import ais, ais_file, motion, transponders
 from .fields import Section
 
 MAX_SPEED = 100 * KNOT  # m/s; the highest relative speed that an ARPA must handle
@@ -20,9 +20,9 @@ SHIP_LENGTH = 100.0  # m, if not stated
 HULL_SNR_DB = 25.0  # likewise
 NO_HULL = (math.nan,) * 3
 
-AIS_KEYS = 'file vessels start_s max_gap_s pd pd_factor'
+AIS_KEYS = 'file vessels start_s max_gap_s pd pd_factor send'
 SHIP_KEYS = 'start course_deg speed_kn|speed_mps speed_wave legs'
-TARGET_KEYS = 'name ' + SHIP_KEYS + ' length_m|length_nm hull pd pd_factor'
+TARGET_KEYS = 'name ' + SHIP_KEYS + ' length_m|length_nm hull pd pd_factor ais'
 HULL_KEYS = 'beam_m|beam_nm heading_deg snr_db'
 START_KEYS = {
     'range': 'range_m|range_nm bearing_deg',
@@ -56,6 +56,7 @@ class Fleet(NamedTuple):
     hulls      T rows
     remarks    what people should know of the files that were read
     steers     whether own ship's course is stated: then she heads there at rest, too
+    ais        what the ships send by AIS; None: nothing
     """
 
     origin: LocalFrame | None
@@ -67,13 +68,14 @@ class Fleet(NamedTuple):
     hulls: Hulls
     remarks: tuple[str, ...] = ()
     steers: bool = False
+    ais: transponders.Transponders | None = None
 
 
 def read(top: Section, folder: Path, duration: float) -> Fleet:
     """The ships of the file whose mapping is `top`. AIS files are relative to its `folder`."""
     traffic, options = None, top.section('ais', AIS_KEYS)
     remarks: tuple[str, ...] = ()
-    if 'ais' in top:
+    if 'ais' in top and ('send' not in options or 'file' in options):
         file = folder / options.text('file')
         start = options.number('start_s', 0.0, 1e11) if 'start_s' in options else None
         read = ais_file.read(file, start, duration, options.number('max_gap_s', 1.0, 3600.0, 120.0))
@@ -91,6 +93,7 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
     own_start, _ = motion.locate_ships(motion.table([own_way], duration), np.array(0), 0.0)
 
     ways, names, chances, lengths, hulls = [own_way], [], [], [], []
+    sets: list[transponders.Target] = []
     for number, item in enumerate(top.items('targets')):
         section = Section(item, f'targets[{number}]', TARGET_KEYS)
         ways.append(_way(section, origin, own_start))
@@ -98,6 +101,7 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
         chances.append(_chance(section))
         lengths.append(section.length('length', 1.0, 500.0, SHIP_LENGTH))
         hulls.append(_hull(section, lengths[-1]))
+        sets.append(transponders.read_target(section.section('ais', transponders.TARGET_KEYS)))
     if traffic is not None:
         for vessel in _chosen_vessels(options, traffic, own_vessel):
             ways.append(ais.way(traffic[vessel], origin))
@@ -106,6 +110,7 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
             length = traffic[vessel].length
             lengths.append(length if math.isfinite(length) else SHIP_LENGTH)
             hulls.append(NO_HULL)
+            sets.append(transponders.of_vessel(vessel))
     if not names:
         raise ValueError('the scenario has no targets; give targets: or ais:')
     pd, pd_factor = np.array(chances).T
@@ -119,7 +124,16 @@ def read(top: Section, folder: Path, duration: float) -> Fleet:
         Hulls(*np.array(hulls).T),
         remarks,
         'course_deg' in own,
+        _sent(options, origin, tuple(sets)),
     )
+
+
+def _sent(options, origin, sets):
+    if 'send' not in options:
+        return None
+    if origin is None:
+        raise ValueError('ais.send tells places on Earth, but the scenario has no origin')
+    return transponders.read_send(options.section('send', transponders.SEND_KEYS), sets)
 
 
 def _origin(top, own, traffic, own_vessel):

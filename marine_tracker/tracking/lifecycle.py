@@ -139,6 +139,7 @@ def step(
     now        s, end of the scan
     """
     in_range = (seen.distance >= radar.min_range_m) & (seen.distance <= radar.max_range_m)
+    in_range &= seen.swept
     tracks = tracks._replace(bearing=seen.bearing)
     held, ratio = seen.hit | elsewhere, ratio.copy()
     held[sharing], ratio[sharing] = True, 1.0

@@ -5,9 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry import to_range_bearing
-from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, Tracks
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, Scan, Tracks
 from .expected import Expected
 from .noise import Noise
+from .sweep import swept
 
 
 class Look(NamedTuple):
@@ -20,6 +21,7 @@ class Look(NamedTuple):
     bearing    [N]     rad, likewise
     drift      [N]     deviation of the expected position over that of a plot; 0 where it had one
     hit        [N]     it had a plot
+    swept      [N]     the beam swept the place
     """
 
     time: Array
@@ -28,6 +30,7 @@ class Look(NamedTuple):
     bearing: Array
     drift: Array
     hit: BoolArray
+    swept: BoolArray
 
 
 def look(
@@ -37,6 +40,7 @@ def look(
     ahead: Extrapolation,
     expected: Expected,
     noise: Noise,
+    scan: Scan,
 ) -> Look:
     """What the scan showed: of the tracks that took a plot, plot_of [N] >= 0, that plot; of the
     others the expectation.
@@ -60,4 +64,4 @@ def look(
     )
     spread = (ahead.covariance[:, 0, 0] + ahead.covariance[:, 1, 1])[missed]
     drift[missed] = np.sqrt(spread / noise.variance(distance[missed]))
-    return Look(time, predicted, distance, bearing, drift, hit)
+    return Look(time, predicted, distance, bearing, drift, hit, swept(scan, bearing))

@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from ..types import Array, BoolArray, CodeArray, IntArray, Plots, Scan, Tracks
-from . import at_rest, sectors, surroundings
+from . import at_rest, offsets, sectors, surroundings
 
 
 class OfRadar(NamedTuple):
@@ -11,11 +11,13 @@ class OfRadar(NamedTuple):
 
     leftover  plots of its last scan that belong to no track: one may be a new target's first plot
     known     of its false plots, and of how targets show
+    offsets   of its ranges and bearings, and the lag of its plots
     waiting   what its sectors left undecided; None: whole revolutions
     """
 
     leftover: Plots
     known: surroundings.Surroundings
+    offsets: offsets.Offsets
     waiting: sectors.Waiting | None = None
 
 

@@ -43,6 +43,11 @@ def mounted(scan: Scan, radar: TrackerParameters, heading: float) -> Scan:
         edges = true(np.array([first, first + angle]), np.array([scan.start, scan.end]))
         turned = angle + wrap_angle(np.diff(edges) - angle)
         scan = scan._replace(sector=Sector(float(edges[0]), float(turned[0])))
+    if scan.unswept is not None:
+        first, width = scan.unswept.T
+        middle = np.full(len(first), 0.5 * (scan.start + scan.end))
+        turned_gaps = np.stack([wrap_bearing(true(first, middle)), width], 1)
+        scan = scan._replace(unswept=turned_gaps)
     if np.isnan(headings).any():
         return scan
     own = _moved(own, -gps[0], -gps[1], headings)

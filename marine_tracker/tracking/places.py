@@ -6,6 +6,11 @@ line through them in time. It is established when it had plots often enough, for
 the line says that it surely does not move. So a slow ship far away, whose plots scatter widely,
 needs longer than a quay close by, and never becomes a place.
 
+Clutter gives plots everywhere. So the same count is kept of eight neighbours of each place, as
+wide as its gate: that is what chance gives there. A place must have plots so much more often that
+of the hundreds of thousands of tries in an hour none does by chance. Among dense clutter it takes
+longer, and what shows no more often than the clutter around it never becomes a place.
+
 Plots of tracks that have moved are not learnt from, so a ship under way leaves nothing behind.
 """
 
@@ -13,17 +18,23 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
+from scipy.special import rel_entr
 
 from ..types import Array, BoolArray, IntArray, append, take
 
 GATE = 9.0  # squared deviations within which a plot belongs to a place
 WANDER = 4.0  # m, each axis: a thing on the ground echoes here and there
-MEMORY = 60  # revolutions
+MEMORY, SHORT = 60, 15  # revolutions
 LEAST_LOOKS, LEAST_PLOTS = 15, 8
 BECOMES, ENDS = 0.3, 0.1  # share of revolutions with a plot
 AT_REST = 0.8  # m/s; a place surely moves less
 TRIAL = 6  # revolutions without a plot after which a place that is not established is forgotten
 MOST = 20_000  # rows
+SURE = 16.0  # log-likelihood ratio against chance: exceeded once in some 100 million tries
+TRIED = 3  # plots of a place whose neighbours are counted
+APART = 2.2  # times the gate's radius, from a place to its neighbours
+_ANGLES = np.arange(8) * (np.pi / 4)
+_AROUND = APART * np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], 1)
 UNNAMED = -1
 NEAR, CROWD = 1000.0, 4  # m; so many places within it, itself among them, are a crowd
 
@@ -34,7 +45,10 @@ class Places(NamedTuple):
     position  [P, 2]  m, east and north, the mean
     variance  [P]     m^2, of a plot there, the larger axis
     share     [P]     of the last MEMORY revolutions with a plot
+    lately    [P]     the same of the last SHORT: a slow ship that has gone on is no place
     looks     [P]     revolutions
+    chance    [P]     mean share of its neighbours, over the last MEMORY revolutions, and
+    tried     [P]     revolutions in which they were counted
     idle      [P]     revolutions since the last plot
     plots     [P]     number of plots, older ones count less
     time      [P]     s, mean of their times; spread [P] s^2, sum of the squares about it
@@ -46,7 +60,10 @@ class Places(NamedTuple):
     position: Array
     variance: Array
     share: Array
+    lately: Array
     looks: IntArray
+    chance: Array
+    tried: IntArray
     idle: IntArray
     plots: Array
     time: Array
@@ -66,7 +83,10 @@ def empty() -> Places:
     """Nothing is known."""
     none, count = np.zeros(0), np.zeros(0, np.int64)
     pairs = np.zeros((0, 2))
-    return Places(pairs, none, none, count, count, none, none, none, pairs, count, count > 0)
+    return Places(
+        *(pairs, none, none, none, count, none, count, count),
+        *(none, none, none, pairs, count, count > 0),
+    )
 
 
 def nearest(places: Places, position: Array, variance: Array) -> IntArray:
@@ -81,13 +101,25 @@ def nearest(places: Places, position: Array, variance: Array) -> IntArray:
     return np.where(distance <= reach, row, -1)
 
 
-def learn(
-    before: Places, position: Array, variance: Array, time: Array, visible: BoolArray
-) -> Places:
+class View(NamedTuple):
+    """What the radar sees: from the origin [2] m, ranges from `near` to `far` m."""
+
+    origin: Array
+    near: float
+    far: float
+
+    def of(self, position: Array) -> BoolArray:
+        """Mask [...] of the positions [..., 2] m that it sees."""
+        apart = position - self.origin
+        distance = np.hypot(apart[..., 0], apart[..., 1])
+        found: BoolArray = (distance >= self.near) & (distance <= self.far)
+        return found
+
+
+def learn(before: Places, position: Array, variance: Array, time: Array, view: View) -> Places:
     """The map after one revolution.
 
     position [M, 2] m, variance [M] m^2, time [M] s: of the plots that no moving track took
-    visible  [P]  places that the radar could see
 
     A place takes the nearest of the plots in its gate; the others there are of no other place.
     """
@@ -96,16 +128,65 @@ def learn(
     apart[known] = np.linalg.norm(position[known] - before.position[row[known]], axis=1)
     order = np.lexsort((apart, row))
     first = order[np.append(True, np.diff(row[order]) > 0)[: len(order)] & known[order]]
+    visible = view.of(before.position)
     after = _looked(before, row[first], visible)
     after = _with_plots(after, row[first], position[first], variance[first], time[first])
+    after = _by_chance(after, visible, position[~np.append(before.established, False)[row]], view)
     keep = (after.idle < TRIAL) | after.established | ((after.plots >= 3) & (after.share >= ENDS))
-    keep &= ~(after.established & (after.share < ENDS) & (after.looks > LEAST_LOOKS))
+    no_more = after.share < np.maximum(ENDS, after.chance)
+    keep &= ~(after.established & no_more & (after.looks > LEAST_LOOKS))
     after = append(take(after, keep), _new(position[~known], variance[~known], time[~known]))
     after = take(after, slice(0, MOST))
-    sure = ~after.established & _at_rest(after) & (after.share >= BECOMES)
+    often = np.minimum(after.share, after.lately) >= BECOMES
+    sure = ~after.established & _at_rest(after) & often
     sure &= (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS)
+    sure[sure] = surplus(take(after, sure)) > SURE
     number = np.where(sure, UNNAMED, after.number)
     return after._replace(number=number, crowded=_crowded(after.position, number != 0))
+
+
+def surplus(places: Places) -> Array:
+    """Log-likelihood ratio [P]: the place has plots more often than its neighbours, against all
+    have them as often; of two binomial samples. 0 where it has them less often.
+
+    The plot that a place began with does not count.
+    """
+    looks = np.maximum(np.minimum(places.looks, MEMORY) - 1.0, 1.0)
+    around = len(_AROUND) * np.minimum(np.maximum(places.tried, 1), MEMORY)
+    hits = np.maximum(places.share * (looks + 1) - 1, 0)
+    share = hits / looks
+    pooled = (hits + around * places.chance) / (looks + around)
+    found: Array = np.where(
+        share > places.chance,
+        looks * _divergence(share, pooled) + around * _divergence(places.chance, pooled),
+        0.0,
+    )
+    return found
+
+
+def _divergence(p: Array, q: Array) -> Array:
+    """Of a coin that shows heads in a share p [P] from one with q [P] (Kullback and Leibler)."""
+    found: Array = rel_entr(p, q) + rel_entr(1 - p, 1 - q)
+    return found
+
+
+def _by_chance(places: Places, visible: BoolArray, plots: Array, view: View) -> Places:
+    """The share of plots [K, 2] m in the neighbours of the places, counted for one revolution."""
+    rows = (visible & (places.plots >= TRIED)).nonzero()[0]
+    if not len(rows):
+        return places
+    reach = np.sqrt(GATE * (places.variance[rows] + WANDER**2))
+    around = places.position[rows, None] + reach[:, None, None] * _AROUND
+    counted = view.of(around)
+    hit = np.zeros(counted.shape, bool)
+    if len(plots):
+        tree = cKDTree(plots, compact_nodes=False, balanced_tree=False)
+        hit = tree.query(around, distance_upper_bound=float(reach.max()))[0] <= reach[:, None]
+    share = (hit & counted).sum(1) / np.maximum(counted.sum(1), 1)
+    chance, tried = places.chance.copy(), places.tried.copy()
+    tried[rows] += 1
+    chance[rows] += (share - chance[rows]) / np.minimum(tried[rows], MEMORY)
+    return places._replace(chance=chance, tried=tried)
 
 
 def _looked(places: Places, hit: IntArray, visible: BoolArray) -> Places:
@@ -115,8 +196,10 @@ def _looked(places: Places, hit: IntArray, visible: BoolArray) -> Places:
     counted = visible | seen
     looks = places.looks + counted
     gain = counted / np.minimum(np.maximum(looks, 1), MEMORY)
+    quick = counted / np.minimum(np.maximum(looks, 1), SHORT)
     return places._replace(
         share=places.share + gain * (seen - places.share),
+        lately=places.lately + quick * (seen - places.lately),
         looks=looks,
         idle=np.where(seen, 0, places.idle + counted),
     )
@@ -147,7 +230,10 @@ def _new(position: Array, variance: Array, time: Array) -> Places:
         position,
         variance,
         one,
+        one,
         whole,
+        none,
+        0 * whole,
         0 * whole,
         one,
         time,

@@ -13,6 +13,7 @@ from . import intake, own_ship, rotation
 from .radars import Radar
 
 MISSED = 'revolutions missed'
+PART_UNKNOWN = 'messages left out: the part of a revolution is not known yet'
 NO_STAMP = 'messages without a stamp: timed as they arrived'
 UNKNOWN = 4.0  # revolutions; so long messages wait for the antenna's rotation to be known
 LEADS = 15  # scans; more than ever wait in a queue
@@ -78,6 +79,7 @@ class ScanInput:
         others: Sequence[intake.TimeOrder],
         way: Array,
         heading: float,
+        unswept: Array | None = None,
     ) -> tuple[Scan, str, own_ship.OwnShipLog] | None:
         """The scan in the tracker's time, the fallback for own ship, and her log, in which what
         waited may be confirmed by the scan; None where the scan is rejected.
@@ -86,6 +88,7 @@ class ScanInput:
         others   the orders of the other radars
         way      [2] m/s, own ship's way through the water, should her positions be lost; nan: none
         heading  rad, hers now; nan: not known
+        unswept  gaps, as in Scan
         """
         parameters, period, start_ns = self.radar.parameters, self.period, came.start_ns
         plots, rejected = intake.screen_plots(plots, period, parameters.max_plots)
@@ -109,6 +112,7 @@ class ScanInput:
             self._count(MISSED, round((start - before) / period) - 1, '')
         self._starts.append(start)
         if not self._turns(start, plots):
+            self._count(PART_UNKNOWN, 1, '')
             return None
 
         # Recordings may stamp all plots of a scan alike; an antenna never does.
@@ -135,6 +139,7 @@ class ScanInput:
             own._replace(time=own.time + shift),
             self._place,
             sector=self._rotation.sector(start, end) if self.in_sectors else None,
+            unswept=unswept,
         )
         return scan, fallback, own_log
 

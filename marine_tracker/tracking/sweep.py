@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import Array, Scan
+from ..geometry import wrap_bearing
+from ..types import Array, BoolArray, Scan
 
 TURN = 2 * np.pi
 
@@ -48,3 +49,12 @@ def sweep_of(scan: Scan) -> Sweep:
         if np.hypot(sin, cos) > 0.9:
             return Sweep(scan.start, period, float(np.arctan2(sin, cos)))
     return Sweep(0.5 * (scan.start + scan.end), 0.0, 0.0)
+
+
+def swept(scan: Scan, bearing: Array) -> BoolArray:
+    """[N] whether the beam swept the bearings [N] rad, that is whether no gap is there."""
+    if scan.unswept is None:
+        return np.ones(len(bearing), bool)
+    first, width = scan.unswept.T
+    found: BoolArray = (wrap_bearing(bearing[:, None] - first) > width).all(1)
+    return found

@@ -26,6 +26,7 @@ from . import (
     land_mask,
     late_plots,
     lifecycle,
+    offsets,
     parts,
     places,
     sectors,
@@ -78,13 +79,14 @@ class Tracker:
         self.updates = held_updates(radars)
         self.gate_size = gate_size(parameters.gate_probability)
         self.doppler = [doppler.limits(p) for p in self.radars]
+        self.marks = offsets.marks_of(parameters.known_marks)
         self.land = land_mask.read(parameters.land_mask, parameters.land_mask_origin)
 
     def start(self) -> TrackerMemory:
         """No tracks yet."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
-        of_radar = OfRadar(plots, surroundings.unknown())
+        of_radar = OfRadar(plots, surroundings.unknown(), offsets.begin())
         return TrackerMemory(
             self._begin(plots, 1, 0),
             (of_radar,) * len(self.radars),
@@ -111,17 +113,17 @@ class Tracker:
         self, memory: TrackerMemory, radar: int, end: float, found: sectors.Found
     ) -> TrackerMemory:
         """The memory after a whole revolution: false plots, and places where plots always are."""
-        p, (*around, position, variance, time) = self.radars[radar], found
-        of_radar = memory.radars[radar]
+        p, of_radar = self.radars[radar], memory.radars[radar]
+        around, (position, variance, time), told = found[:5], found[5:8], found[8:]
         learnt = surroundings.learn(of_radar.known, end, of_radar.leftover, *around)
         known, number = at_rest.name(memory.ground.places, memory.next_number)
-        distance = np.hypot(*(known.position - memory.origin).T)
-        visible = (distance >= p.min_range_m) & (distance <= p.max_range_m)
         if p.stationary_places:
-            known = places.learn(known, position, variance, time, visible)
+            view = places.View(memory.origin, p.min_range_m, p.max_range_m)
+            known = places.learn(known, position, variance, time, view)
+        off = offsets.learn(of_radar.offsets, known, position, variance, told, p, self.marks)
         ground = memory.ground._replace(places=known, revolutions=memory.ground.revolutions + 1)
         memory = memory._replace(next_number=number, ground=ground)
-        return changed(memory, radar, known=learnt)
+        return changed(memory, radar, known=learnt, offsets=off)
 
     def judge(
         self, memory: TrackerMemory, scan: Scan, others: int = 0
@@ -156,7 +158,7 @@ class Tracker:
         tracks = late_plots.update(self.estimator, tracks, taken.plots, taken.rows, scan.radar)
 
         # judge: record the scan for each track, and decide its status
-        seen = look(tracks, plot_of, plots, ahead, expected, view.noise)
+        seen = look(tracks, plot_of, plots, ahead, expected, view.noise, scan)
         ratio = surroundings.ratio(evidence, pairs, plot_of, new, plots, p)
         other = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
         rest = other, taken.sharing, p, self.farthest, scan.end
@@ -185,7 +187,9 @@ class Tracker:
         pairs, share = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
         pairs = unmistakable(pairs, ahead, plots, tracks.last_time, scan.start, p.scan_period_s)
         spread = echoing.covariance[: len(tracks.id)]
-        return _View(noise, measured, plots, lone, ahead, expected, spread, pairs, share, left_out)
+        return _View(
+            p, noise, measured, plots, lone, ahead, expected, spread, pairs, share, left_out
+        )
 
     def _at_rest(
         self,
@@ -259,6 +263,7 @@ class Tracker:
 class _View(NamedTuple):
     """What a scan shows, before any plot is a track's: M plots, N tracks, L lone plots.
 
+    radar     parameters of the one that scanned; noise: of its plots
     measured  the plots as they are; plots, lone: with the covariance of glint
     ahead     the tracks when the beam passes them; expected: tracks, then lone plots
     spread    [N, 2, 2] m^2, of the places where the tracks may echo
@@ -266,6 +271,7 @@ class _View(NamedTuple):
     left_out  number of pairs beyond the budget
     """
 
+    radar: TrackerParameters
     noise: Noise
     measured: Plots
     plots: Plots
@@ -309,6 +315,7 @@ def _remember(
     sure = lifecycle.sure(tracks) & (tracks.status != STATIONARY)
     found = surroundings.found(sure, lifecycle.given_up(tracks, reason), seen, nowhere)
     found = (*found, at.position, at_rest.larger(at.covariance), at.time)
+    found = (*found, at.range, at.bearing, at.origin, offsets.rates(scan, at.time, view.radar))
     alive = tracks.status != LOST
     after = TrackerMemory(
         tracks if alive.all() else take(tracks, alive),

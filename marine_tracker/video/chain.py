@@ -10,7 +10,7 @@ import numpy as np
 from ..geometry import wrap_bearing
 from ..parameters import VideoParameters
 from ..types import OwnShip, Scan, Spokes, Sweep, take
-from . import headings, placing, scans
+from . import gaps, headings, placing, scans
 from .extraction import Extraction, Memory
 from .found import Found
 
@@ -23,6 +23,7 @@ class ChainMemory(NamedTuple):
     placing: placing.Placing
     extraction: Memory
     gathering: scans.Gathering
+    gaps: gaps.Gaps
 
 
 class Step(NamedTuple):
@@ -46,7 +47,7 @@ class Chain:
 
     def start(self) -> ChainMemory:
         """No spokes yet."""
-        return ChainMemory(placing.start(), self.extraction.start(), scans.start())
+        return ChainMemory(placing.start(), self.extraction.start(), scans.start(), gaps.start())
 
     def step(
         self, memory: ChainMemory, sweep: Sweep, own_ship: OwnShip
@@ -61,6 +62,8 @@ class Chain:
             done.counts.update(counts)
             if len(spokes.time):
                 done.placed.append(spokes)
+                seen = gaps.follow(memory.gaps, self.extraction.seen(spokes), self.extraction.beam)
+                memory = memory._replace(gaps=seen)
                 extraction, found = self.extraction.step(memory.extraction, spokes)
                 memory = memory._replace(extraction=extraction)
                 memory = self._gather(memory, found, own_ship, done)
@@ -71,15 +74,22 @@ class Chain:
         done = Step([], [], [], Counter())
         extraction, found = self.extraction.end(memory.extraction)
         memory = self._gather(memory._replace(extraction=extraction), found, own_ship, done)
-        done.scans.extend(scans.rest(memory.gathering, own_ship))
+        memory = self._whole(memory, scans.rest(memory.gathering, own_ship), done)
         return memory._replace(gathering=scans.start()), done
 
     def _gather(self, memory, found: Found, own_ship: OwnShip, done: Step) -> ChainMemory:
         done.found.append(found)
         done.counts.update(found.counts)
         gathering, whole = scans.gather(memory.gathering, found, own_ship, self.width)
-        done.scans.extend(whole)
-        return memory._replace(gathering=gathering)
+        return self._whole(memory._replace(gathering=gathering), whole, done)
+
+    def _whole(self, memory: ChainMemory, whole: list[Scan], done: Step) -> ChainMemory:
+        """The scans come out, with the gaps in each."""
+        for scan in whole:
+            left, inside = gaps.taken(memory.gaps, scan.end)
+            memory = memory._replace(gaps=left)
+            done.scans.append(scan._replace(unswept=inside))
+        return memory
 
 
 def _with_heading(own_ship: OwnShip, told: headings.Log) -> OwnShip:

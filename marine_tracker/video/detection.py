@@ -50,9 +50,7 @@ def over_threshold(
     drawn = strength[blocks * rows + (begin + blocks) % rows]
     busy = np.repeat(_near(occupied), np.diff(held.grid.edge), axis=1)
     busy[:, :blind] = True
-    free = ~busy
-    above = drawn[free] - level_[free]
-    known = tail.count(known, above, np.broadcast_to(zone, free.shape)[free], full)
+    known = tail.count(known, drawn - level_, ~busy, zone, full)
 
     limits = tail.thresholds(known, rate, full, samples)
     threshold = np.ceil(level_ + limits.over.astype(np.float32))
@@ -100,10 +98,10 @@ def _leave_out_lone(held: Stack, first: int, slope: Array) -> int:
 
 def noise_at(held: Stack, row: IntArray, sample: IntArray) -> Array:
     """[n] location of the noise about cells."""
-    left, right, share = level.between(held.grid, sample)
-    block = np.minimum(row // held.grid.rows, len(held.noise) - 1)
-    low, high = held.noise[block, left], held.noise[block, right]
-    return low + share * (high - low)
+    of = held.grid
+    block = np.minimum(row // of.rows, len(held.noise) - 1)
+    low, high = held.noise[block, of.left[sample]], held.noise[block, of.right[sample]]
+    return low + of.share[sample] * (high - low)
 
 
 def power_at(

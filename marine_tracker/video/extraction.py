@@ -53,7 +53,7 @@ class Extraction:
         full = stack.full_scale(spokes.strength, memory.full)
         if full != memory.full:
             memory = memory._replace(full=full, tail=tail.start(len(memory.tail.cells)))
-        for run in stack.runs(self._seen(spokes)):
+        for run in stack.runs(self.seen(spokes)):
             if memory.stack is not None and not stack.follows(memory.stack, run):
                 memory, found = self.end(memory)
                 parts.append(found)
@@ -73,7 +73,7 @@ class Extraction:
         memory, found = self._decide(memory, True)
         return memory._replace(stack=None), found
 
-    def _seen(self, spokes: Spokes) -> Spokes:
+    def seen(self, spokes: Spokes) -> Spokes:
         """The spokes without bearings in blank sectors."""
         if not self.blanks:
             return spokes

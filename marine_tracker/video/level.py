@@ -13,15 +13,16 @@ Sources: Skolnik, Radar Handbook, 3rd ed., 7.4 (cell averaging, greatest of, cen
 "False-alarm regulation in log-normal and Weibull clutter", IEEE T-AES 9(1), 1973.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..types import Array, FloatArray, IntArray, StrengthArray
+from ..types import Array, BoolArray, FloatArray, IntArray, StrengthArray
 
 DYNAMIC_NEPERS = 13.8  # of power, 60 dB: what a radar's scale is taken to span, to begin with
 GUARD_M = 40.0  # m: echoes that long do not raise their own level
+SHIP_M = 100.0  # m: half of a long ship
 RING_BLOCKS = 4  # depth of the ring of blocks beyond the guard
 GUARD_BLOCKS = 2
 OCCUPIED = 4.0  # deviations of a block's mean above the level, from which it holds an echo
@@ -34,11 +35,18 @@ class Grid(NamedTuple):
     rows      spokes in a block
     edge      [C + 1]  first sample of each column; the last one is the number of samples
     centre    [C]      samples, the middle of each column
+    left, right, share  [B]  of each sample, the columns on both sides of its middle, and how far it
+                             is on the way
+    close     [C]      a ship may be wider than what is looked at beside a block
     """
 
     rows: int
     edge: IntArray
     centre: Array
+    left: IntArray
+    right: IntArray
+    share: Array
+    close: BoolArray
 
     @property
     def cells(self) -> FloatArray:
@@ -58,8 +66,21 @@ def grid(samples: int, range_step: float, spacing: float, beam: float, pulse: fl
     while edges[-1] < samples:
         edges.append(edges[-1] + int(np.clip(edges[-1] // 8, 2, widest)))
     edges[-1] = samples
-    edge = np.array(edges)
-    return Grid(rows, edge, 0.5 * (edge[:-1] + edge[1:]))
+    beside = (GUARD_BLOCKS + RING_BLOCKS) * rows * spacing * range_step
+    return of_edges(rows, np.array(edges), SHIP_M / beside)
+
+
+def of_edges(rows: int, edge: IntArray, wide: float = 0.0) -> Grid:
+    """Blocks of so many spokes, with columns at these edges; before the sample `wide` a ship is
+    wider than what is looked at beside a block."""
+    centre = (edge[:-1] + edge[1:]).astype(np.float64) / 2
+    sample = np.arange(edge[-1])
+    last = len(centre) - 1
+    right = np.clip(np.searchsorted(centre, sample + 0.5), min(1, last), last)
+    left = np.maximum(right - 1, 0)
+    apart = np.maximum(centre[right] - centre[left], 1e-9)
+    share = np.clip((sample + 0.5 - centre[left]) / apart, 0.0, 1.0)
+    return Grid(rows, edge, centre, left, right, share, centre < wide)
 
 
 def block_means(of: Grid, strength: StrengthArray) -> FloatArray:
@@ -80,7 +101,7 @@ def scale(full: int) -> float:
 
 def levels(
     of: Grid, mean: FloatArray, step: float, texture: FloatArray
-) -> tuple[FloatArray, NDArray[np.bool_], FloatArray]:
+) -> tuple[FloatArray, BoolArray, FloatArray]:
     """Location [blocks, C] of the noise around each block, which blocks hold an echo, and by how
     much [C] the means of blocks differ, over what noise alone would give.
 
@@ -89,36 +110,39 @@ def levels(
     """
     reach = GUARD_BLOCKS + RING_BLOCKS
     cells = np.broadcast_to(of.cells, mean.shape)
-    total, every = _integral(mean * cells), _integral(cells)
-    first = _around(total, every)
+    count = len(mean)
+    every = np.arange(count + 1.0)[:, None] * np.append(0.0, np.cumsum(of.cells, dtype=np.float64))
+    # A ship close by fills all that is beside it: what may be an echo is told by range alone.
+    first = _around(_integral(mean * cells), every, ~of.close)
     residual = mean - first
     noise = np.float32(1.28 * step) / np.sqrt(of.cells)
     occupied = residual > OCCUPIED * texture * noise
     free = np.where(occupied, np.float32(0), cells)
-    total, left = _integral(mean * free), _integral(free)
-    level = _around(total, left)
+    left = _integral(free)
+    level = _around(_integral(mean * free), left, np.ones(len(of.cells), bool))
     # Where hardly anything is free, as on land, its own level counts.
     in_box = [_columns(_rows(a, reach), -reach, reach) for a in (left, every)]
     few = in_box[0] < 0.25 * in_box[1]
     level = np.where(few, np.maximum(level, first), level)
     # From the lower half alone: echoes lie in the upper one.
-    some = residual[:: 2 if len(residual) > 8 else 1]
-    count = len(some)
-    ranked = np.partition(some, (count // 4, count // 2), axis=0)
-    spread = 1.48 * (ranked[count // 2] - ranked[count // 4]) / noise
+    some = np.ascontiguousarray(residual[:: 2 if count > 8 else 1].T)
+    count = some.shape[1]
+    ranked = np.partition(some, (count // 4, count // 2), axis=1)
+    spread = 1.48 * (ranked[:, count // 2] - ranked[:, count // 4]) / noise
     return location(level / step) * np.float32(step), occupied, spread
 
 
-def _around(total: Array, cells: Array) -> FloatArray:
+def _around(total: Array, cells: Array, with_sides: BoolArray) -> FloatArray:
     """Mean in the ring around each block, on the nearer or farther side: the greater one.
 
     total, cells  [blocks + 1, C + 1]  integrals (_integral) of the sums and numbers of cells
+    with_sides    [C]  whether what is beside a block in bearing counts, too
     """
     guard, reach = GUARD_BLOCKS, GUARD_BLOCKS + RING_BLOCKS
     parts = []
     for a in (total, cells):
         wide = _rows(a, reach)
-        beside = _columns(wide - _rows(a, guard), -guard, guard)
+        beside = _columns(wide - _rows(a, guard), -guard, guard) * with_sides
         near, far = _columns(wide, -reach, -guard - 1), _columns(wide, guard + 1, reach)
         parts.append((beside + near, beside + far))
     sides = [sums / np.maximum(counts, 1) for sums, counts in zip(*parts)]
@@ -143,10 +167,15 @@ def _rows(integral: Array, half: int) -> Array:
 
 def _columns(rows: Array, low: int, high: int) -> Array:
     """[R, C] sums over the columns from `low` to `high` beside each column."""
-    count = rows.shape[1] - 1
-    at = np.arange(count)
-    first, last = np.clip(at + low, 0, count), np.clip(at + high + 1, 0, count)
+    first, last = _ends(rows.shape[1] - 1, low, high)
     return rows.take(last, 1) - rows.take(first, 1)
+
+
+@cache
+def _ends(count: int, low: int, high: int) -> tuple[IntArray, IntArray]:
+    """Where the sums over columns begin and end, of `count` columns."""
+    at = np.arange(count)
+    return np.clip(at + low, 0, count), np.clip(at + high + 1, 0, count)
 
 
 def _clipped_means() -> tuple[Array, Array]:
@@ -170,15 +199,5 @@ def location(mean: FloatArray) -> FloatArray:
 
 def at_samples(of: Grid, values: FloatArray) -> FloatArray:
     """[blocks, samples]: values [blocks, C] of blocks, straight between their middles."""
-    left, right, share = between(of, np.arange(of.edge[-1]))
-    low = values[:, left]
-    return low + share.astype(np.float32) * (values[:, right] - low)
-
-
-def between(of: Grid, sample: IntArray) -> tuple[IntArray, IntArray, Array]:
-    """The columns on both sides of the middle of samples, and how far it is on the way."""
-    last = len(of.centre) - 1
-    right = np.clip(np.searchsorted(of.centre, sample + 0.5), min(1, last), last)
-    left = np.maximum(right - 1, 0)
-    apart = np.maximum(of.centre[right] - of.centre[left], 1e-9)
-    return left, right, np.clip((sample + 0.5 - of.centre[left]) / apart, 0.0, 1.0)
+    low = values.take(of.left, 1)
+    return low + of.share.astype(np.float32) * (values.take(of.right, 1) - low)

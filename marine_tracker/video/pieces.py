@@ -5,8 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..types import Array, BoolArray, IntArray, StrengthArray
@@ -51,23 +49,23 @@ def split(
     row: IntArray,
     sample: IntArray,
     component: IntArray,
-    count: int,
+    whole: BoolArray,
     strength: StrengthArray,
     lobe: Lobe,
     slope: Array,
 ) -> Pieces:
-    """Pieces of the components [n] of the cells.
+    """Pieces of the components [n] of the cells, which are in the order of their components.
 
+    whole     [count]          components that are not split
     strength  [rows, samples]  of the stack
     slope     [count]          steps in a factor e of power where each component is
     """
-    order = np.argsort(component, kind='stable')
-    row, sample, component = row[order], sample[order], component[order]
+    count = len(whole)
     edge = np.searchsorted(component, np.arange(count + 1))
     first, cells = edge[:-1], np.diff(edge)
     low = np.stack([np.minimum.reduceat(a, first) for a in (row, sample)], 1)
     high = np.stack([np.maximum.reduceat(a, first) for a in (row, sample)], 1) + 1
-    wide = ((high - low) > lobe.single).any(1)
+    wide = ((high - low) > lobe.single).any(1) & ~whole
     value = strength[row, sample].astype(np.int64)
     top = np.lexsort((value, component))[edge[1:] - 1]
     peak = np.stack([row[top], sample[top]], 1)
@@ -97,8 +95,8 @@ def _maxima(row, sample, low, high, strength, lobe: Lobe, slope):
         return np.array([low + np.argwhere(inside)[smooth[inside].argmax()]]), np.zeros(
             len(row), np.int64
         )
-    plateau, count = ndimage.label(peaked, TOUCH)
     places = np.argwhere(peaked)
+    plateau, count = ndimage.label(peaked, TOUCH) if len(places) > 1 else (peaked, 1)
     if count == 1:
         middle = np.rint(places.mean(0)).astype(np.int64)
         return (middle + low)[None], np.zeros(len(row), np.int64)
@@ -135,9 +133,16 @@ def _merged(smooth, centre, height, lobe: Lobe, dip) -> IntArray:
     place = np.rint(way).astype(np.int64)
     valley = smooth[place[..., 0], place[..., 1]].min(1)
     joined = np.minimum(height[one], height[other]) - valley < dip
+    return _grouped(len(centre), one[joined], other[joined])
 
-    graph = coo_array(
-        (np.ones(joined.sum()), (one[joined], other[joined])), shape=(len(centre),) * 2
-    )
-    _, group = connected_components(graph, directed=False)
-    return group.astype(np.int64)
+
+def _grouped(count: int, one: IntArray, other: IntArray) -> IntArray:
+    """[count] the group of each thing, from 0, where pairs of one and other are of one group."""
+    group = np.arange(count)
+    while True:
+        least = np.minimum(group[one], group[other])
+        if (group[one] == group[other]).all():
+            return np.unique(group, return_inverse=True)[1]
+        np.minimum.at(group, group[one], least)
+        np.minimum.at(group, group[other], least)
+        group = group[group]

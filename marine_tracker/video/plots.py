@@ -16,6 +16,7 @@ POINT = np.array([1.0, math.sqrt(2.0)])  # beams and pulses that a point is wide
 ROUND = 1.4  # times that: still a point
 SKIRTS = 2.0  # beams that the flanks of a strong echo may add to its width
 STANDS_OUT = 3.5  # nepers, 15 dB: what is so far above most of the land it hangs on is no land
+FEW = 3  # maxima: so few are ships near each other with their side lobes; land has more
 LOBES = math.radians(8.0)  # side lobes show so far beside a strong echo ...
 LOBE_DOWN = 0.35  # of full scale, some 28 dB: ... and are at least so much weaker
 LEAST_CELLS = 3  # of an echo, where beam and pulse spread it over more
@@ -33,9 +34,19 @@ def measured(
 ) -> Found:
     """The plots of the components [n] of cells at rows and samples [n]."""
     lobe, count = held.lobe, int(component.max()) + 1
-    slope = np.ones(count)
-    slope[component] = limits.slope[sample]
-    found = pieces.split(row, sample, component, count, held.strength, lobe, slope)
+    order = np.argsort(component, kind='stable')
+    row, sample, component = row[order], sample[order], component[order]
+    # The slope of the tail is the display's scale in noise only: clutter has a longer tail.
+    usual = level.scale(full)
+    slope = np.full(count, usual)
+    np.minimum.at(slope, component, limits.slope[sample])
+    height = held.strength[row, sample] / usual  # nepers
+    land_height, deep = _land(held, row, sample, component, height, parameters.max_size_m)
+    top = np.full(count, -np.inf)
+    np.maximum.at(top, component, height)
+    whole = (top < land_height) & deep
+    found = pieces.split(row, sample, component, whole, held.strength, lobe, slope)
+    few = ~deep & (np.bincount(found.origin, minlength=count) <= FEW)
     row, sample, piece, count = found.row, found.sample, found.piece, found.number
     power, value = detection.power_at(held, row, sample, limits)
     top = np.full(count, -np.inf)
@@ -56,8 +67,9 @@ def measured(
     size = np.stack([extent[:, 1] * held.range_step, extent[:, 0] * across], 1)
     flanks = SKIRTS * lobe.shape[0] * across
     land = (size - np.stack([0 * flanks, flanks], 1) > parameters.max_size_m).any(1)
-    height = value / limits.slope[sample]  # nepers
-    land |= _on_land(held, found, height, parameters.max_size_m)
+    highest = np.full(count, -np.inf)
+    np.maximum.at(highest, piece, height)
+    land |= (highest < land_height[found.origin]) & ~few[found.origin]
     spread = lobe.shape[0] >= detection.LEAST_SPOKES
     enough = (cells >= LEAST_CELLS) & (spokes >= 2) if spread else cells >= 1
     keep = ~land & enough
@@ -96,30 +108,26 @@ def measured(
     )
 
 
-def _on_land(held: Stack, found: pieces.Pieces, height: Array, longest: float) -> BoolArray:
-    """[K] pieces of a component that is longer than any ship, unless they stand out of it.
+def _land(
+    held: Stack, row: IntArray, sample: IntArray, component: IntArray, height: Array, longest: float
+) -> tuple[Array, BoolArray]:
+    """[C] nepers: what is lower in a component that is longer than any ship is land; -inf for the
+    others. [C] whether it is deeper in range than a few ships. Cells [n] in the order of their
+    components.
 
     height  [n]  strength of the cells, in nepers
     """
-    row, sample, origin = found.row, found.sample, found.origin
-    count = int(origin.max()) + 1
-    component = origin[found.piece]
-    span = np.empty((count, 2))
-    for axis, a in enumerate((row, sample)):
-        low, high = np.full(count, np.iinfo(np.int64).max), np.full(count, -1)
-        np.minimum.at(low, component, a)
-        np.maximum.at(high, component, a)
-        span[:, axis] = high - low
-    middle = np.bincount(component, sample, count) / np.bincount(component, minlength=count)
-    across = middle * held.range_step * held.spacing
+    edge = np.searchsorted(component, np.arange(int(component[-1]) + 2))
+    first, cells = edge[:-1], np.diff(edge)
+    span = [np.maximum.reduceat(a, first) - np.minimum.reduceat(a, first) for a in (row, sample)]
+    across = np.add.reduceat(sample, first) / cells * held.range_step * held.spacing
     flanks = (SKIRTS + 1.0) * held.lobe.shape[0]
-    long_ = (span[:, 0] - flanks) * across > longest
-    long_ |= span[:, 1] * held.range_step > longest
-    usual, top = np.full(count, np.inf), np.zeros(found.number)
-    np.maximum.at(top, found.piece, height)
+    long_ = (span[0] - flanks) * across > longest
+    long_ |= span[1] * held.range_step > longest
+    land = np.full(len(cells), -np.inf)
     for one in np.flatnonzero(long_).tolist():
-        usual[one] = np.median(height[component == one])
-    return long_[origin] & (top < usual[origin] + STANDS_OUT)
+        land[one] = np.median(height[edge[one] : edge[one + 1]]) + STANDS_OUT
+    return land, span[1] * held.range_step > FEW * longest
 
 
 def _side_lobe(held: Stack, peak: IntArray, full: int) -> BoolArray:

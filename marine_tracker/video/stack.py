@@ -40,7 +40,7 @@ class Stack(NamedTuple):
     lobe: Lobe
 
 
-NO_GRID = level.Grid(1, np.zeros(1, np.int64), np.zeros(0))
+NO_GRID = level.of_edges(1, np.array([0, 1]))
 NO_LOBE = Lobe(np.ones(2))
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import Array, FloatArray, IntArray
+from ..types import Array, BoolArray, FloatArray, IntArray
 from .level import scale
 
 BINS = 256  # of strength above the level
@@ -65,14 +65,19 @@ def start(zones: int) -> Tail:
     return Tail(np.zeros((zones, BINS)), np.zeros(zones), np.ones(zones))
 
 
-def count(tail: Tail, above: Array, zone: IntArray, full: int) -> Tail:
-    """The tail with more cells: steps above the level [n], and zones [n]."""
-    bins = np.floor(above * (BINS / (full + 1))).astype(np.int64)
+def count(tail: Tail, above: FloatArray, free: BoolArray, zone: IntArray, full: int) -> Tail:
+    """The tail with more cells.
+
+    above  [R, B]  steps of their strengths above the level
+    free   [R, B]  those that hold no echo; the others are not counted
+    zone   [B]
+    """
     zones = len(tail.cells)
-    cells = np.bincount(zone, minlength=zones)
-    inside = (bins >= 0) & (above < FAR * scale(full))
-    bins, zone = bins[inside], zone[inside]
-    counts = np.bincount(zone * BINS + np.minimum(bins, BINS - 1), minlength=zones * BINS)
+    cells = np.bincount(zone, free.sum(0), zones)
+    inside = np.flatnonzero(free & (above >= 0) & (above < FAR * scale(full)))
+    bins = (above.ravel().take(inside) * (BINS / (full + 1))).astype(np.int64)
+    at = (zone * BINS).take(inside % len(zone))
+    counts = np.bincount(at + np.minimum(bins, BINS - 1), minlength=zones * BINS)
     keep = MEMORY / np.maximum(tail.cells + cells, MEMORY)
     return tail._replace(
         above=(tail.above + counts.reshape(zones, BINS)) * keep[:, None],

@@ -322,6 +322,18 @@ def test_each_entry_raises_once_more(bridge):
     assert raised == 3
 
 
+def test_after_a_hundred_that_came_and_were_lost_the_next_one_raises(bridge):
+    one, raised = bridge(f'[{RING}]'), 0
+    for k in range(1, 103):
+        who = {'id': [k], 'number': [k]}
+        one.scan([[2500.0, 0.0]], **who)
+        raised += ('new target', k, UNACKNOWLEDGED) in one.scan([[1700.0, 0.0]], **who)
+        if k % 2:
+            one.acknowledge()
+        one.scan([[1700.0, 0.0]], status=LOST, **who)
+    assert raised == 102
+
+
 def test_each_of_two_zones_raises(bridge):
     one = bridge(f'[{RING}, {INNER}]')
     assert len(one.scan([[1900.0, 0.0]])) == 1

@@ -312,7 +312,9 @@ RADAR = uuid.UUID(int=7)
 
 
 def delta(place=(54.5, 10.25), **columns):
-    (text,) = signalk.deltas(targets(**columns), [107], [place[0]], [place[1]], NOON, RADAR)
+    (text,) = signalk.deltas(
+        targets(**columns), [signalk.context(RADAR, 107)], [place[0]], [place[1]], NOON
+    )
     said = json.loads(text)
     (update,) = said['updates']
     assert update['timestamp'] == '2023-11-15T12:00:00.250Z'

@@ -1,4 +1,5 @@
 import csv
+import json
 import sys
 
 import numpy as np
@@ -8,10 +9,17 @@ from marine_tracker import cli, config
 from marine_tracker.evaluation import metrics
 from marine_tracker.evaluation.replay import open_source
 from marine_tracker.recording import csv_folder, track_file
-from marine_tracker.simulation import radar, scenario
+from marine_tracker.simulation import radar, scenario, standard_scenarios
 from marine_tracker.types import PolarPlots
 
-SCENARIO = 'clean'
+
+@pytest.fixture(scope='module')
+def scene(tmp_path_factory):
+    """The file of a scenario: `clean`, its first five minutes."""
+    shipped = config.path('scenarios', 'clean.yaml').read_text()
+    file = tmp_path_factory.mktemp('scene') / 'short.yaml'
+    file.write_text(shipped.replace('duration_s: 900', 'duration_s: 300'))
+    return file
 
 
 def replay(out, *arguments):
@@ -20,8 +28,8 @@ def replay(out, *arguments):
 
 
 @pytest.fixture(scope='module')
-def tracks(tmp_path_factory):
-    return replay(tmp_path_factory.mktemp('replay') / 'tracks.csv', SCENARIO)
+def tracks(tmp_path_factory, scene):
+    return replay(tmp_path_factory.mktemp('replay') / 'tracks.csv', scene)
 
 
 def test_a_replay_has_the_documented_columns_and_names(tracks):
@@ -35,17 +43,17 @@ def test_a_replay_has_the_documented_columns_and_names(tracks):
     assert [row['pred_north_m'] for row in rows if row['track'] == rows[0]['track']][0] == ''
 
 
-def test_twice_the_same_is_byte_equal_and_another_seed_is_not(tracks, tmp_path):
-    assert replay(tmp_path / 'again.csv', SCENARIO).read_bytes() == tracks.read_bytes()
-    other = replay(tmp_path / 'other.csv', SCENARIO, '--seed', 2)
+def test_twice_the_same_is_byte_equal_and_another_seed_is_not(scene, tracks, tmp_path):
+    assert replay(tmp_path / 'again.csv', scene).read_bytes() == tracks.read_bytes()
+    other = replay(tmp_path / 'other.csv', scene, '--seed', 2)
     assert other.read_bytes() != tracks.read_bytes()
 
 
-def test_two_processes_give_byte_equal_files(command, recordings, tmp_path):
+def test_two_processes_give_byte_equal_files(command, scene, tmp_path):
     for name in ('a', 'b'):
         done = command(
             'replay',
-            recordings / 'autosea_joyride',
+            scene,
             '--estimator',
             'imm',
             '--out',
@@ -53,23 +61,23 @@ def test_two_processes_give_byte_equal_files(command, recordings, tmp_path):
             PYTHONHASHSEED={'a': '1', 'b': '2'}[name],
         )
         assert done.returncode == 0, done.stderr
-        assert done.stdout.startswith('238 scans, ') and done.stdout.count('\n') == 1
+        assert done.stdout.startswith('110 scans, ') and done.stdout.count('\n') == 1
         assert done.stderr == ''  # no progress bar without a terminal
     assert (tmp_path / 'a').read_bytes() == (tmp_path / 'b').read_bytes()
 
 
-def test_standard_output_gets_tracks_alone(command, tracks):
-    done = command('replay', SCENARIO, '--out', '-')
+def test_standard_output_gets_tracks_alone(command, scene, tracks):
+    done = command('replay', scene, '--out', '-')
     assert done.stdout.encode() == tracks.read_bytes()
     assert 'tracks confirmed' in done.stderr
 
 
-def test_pairs_left_out_in_a_crowd_are_told(capsys, tmp_path):
+def test_pairs_left_out_in_a_crowd_are_told(capsys, scene, tmp_path):
     """1,500 plots within 150 m in every scan."""
     rng, count = np.random.default_rng(2), 1500
 
     def crowd():
-        for scan, truth in radar.simulate(scenario.load(SCENARIO), 1):
+        for scan, truth in radar.simulate(scenario.load(scene), 1):
             if scan.start > 12.0:
                 return
             plots = PolarPlots(
@@ -84,14 +92,14 @@ def test_pairs_left_out_in_a_crowd_are_told(capsys, tmp_path):
     replay(tmp_path / 'tracks.csv', tmp_path / 'crowd')
     left_out = int(capsys.readouterr().out.split(' pairs left out')[0].split()[-1])
     assert left_out > 4 * 1_000_000
-    replay(tmp_path / 'tracks.csv', SCENARIO)
+    replay(tmp_path / 'tracks.csv', scene)
     assert 'left out' not in capsys.readouterr().out
 
 
-def test_a_written_scenario_replays_and_scores_like_the_scenario_itself(tracks, tmp_path):
-    chosen = scenario.load(SCENARIO)
+def test_a_written_scenario_replays_and_scores_like_the_scenario_itself(scene, tracks, tmp_path):
+    chosen = scenario.load(scene)
     csv_folder.write(
-        tmp_path / 'folder', SCENARIO, radar.simulate(chosen, 1), chosen.tracker_parameters()
+        tmp_path / 'folder', chosen.name, radar.simulate(chosen, 1), chosen.tracker_parameters()
     )
     again = track_file.read(replay(tmp_path / 'tracks.csv', tmp_path / 'folder'))
     first = track_file.read(tracks)
@@ -227,5 +235,9 @@ def test_the_hf_radars_ships_are_held_with_the_shipped_parameters(tmp_path):
 
 def test_two_sources_of_one_scene_are_fused(tmp_path, capsys):
     out = tmp_path / 'tracks.csv'
-    assert cli.main(['replay', 'two_radars_x', 'two_radars_s', '--out', str(out)]) == 0
-    assert capsys.readouterr().out.startswith('660 scans, ')  # 360 and 300
+    short = [tmp_path / f'{which}.yaml' for which in 'xs']
+    for file in short:
+        scene = standard_scenarios.two_radars(file.stem)
+        file.write_text(json.dumps({**scene, 'duration_s': 150}))  # which is YAML
+    assert cli.main(['replay', *map(str, short), '--out', str(out)]) == 0
+    assert capsys.readouterr().out.startswith('110 scans, ')  # 60 and 50

@@ -11,13 +11,14 @@ image = pytest.importorskip('PIL.Image', reason='no Pillow: frames of the page a
 
 WHITE_SHARE = 0.25  # of the luminance of white, the most that one pixel may have
 MEAN = 0.01  # the most that a frame may have on average
+SRGB = np.arange(256) / 255
+LINEAR = np.where(SRGB <= 0.04045, SRGB / 12.92, ((SRGB + 0.055) / 1.055) ** 2.4).astype('f4')
+SHARES = np.array([0.2126, 0.7152, 0.0722], 'f4')
 
 
 def luminance(frame):
     """Relative luminance [H, W] of an encoded image, 1 for white."""
-    pixels = np.asarray(image.open(io.BytesIO(frame)).convert('RGB')) / 255
-    linear = np.where(pixels <= 0.04045, pixels / 12.92, ((pixels + 0.055) / 1.055) ** 2.4)
-    return linear @ [0.2126, 0.7152, 0.0722]
+    return LINEAR[np.asarray(image.open(io.BytesIO(frame)).convert('RGB'))] @ SHARES
 
 
 async def watched(page, act, kept):

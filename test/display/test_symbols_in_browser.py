@@ -32,7 +32,11 @@ from .scene import (
 if not browser.program():
     pytest.skip('no Chromium: the page is not tried in a browser', allow_module_level=True)
 
-ORIENTATIONS = pytest.mark.parametrize('orientation', ['north-up', 'head-up', 'course-up'])
+# The one that turns the picture; the others are the same code with other angles.
+ORIENTATIONS = pytest.mark.parametrize(
+    'orientation',
+    ['head-up', *(pytest.param(one, marks=pytest.mark.slow) for one in ('north-up', 'course-up'))],
+)
 
 
 def around(middle, radius, *degrees):

@@ -18,6 +18,7 @@ PERIOD = 60 / 22
 SPEED = 25.0
 SHIP = bank.BANKS['ship']
 SHARE = 40  # tracks of a short trial
+SLOW = pytest.mark.slow  # a like test stays with the fast ones
 
 
 @pytest.fixture(scope='module')
@@ -205,7 +206,13 @@ class TestFusion:
             np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-6)
 
     @pytest.mark.parametrize(
-        ('kind', 'limit'), [('steady', 0.97), ('weave', 0.96), ('sharp', 1.0), ('agile', 0.95)]
+        ('kind', 'limit'),
+        [
+            ('steady', 0.97),
+            pytest.param('weave', 0.96, marks=SLOW),
+            pytest.param('sharp', 1.0, marks=SLOW),
+            ('agile', 0.95),
+        ],
     )
     def test_it_beats_the_imm_tuned_on_its_own_training_tracks(self, weights, kind, limit):
         """120 tracks: the interval's upper end must stay below the limit."""
@@ -215,7 +222,10 @@ class TestFusion:
         found = track_trials.ratio(own.position, base.position, on.counts, np.random.default_rng(0))
         assert found.high < limit
 
-    @pytest.mark.parametrize('kind', ['idle', 'steady', 'ferry', 'weave', 'rib'])
+    @pytest.mark.parametrize(
+        'kind',
+        ['steady', 'rib', *(pytest.param(k, marks=SLOW) for k in ('idle', 'ferry', 'weave'))],
+    )
     def test_for_small_craft_it_beats_the_products_imm(self, kind):
         """140 boats and their radars, fair and hard: the interval's upper end."""
         rng = np.random.default_rng(79)
@@ -520,7 +530,7 @@ class TestLearning:
         )
         assert found.high < 0.98
 
-    @pytest.mark.parametrize('kind', ['steady', 'agile'])
+    @pytest.mark.parametrize('kind', ['agile', pytest.param('steady', marks=SLOW)])
     def test_it_spoils_no_more_than_one_part_in_a_hundred(self, weights, kind):
         on = make_trial(kind, seed=81, count=60, scans=90)
         plain, learned = (

@@ -132,7 +132,13 @@ def targets(status):
 
 def told(server, status, stamp):
     server.send(
-        signalk.deltas(targets(status), [7, 23], [54.4, 54.6], [10.2, 10.1], stamp, NAMESPACE)
+        signalk.deltas(
+            targets(status),
+            [signalk.context(NAMESPACE, number) for number in (7, 23)],
+            [54.4, 54.6],
+            [10.2, 10.1],
+            stamp,
+        )
     )
 
 

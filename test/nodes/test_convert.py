@@ -97,6 +97,16 @@ def test_radial_speeds_go_out_and_come_back_where_the_radar_tells_them():
     assert got.amplitude == pytest.approx(sent.plots.amplitude, rel=1e-6)
 
 
+def test_gaps_go_with_the_plots_and_are_none():
+    gaps = np.array([[0.75, 1.5], [6.0, 0.5]])
+    sent = scan(3)._replace(unswept=gaps)
+    message = over_the_wire(convert.plots_to_cloud(sent, 0))
+    assert message.width == 5
+    np.testing.assert_allclose(convert.cloud_to_plots(message).range, sent.plots.range, rtol=1e-6)
+    assert convert.cloud_to_gaps(message) == pytest.approx(gaps)
+    assert convert.cloud_to_gaps(over_the_wire(convert.plots_to_cloud(scan(3), 0))) is None
+
+
 def test_a_radial_speed_that_is_no_float_is_refused():
     message = convert.plots_to_cloud(with_doppler(), 0)
     message.fields[-1].datatype = PointField.INT32

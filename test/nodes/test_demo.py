@@ -129,7 +129,9 @@ def test_a_node_that_dies_ends_the_demo_which_says_so(demo, node_helpers):
     wait(lambda: gone(started.values()))
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    'number', [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
+)
 def test_nodes_that_do_not_answer_are_killed_and_the_demo_ends_in_time(demo, node_helpers, number):
     wait, _ = node_helpers
     process = demo('--scenario', 'clean', '--rate', '25')
@@ -160,7 +162,9 @@ def test_a_demo_that_hangs_while_it_leaves_the_network_ends_in_time():
     assert process.returncode == LATE and 'most recent call first' in said
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    'number', [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.slow)]
+)
 def test_no_name_breaks_the_table_or_keeps_the_demo_from_ending(launch, node_helpers, number):
     wait, _ = node_helpers
     with domains.free_domain() as domain:

@@ -4,6 +4,7 @@ import contextlib
 import json
 import signal
 import socket
+import sys
 import time
 
 import numpy as np
@@ -393,6 +394,29 @@ def test_signalk_deltas_go_out_as_datagrams(rig, ears):
     here.scan(entry('TT02'), seconds=2.0)
     gone = [delta for delta in map(json.loads, ear.hear(2)) if delta['context'] == first['context']]
     assert all(one['value'] is None for one in gone[0]['updates'][0]['values'] if one['path'])
+
+
+def test_targets_go_out_as_nmea_2000(rig, ears):
+    pytest.importorskip('nmea2000')
+    from nmea2000.decoder import NMEA2000Decoder
+
+    ear, decoder = ears(), NMEA2000Decoder()
+    here = rig(nmea2000_udp=f'{LOOPBACK}:{ear.port}')
+    here.send_own_ship(seconds=1.0)
+    here.scan(entry('TT05', range=2.25, bearing=140.5), seconds=1.0)
+    frames = ear.hear(5)
+    (told,) = filter(None, (decoder.decode(frame.strip()) for frame in frames))
+    values = {field.id: field.value for field in told.fields}
+    assert values['name'] == 'TT05' and values['targetId'] == 5
+    assert values['distance'] == pytest.approx(2.25 * 1852, abs=0.01)
+    assert values['bearing'] == pytest.approx(np.radians(140.5), abs=1e-4)
+
+
+def test_nmea_2000_without_its_package_stops_the_start_by_name(graph, monkeypatch):
+    monkeypatch.setitem(sys.modules, 'nmea2000', None)
+    monkeypatch.delitem(sys.modules, 'nmea2000.message', raising=False)
+    with pytest.raises(ValueError, match='parameter nmea2000_udp asks for the package nmea2000'):
+        graph.make(NmeaOutputNode, nmea2000_udp=f'{LOOPBACK}:2000')
 
 
 def test_alarms_go_to_signalk_as_notifications_of_own_ship(rig, ears):

@@ -156,7 +156,7 @@ def deaf(port):
 @pytest.mark.parametrize(
     ('clients', 'deaf_ones', 'reconnects'),
     [
-        pytest.param(70, 13, 150, id='70'),
+        pytest.param(58, 9, 60, id='58'),
         pytest.param(220, 44, 2_200, id='220', marks=[pytest.mark.slow, pytest.mark.timeout(600)]),
     ],
 )

@@ -7,6 +7,7 @@ import pytest
 pytest.importorskip('rclpy')
 from builtin_interfaces.msg import Duration
 from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image, PointCloud2, PointField
 
 from marine_tracker.nodes import convert, spokes, topics
@@ -161,6 +162,44 @@ def test_a_recording_of_spokes_becomes_plots_over_dds(graph, node_helpers, recor
 
     values = wait(told_well)
     assert values['spokes'] == values['spokes usable']
+
+
+def test_radar_sectors_become_plots_over_dds(graph, node_helpers, pictures):
+    """Two revolutions in sectors of 90 spokes, counter-clockwise angles; own ship heads 0.4 rad."""
+    msg = pytest.importorskip('marine_sensor_msgs.msg', reason='not installed')
+    wait, listener = node_helpers
+    node = graph.bystander()
+    plots = listener(node, PointCloud2, topics.PLOTS, topics.reliable(50))
+    extractor = graph.make(PlotExtractorNode, beam_width_deg=2.4, pulse_length_m=30.0)
+    sectors = node.create_publisher(msg.RadarSector, topics.SECTOR, topics.reliable(100))
+    own = node.create_publisher(Odometry, topics.ODOMETRY, topics.reliable(50))
+    wait(lambda: sectors.get_subscription_count() and own.get_subscription_count())
+    wait(lambda: plots.connected)
+    epoch, heading, size = 1_700_000_000_000_000_000, 0.4, 90
+    for second in range(-1, 7):
+        stamp = epoch + second * 1_000_000_000
+        own.publish(convert.own_ship_to_odometry(stamp, (0.0, 0.0), (0.0, 0.0), heading))
+    wait(lambda: len(extractor._own) == 8)
+    whole = pictures.turned(pictures.make(SHIPS), 2)
+    step = whole.bearing[1]
+    for k in range(0, len(whole.time), size):
+        rows = whole.strength[k : k + size].astype(float)
+        sectors.publish(
+            msg.RadarSector(
+                header=convert.header(epoch + round(whole.time[k] * 1e9), 'base_link'),
+                angle_start=float(heading - whole.bearing[k]),
+                angle_increment=float(-step),
+                time_increment=Duration(nanosec=round(1e9 * whole.time[1])),
+                range_max=4800.0,
+                intensities=[msg.RadarEcho(echoes=row.tolist()) for row in rows],
+            )
+        )
+        wait(lambda k=k: extractor._spokes == min(k + size, len(whole.time)))
+    wait(lambda: len(plots))
+    found = convert.cloud_to_plots(plots.messages[0])
+    order = np.argsort(found.range)
+    assert found.range[order] == pytest.approx([1500.0, 3300.0], abs=10)
+    assert np.degrees(found.bearing[order]) == pytest.approx([40.0, 200.0], abs=0.5)
 
 
 def test_spokes_of_which_none_is_usable_are_an_error(graph, node_helpers):

@@ -1,4 +1,6 @@
-"""Forty ships among 200 false plots a scan for half an hour, with shipped defaults."""
+"""Forty ships among 200 false plots a scan, with shipped defaults: ten minutes, or half an hour."""
+
+from itertools import islice
 
 import numpy as np
 import psutil
@@ -10,8 +12,10 @@ from marine_tracker.simulation import scenario
 from marine_tracker.simulation.radar import simulate
 from marine_tracker.tracking.tracker import Tracker
 
+HALF_AN_HOUR = 660
 
-def follow(seed, estimator):
+
+def follow(seed, estimator, scans=HALF_AN_HOUR):
     """Share of its detectable time each ship was held, mean false tracks, RSS after each scan."""
     strait = scenario.load('busy_strait')
     parameters = from_mapping(
@@ -22,7 +26,7 @@ def follow(seed, estimator):
     detectable, held = np.zeros(41), np.zeros(41)
     false, resident, plots = [], [], []
     process = psutil.Process()
-    for scan, truth in simulate(strait, seed):
+    for scan, truth in islice(simulate(strait, seed), scans):
         memory, _ = tracker.step(memory, scan)
         estimate = tracker.extrapolate(memory.tracks, scan.end)
         shown = estimate.position[memory.tracks.number > 0]
@@ -45,21 +49,21 @@ def follow(seed, estimator):
         false.append(len(shown) - on.sum())
         plots.append(len(scan.plots.time))
         resident.append(process.memory_info().rss)
-    assert len(false) == 660 and np.mean(plots) > 230
+    assert len(false) == scans and np.mean(plots) > 230
     return held[1:] / detectable[1:], np.mean(false), np.array(resident)
 
 
-@pytest.mark.parametrize(
-    'estimator',
-    [
-        'gwnn',
-        pytest.param('imm', marks=pytest.mark.slow),
-        pytest.param('cs_kalman', marks=pytest.mark.slow),
-    ],
-)
-def test_every_ship_is_held_and_clutter_gives_hardly_a_track(estimator):
-    held, false, resident = follow(1, estimator)
+def test_ships_are_held_and_clutter_gives_hardly_a_track():
+    held, false, _ = follow(1, 'gwnn', 220)
     assert len(held) == 40
+    assert held.min() >= 0.93  # the first scans, before a track is confirmed, weigh three times
+    assert false <= 1.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('estimator', ['gwnn', 'imm', 'cs_kalman'])
+def test_so_it_stays_for_half_an_hour_in_flat_memory(estimator):
+    held, false, resident = follow(1, estimator)
     assert held.min() >= 0.95
     assert false <= 1.0
     # Flat once warm: what is left is the allocator's breathing, a leak would grow with each scan.

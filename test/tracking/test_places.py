@@ -12,6 +12,9 @@ SIGMA = 5.0  # m
 PERIOD = 2.5  # s
 
 
+VIEW = places.View(np.zeros(2), 0.0, 5000.0)
+
+
 def learnt(revolutions, position, velocity=(0.0, 0.0), pd=0.7, sigma=SIGMA, seed=3):
     """The map after so many revolutions of one thing at position + velocity t."""
     rng = np.random.default_rng(seed)
@@ -21,13 +24,7 @@ def learnt(revolutions, position, velocity=(0.0, 0.0), pd=0.7, sigma=SIGMA, seed
         at = np.array(position) + time * np.array(velocity) + rng.normal(0, sigma, 2)
         plots = np.array([at]) if rng.random() < pd else np.zeros((0, 2))
         count = len(plots)
-        known = places.learn(
-            known,
-            plots,
-            np.full(count, sigma**2),
-            np.full(count, time),
-            np.ones(len(known.share), bool),
-        )
+        known = places.learn(known, plots, np.full(count, sigma**2), np.full(count, time), VIEW)
     return known
 
 
@@ -56,10 +53,9 @@ def test_a_place_is_forgotten_once_its_plots_stay_away():
     known = learnt(60, [10.0, 10.0], pd=0.9)
     nothing = np.zeros(0)
     for k in range(150):
-        visible = np.ones(len(known.share), bool)
         if k == 30:
             assert known.established.any()
-        known = places.learn(known, np.zeros((0, 2)), nothing, nothing, visible)
+        known = places.learn(known, np.zeros((0, 2)), nothing, nothing, VIEW)
     assert not len(known.share)
 
 
@@ -67,9 +63,54 @@ def test_a_place_out_of_sight_is_kept():
     known = learnt(60, [10.0, 10.0], pd=0.9)
     nothing = np.zeros(0)
     for _ in range(150):
-        hidden = np.zeros(len(known.share), bool)
-        known = places.learn(known, np.zeros((0, 2)), nothing, nothing, hidden)
+        known = places.learn(known, np.zeros((0, 2)), nothing, nothing, VIEW._replace(near=20.0))
     assert known.established.any()
+
+
+def sea(revolutions, per_gate, mark=None, pd=0.9, sigma=20.0, seed=1):
+    """The map after so many revolutions of even clutter, with a mean of plots in each gate, and
+    maybe of a mark."""
+    rng = np.random.default_rng(seed)
+    gate = np.pi * places.GATE * (sigma**2 + places.WANDER**2)
+    known = places.empty()
+    for k in range(revolutions):
+        plots = rng.uniform(-600, 600, (rng.poisson(per_gate * 1200**2 / gate), 2))
+        if mark is not None and rng.random() < pd:
+            plots = np.append(plots, [mark + rng.normal(0, sigma, 2)], 0)
+        count = len(plots)
+        known = places.learn(
+            known, plots, np.full(count, sigma**2), np.full(count, k * PERIOD), VIEW
+        )
+    return known
+
+
+@pytest.mark.parametrize('per_gate', [0.05, 0.4, 0.8])
+def test_clutter_makes_no_places_however_dense_it_is(per_gate):
+    known = sea(150, per_gate)
+    # An hour over a whole picture holds a few hundred times as many tries: e^7 is a thousand.
+    assert places.surplus(known).max() < places.SURE - 7
+    assert not known.established.any()
+    often = (known.share >= places.BECOMES) & (known.plots >= places.LEAST_PLOTS)
+    assert often.any() == (per_gate > 0.05)  # a share alone would have made places
+
+
+@pytest.mark.parametrize('per_gate', [0.05, 0.25])
+def test_a_mark_among_clutter_is_a_place(per_gate):
+    known = sea(90, per_gate, mark=np.array([120.0, -310.0]))
+    assert known.established.sum() == 1
+    assert known.position[known.established][0] == pytest.approx([120, -310], abs=20)
+
+
+def test_a_mark_that_is_gone_ends_though_clutter_goes_on_at_its_place():
+    known = sea(60, 0.25, mark=np.array([120.0, -310.0]))
+    assert known.established.any()
+    rng = np.random.default_rng(9)
+    gate = np.pi * places.GATE * (20.0**2 + places.WANDER**2)
+    for k in range(60, 260):
+        plots = rng.uniform(-600, 600, (rng.poisson(0.25 * 1200**2 / gate), 2))
+        count = len(plots)
+        known = places.learn(known, plots, np.full(count, 400.0), np.full(count, k * PERIOD), VIEW)
+    assert not known.established.any()
 
 
 class Harbour:

@@ -67,7 +67,7 @@ def played(strait, pause, wrong=None, screened=True):
         (33, 0.90),
         pytest.param(60, 0.90, marks=SLOW),
         pytest.param(120, 0.85, marks=SLOW),
-        (300, 0.60),
+        pytest.param(300, 0.60, marks=SLOW),
     ],
 )
 def test_after_a_pause_nearly_all_targets_go_on_and_none_under_a_wrong_number(

@@ -103,12 +103,14 @@ def run(
     return Result(figures, [_claim(figures)])
 
 
-def scene(estimator: str, seed: int) -> list[Course]:
-    """One run, in every way."""
+def scene(estimator: str, seed: int, until: float = np.inf) -> list[Course]:
+    """One run, in every way; its scans that end before `until` s."""
     x, s = scenario.load('two_radars_x'), scenario.load('two_radars_s')
     first, second = np.random.SeedSequence(seed).generate_state(2).tolist()
-    of_x = [scan for scan, _ in radar.simulate(x, first)]
-    of_s = [scan for scan, _ in radar.simulate(s, second)]
+    of_x, of_s = (
+        [scan for scan, _ in radar.simulate(one, noise) if scan.end < until]
+        for one, noise in ((x, first), (s, second))
+    )
     fails = [scan for scan in of_s if not SILENT[0] < scan.end < SILENT[1]]
     both = fused([x.tracker_parameters(), s.tracker_parameters()], ['x', 's'])
     of_radar_x, of_radar_s = (

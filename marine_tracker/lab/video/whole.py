@@ -10,7 +10,7 @@ from ...evaluation import video_source
 from ...geometry import to_range_bearing
 from ...parameters import TrackerParameters, VideoParameters, from_mapping
 from ...service import Service
-from ...simulation import land, radar_equation, scenario, video
+from ...simulation import land, picture, radar_equation, scenario, video
 from ...simulation.scenario import Scenario
 from ...tracking.lifecycle import COASTING, CONFIRMED
 from ...types import Array, BoolArray, Scan, Truth
@@ -98,7 +98,8 @@ def scene(minutes: float, seed: int, spokes: int = 1440, samples: int = 512) -> 
 
 
 def visible(chosen: Scenario, truth: Truth) -> BoolArray:
-    """[T] whether ships are in range, not behind land, and their mean echo clear of the sea."""
+    """[T] whether ships are in range, not behind land, and their mean echo clear of the sea, as far
+    as the display can show it."""
     radar = chosen.radar
     assert radar.video is not None
     own = chosen.own_ship_at(truth.time)
@@ -116,13 +117,13 @@ def visible(chosen: Scenario, truth: Truth) -> BoolArray:
         away = truth.position - shower.place - shower.velocity * truth.time[:, None]
         wet = np.hypot(*away.T) < shower.radius
         rain += wet * radar_equation.rain(range_, beam, pulse, shower.rate) * factor
-    clear = 10 * np.log10(echo / (1 + sea * factor + rain)) >= VISIBLE_DB
+    clutter = 1 + sea * factor + rain
+    shown = np.minimum(10 * np.log10(echo), picture.SPAN_DB - picture.NOISE_DB)
+    clear = shown - 10 * np.log10(clutter) >= VISIBLE_DB
     edge = np.concatenate([along(shore.corners) for shore in chosen.shores])
     lit = land.lit(truth.position - own.position, edge - own.position.mean(0), 0.0)
-    shown: BoolArray = (
-        clear & lit & (range_ < radar.max_range - 100) & (range_ > radar.blind_range + 50)
-    )
-    return shown
+    inside: BoolArray = (range_ < radar.max_range - 100) & (range_ > radar.blind_range + 50)
+    return clear & lit & inside
 
 
 def along(corners: Array) -> Array:

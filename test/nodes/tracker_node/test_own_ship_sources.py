@@ -161,7 +161,10 @@ def test_own_ship_without_stamps_is_timed_as_she_arrives(watch):
     here.wait(lambda: 'without a stamp' in status(here, 'tracker: own ship').message)
 
 
-@pytest.mark.parametrize('frame', ['lidar_link', 'radar', 'odom'])
+@pytest.mark.parametrize(
+    'frame',
+    ['lidar_link', *(pytest.param(one, marks=pytest.mark.slow) for one in ('radar', 'odom'))],
+)
 def test_plots_in_a_frame_of_nobody_are_refused_by_name(watch, frame):
     here = watch()
     for scan in here.scans[:3]:

@@ -1,0 +1,1 @@
+"""AIS beside radar: joined, told when it is wrong, fused."""
