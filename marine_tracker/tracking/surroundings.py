@@ -13,7 +13,7 @@ from .expected import Expected
 from .gate import Pairs
 from .look import Look
 
-BEGIN = 0.1  # of the false plots of an empty sea: so many new targets may appear in a scan
+BEGIN = 0.25  # of the false plots of an empty sea: so many new targets may appear in a scan
 FIRST = 0.01  # of the plots that the radar sees first: so many targets may be there already
 
 
