@@ -9,13 +9,13 @@ import numpy as np
 from .. import m1371
 from ..arpa import alarms, encounters
 from ..arpa.alarm_causes import of_tracks, single
-from ..arpa.alarms import AIS_DANGER, DANGER
+from ..arpa.alarms import AIS_DANGER, DANGER, Named
 from ..arpa.alerts import ACTIVE_ACKNOWLEDGED, KEEP, OFF, ON, WAITING, Alerts
 from ..arpa.arpa import Arpa
 from ..geometry import NAUTICAL_MILE
 from ..parameters import AisParameters
 from ..tracking.lifecycle import LOST
-from ..types import Array, BoolArray, Tracks, row_of, take
+from ..types import Array, BoolArray, CodeArray, IntArray, Tracks, row_of, take
 from .join import APART_STATE, BOTH, Joined, Seen
 from .pairs import JOINED, Pairs
 from .passing import Passing
@@ -49,7 +49,6 @@ def step(
     told_of = np.isin(-ships.id, alerts.id[alerts.kind == of])
     alone = (joined.state != BOTH) & (told_of | (joined.probability < LIKELY))
     alone &= ships.placed & ~ships.lost & asked
-    rows = np.arange(len(ships.id))
     near = situation.range < p.ais_lost_range_nm * NAUTICAL_MILE
     ship = ~np.isin(ships.kind, (m1371.SART, m1371.AID))
     lost = np.where(ships.lost & near, ON, np.where(ships.lost, KEEP, OFF))
@@ -61,14 +60,20 @@ def step(
     twice = np.where(ships.double & ~ships.lost, ON, OFF)
     off = _off(ships, joined, situation.position, seen)
     used, most = int(active.sum()), p.ais_max_activated
-    told = (situation.cpa, situation.tcpa, situation.probability)
+
+    def of_ships(kind: int, level: CodeArray | IntArray, *values: Array) -> Named:
+        """Of the ships that have a cause, or an alert that may end."""
+        rows = (level != OFF) | np.isin(situation.id, alerts.id[alerts.kind == kind])
+        return kind, 0, of_tracks(situation, rows.nonzero()[0], level, *values)
+
+    danger = np.where(alone, danger, OFF)
     causes = [
-        (of, 0, of_tracks(situation, rows[alone], danger, *told)),
-        (alarms.AIS_LOST, 0, of_tracks(situation, rows, lost)),
-        (alarms.AIS_MISMATCH, 0, of_tracks(situation, rows, mismatch, off)),
-        (alarms.AIS_TWICE, 0, of_tracks(situation, rows, twice)),
-        (alarms.AIS_SART, 0, of_tracks(situation, rows, distress)),
-        (alarms.AIS_SART_TEST, 0, of_tracks(situation, rows, test)),
+        of_ships(of, danger, situation.cpa, situation.tcpa, situation.probability),
+        of_ships(alarms.AIS_LOST, lost),
+        of_ships(alarms.AIS_MISMATCH, mismatch, off),
+        of_ships(alarms.AIS_TWICE, twice),
+        of_ships(alarms.AIS_SART, distress),
+        of_ships(alarms.AIS_SART_TEST, test),
         (alarms.AIS_CAPACITY, 0, single(used, FULL * most, used, most)),
     ]
     return alarms.advance(alerts, causes, arpa.alarms, now)

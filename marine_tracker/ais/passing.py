@@ -18,7 +18,7 @@ from .join import AIS_ONLY, Joined
 from .ship_motion import Moving
 from .ship_table import Ships
 
-LIKELY = 3.0  # times the limits; beyond them CPA and TCPA have no deviations
+LIKELY = 2.0  # times the limits; beyond them CPA and TCPA have no deviations
 
 
 class Passing(NamedTuple):

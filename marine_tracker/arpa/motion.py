@@ -1,19 +1,19 @@
 """Course, speed and position of every track from a memory of its own, for vectors and CPA.
 
 The tracker's estimator extrapolates and associates. The shown motion comes from the same plots
-through `plot_noise` and `leg_hypotheses`, and does not depend on the estimator.
+through `plot_noise` and `gaussian.leg_hypotheses`, and does not depend on the estimator.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..gaussian import linear_modes
+from ..gaussian import leg_hypotheses, linear_modes
 from ..gaussian.linear import invert_2x2, squared_distance
 from ..parameters import GLINT_SIGMA
 from ..tracking.tracker import Report
 from ..types import Array, BoolArray, IntArray, Plots, put, take
-from . import leg_hypotheses, plot_noise
+from . import plot_noise
 
 STEADY, MANOEUVRING = 0, 1
 MEMORY_NAMES = ('steady', 'manoeuvring')
@@ -213,15 +213,14 @@ def _next_plots(
     scatters = list(before.scatter)
     scatter, covariance, stretch = plot_noise.observe(scatters[radar], plots, settings.glint_sigma)
     scatters[radar] = scatter
-    if len(scatters) > 1:  # a fit to plots of several radars cannot scale with one of them
-        stretch = np.broadcast_to(np.eye(2), stretch.shape)
     hypotheses, shown = leg_hypotheses.update(
         before.legs,
         plots.time,
         plots.time - before.time,
         plots.position,
         covariance,
-        stretch,
+        # A fit to plots of several radars cannot scale with one of them.
+        stretch if len(scatters) == 1 else None,
         plot_noise.FREEDOM * scatter.plots,
         settings.habits,
     )

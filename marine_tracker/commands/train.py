@@ -78,6 +78,16 @@ def _add_gwnn(sub) -> None:
         help='file that says how the vessels move, instead of the class',
     )
     sub.add_argument(
+        '--without',
+        metavar='KIND',
+        help='kind of motion to leave out, to see how it does on strangers',
+    )
+    sub.add_argument(
+        '--no-legs',
+        action='store_true',
+        help='a network that does not see the straight legs; for comparison',
+    )
+    sub.add_argument(
         '--scenario',
         metavar='NAME|FILE',
         help='scenario that gives the radar, and additional targets',
@@ -188,7 +198,9 @@ def _plan(args) -> gwnn_training.Plan:
     )
     waters = plan.waters
     if args.kinds is not None:
-        waters = waters._replace(kinds=custom_traffic.read_kinds(args.kinds))
+        waters = waters._replace(kinds=custom_traffic.read_kinds(args.kinds), steered={})
+    if args.without is not None:
+        waters = waters.without(args.without)
     if args.scenario is not None:
         waters = custom_traffic.from_scenario(waters, scenario.load(args.scenario))
-    return plan._replace(waters=waters)
+    return plan._replace(waters=waters, legs=not args.no_legs)

@@ -7,7 +7,7 @@ see. It takes some minutes of one processor.
 
 from argparse import ArgumentParser, Namespace
 
-from ..estimators.gwnn import bank
+from ..estimators.gwnn import bank_settings
 from ..evaluation import report
 from ..parameters import VESSEL_CLASSES
 from ..processes import keep_freed_memory
@@ -74,7 +74,7 @@ def _add_arguments(sub, targets, evaluations):
 def _shipped(name: str, vessel_class: str) -> dict[str, filter_families.Settings]:
     """The settings that the comparison uses, by what they are tuned for."""
     if name == 'imm':
-        return dict(bank.STRONGEST[vessel_class])
+        return dict(bank_settings.STRONGEST[vessel_class])
     return {'training': getattr(TUNED[vessel_class], name)}
 
 

@@ -1,5 +1,8 @@
 """CPU cost of a scan, for this tracker and for Stone Soup, on the same plots in the same run."""
 
+import contextlib
+import signal
+import sys
 import time
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
@@ -20,6 +23,8 @@ BEARING_SIGMA = float(np.radians(0.5))
 DETECTION = 0.9
 NEAREST, FARTHEST = 0.25 * NAUTICAL_MILE, 24 * NAUTICAL_MILE
 STONE_SOUP = 'Stone Soup'
+JPDA = 'Stone Soup JPDA (EHM2)'
+PATIENCE_S = 120.0  # CPU time of one scan by a peer, after which it does not finish
 WARM_UP = 12  # scans in which the tracker finds the targets
 TURN_CPU = 0.1  # s, least CPU time of one turn of this tracker
 KEPT_WITHIN = 4.0  # plot deviations at that range, plus 50 m
@@ -151,18 +156,21 @@ def run_tracker(scene: Traffic, estimator: str) -> Iterator[BenchmarkResult]:
         )
 
 
-def run_stone_soup(scene: Traffic) -> Iterator[BenchmarkResult]:
-    """Runs Stone Soup's EKF and DetectionKDTreeGNN2D with five neighbours, its fastest setup.
+def run_stone_soup(scene: Traffic, joint: bool = False) -> Iterator[BenchmarkResult]:
+    """Runs Stone Soup's EKF and DetectionKDTreeGNN2D with five neighbours, its fastest setup; or,
+    `joint`, its JPDA with EHM2 and the same tree.
 
-    Each turn takes one timed scan.
+    Each turn takes one timed scan; the last turn is that which takes longer than PATIENCE_S.
 
     It is given its tracks (truth with noise) and neither initiates nor deletes any. So its figure
     is a lower bound of the cost of a whole step.
     """
     import datetime
 
-    from stonesoup.dataassociator.tree import DetectionKDTreeGNN2D
+    from stonesoup.dataassociator.probability import JPDAwithEHM2
+    from stonesoup.dataassociator.tree import DetectionKDTreeGNN2D, DetectionKDTreeMixIn
     from stonesoup.hypothesiser.distance import DistanceHypothesiser
+    from stonesoup.hypothesiser.probability import PDAHypothesiser
     from stonesoup.measures import Mahalanobis
     from stonesoup.models.measurement.nonlinear import CartesianToBearingRange
     from stonesoup.models.transition.linear import (
@@ -174,6 +182,10 @@ def run_stone_soup(scene: Traffic) -> Iterator[BenchmarkResult]:
     from stonesoup.types.state import GaussianState
     from stonesoup.types.track import Track
     from stonesoup.updater.kalman import ExtendedKalmanUpdater
+    from stonesoup.updater.probability import PDAUpdater
+
+    class DetectionKDTreeJPDA(DetectionKDTreeMixIn, JPDAwithEHM2):
+        """As DetectionKDTreeGNN2D is made."""
 
     start = datetime.datetime(2000, 1, 1)
     axis = ConstantVelocity(0.05)
@@ -181,9 +193,22 @@ def run_stone_soup(scene: Traffic) -> Iterator[BenchmarkResult]:
     radar = CartesianToBearingRange(
         ndim_state=4, mapping=(0, 2), noise_covar=np.diag([BEARING_SIGMA**2, RANGE_SIGMA**2])
     )
-    updater = ExtendedKalmanUpdater(radar)
-    associator = DetectionKDTreeGNN2D(
-        DistanceHypothesiser(predictor, updater, Mahalanobis(), missed_distance=4),
+    updater = (PDAUpdater if joint else ExtendedKalmanUpdater)(radar)
+    if joint:
+        every = float(np.mean([len(scan.plots.time) for scan in scene.scans]))
+        false = max(every - DETECTION * scene.position.shape[1], 0.1)
+        density = false / (2 * np.pi * (FARTHEST - NEAREST))
+        kind, hypothesiser = (
+            DetectionKDTreeJPDA,
+            PDAHypothesiser(predictor, updater, density, DETECTION, 0.99),
+        )
+    else:
+        kind, hypothesiser = (
+            DetectionKDTreeGNN2D,
+            DistanceHypothesiser(predictor, updater, Mahalanobis(), missed_distance=4),
+        )
+    associator = kind(
+        hypothesiser,
         predictor,
         updater,
         number_of_neighbours=5,
@@ -215,14 +240,35 @@ def run_stone_soup(scene: Traffic) -> Iterator[BenchmarkResult]:
             for b, r in zip(plots.bearing, plots.range, strict=True)
         }
         begin = time.process_time()
-        for track, hypothesis in associator.associate(tracks, detections, now).items():
-            track.append(updater.update(hypothesis) if hypothesis else hypothesis.prediction)
+        try:
+            with _at_most(PATIENCE_S):
+                for track, hypothesis in associator.associate(tracks, detections, now).items():
+                    sure = joint or hypothesis
+                    track.append(updater.update(hypothesis) if sure else hypothesis.prediction)
+        except TimeoutError:
+            return
         cpu = time.process_time() - begin
         yield BenchmarkResult(
             cpu,
             np.nan,
             [np.array([[float(t.state_vector[0]), float(t.state_vector[2])] for t in tracks])],
         )
+
+
+@contextlib.contextmanager
+def _at_most(seconds: float) -> Iterator[None]:
+    """TimeoutError after so much CPU time of this process; only in its main thread."""
+
+    def over(*_: object) -> None:
+        raise TimeoutError(f'{seconds:g} s of CPU time are over')
+
+    before = signal.signal(signal.SIGPROF, over)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def _nearest(truth, found):
@@ -253,26 +299,29 @@ def benchmark(
     """Runs this tracker with each of the estimators, and Stone Soup, on one scene; results by name.
 
     They take turns, one scan of Stone Soup at a time, so other load on the machine affects all
-    alike. Stone Soup is left out if it is not installed, or with `alone`.
+    alike. Stone Soup is left out if it is not installed, or with `alone`, and each of its
+    associators if it does not finish.
     """
     scene = traffic(targets, clutter, WARM_UP + timed_scans, seed)
     ours = {name: run_tracker(scene, name) for name in estimators}
     for turns in ours.values():
         next(turns)  # the first pass loads its memory pages
-    theirs = None
+    peers: dict[str, Iterator[BenchmarkResult]] = {}
     if not alone and find_spec('stonesoup'):
-        theirs = run_stone_soup(scene)
-    found: dict[str, list[BenchmarkResult]] = {name: [] for name in ours}
-    soup = []
+        peers = {STONE_SOUP: run_stone_soup(scene), JPDA: run_stone_soup(scene, joint=True)}
+    found: dict[str, list[BenchmarkResult]] = {name: [] for name in (*ours, *peers)}
     for _ in range(timed_scans):
         for name, turns in ours.items():
             spent = 0.0
             while spent < TURN_CPU:
                 found[name].append(next(turns))
                 spent += found[name][-1].cpu_s * timed_scans
-        if theirs:
-            soup.append(next(theirs))
-    results = {name: _result(turns, turns[-1].positions, scene) for name, turns in found.items()}
-    if soup:
-        results[STONE_SOUP] = _result(soup, [turn.positions[0] for turn in soup], scene)
+        for name, turns in peers.items():
+            found[name] += [turn for turn in [next(turns, None)] if turn]
+    results = {name: _result(found[name], found[name][-1].positions, scene) for name in ours}
+    for name in peers:
+        if len(found[name]) == timed_scans:
+            results[name] = _result(found[name], [turn.positions[0] for turn in found[name]], scene)
+        else:
+            print(f'{name} does not finish a scan in {PATIENCE_S:g} s', file=sys.stderr)
     return results

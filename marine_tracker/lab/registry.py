@@ -17,7 +17,7 @@ from .crossings import crossings
 from .danger_areas import danger_areas
 from .dense import dense
 from .extended import extended
-from .gwnn import gwnn, monte_carlo
+from .gwnn import gwnn, leave_one_out, monte_carlo, strangers_rival
 from .gwnn_paper import gwnn_paper
 from .hulls import hulls
 from .rough_nn import rough_nn
@@ -29,6 +29,8 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'gwnn': gwnn,
     'gwnn_paper': gwnn_paper,
     'gwnn_monte_carlo': monte_carlo,
+    'gwnn_kinds': leave_one_out,
+    'gwnn_rival': strangers_rival,
     'marine_table': marine_table,
     'rough_nn': rough_nn,
     'wavelet': wavelet,

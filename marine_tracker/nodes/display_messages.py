@@ -50,7 +50,7 @@ COLUMNS = {  # of `targets_cloud`, with their decimals
 }
 WHOLE = ('number', 'id', 'status', 'alarm', 'acquired', 'motion')
 MOST_ALARMS = 200
-NUMBER = re.compile(r'TT(\d+)')
+NUMBER, MMSI = re.compile(r'TT(\d+)'), re.compile(r'AIS (\d{9})')
 SECTOR = re.compile(r'(\d+)-(\d+)')
 
 
@@ -89,7 +89,8 @@ def alarms(message: DiagnosticArray) -> list[dict[str, Any]]:
         values = values_of(entry)
         if values.get('state', 'normal') == 'normal':
             continue
-        target = NUMBER.fullmatch(values.get('target', ''))
+        name = values.get('target', '')
+        target, ship = NUMBER.fullmatch(name), MMSI.fullmatch(name)
         found.append(
             {
                 'name': one_line(entry.name),
@@ -102,6 +103,7 @@ def alarms(message: DiagnosticArray) -> list[dict[str, Any]]:
                 'sounds': int(number(values.get('sounds')) or 0),
                 'state': values['state'],
                 'number': int(target[1]) if target else 0,
+                'mmsi': int(ship[1]) if ship else 0,
                 'in_state_s': number(values.get('in_state_s')),
                 'x': number(values.get('east_m')),
                 'y': number(values.get('north_m')),

@@ -28,6 +28,7 @@ from .base_node import RunnableNode
 from .convert import ConversionError
 from .declare import declare
 from .diagnostics import FAILED, OK, WARN, Tally
+from .display_ais import BAD_SHIPS, DisplayAis
 from .display_commands import LIMITS, TrackerCommands
 from .display_danger_areas import DangerAreas
 from .display_demo import SHOW, DemoLink
@@ -46,7 +47,9 @@ class PpiDisplayNode(RunnableNode):
     def __init__(self, **node_arguments: Any) -> None:
         super().__init__('ppi_display', **node_arguments)
         (p,) = declare(self, PpiDisplayParameters)
-        self._bad = Tally((*convert.CLOUD_REASONS, BAD_TARGETS, BAD_OWN, BAD_FIX), self.tell)
+        self._bad = Tally(
+            (*convert.CLOUD_REASONS, BAD_TARGETS, BAD_SHIPS, BAD_OWN, BAD_FIX), self.tell
+        )
         self._demo = DemoLink(self)
         self._shown: dict[str, Any] = {}  # by the demo, where there is one
         self._waiting: queue.SimpleQueue[tuple[Command, Future[str]]] = queue.SimpleQueue()
@@ -70,6 +73,7 @@ class PpiDisplayNode(RunnableNode):
         self._way = OwnWay()
         self._areas = DangerAreas(self, self.server)
         DisplaySpokes(self, self.server, self._own, self._bad)
+        DisplayAis(self, self.server, self._bad)
         for kind, topic, callback, quality in (
             (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort(1)),
@@ -273,7 +277,7 @@ class PpiDisplayNode(RunnableNode):
             self._own.begin_anew()
             self._scanned.clear()
             plots = (_kind_of(radar) for radar in range(len(self._plots)))
-            self.server.forget('targets', 'trails', 'spokes', *plots)
+            self.server.forget('targets', 'ships', 'trails', 'spokes', *plots)
         self._shown = shown
         self.server.publish('demo', {'demo': shown})
 

@@ -29,7 +29,7 @@ from .places import WANDER, Places, nearest
 
 MEMORY = 600  # revolutions
 PRIOR = np.array([300.0, np.radians(30.0), 30.0])  # m, rad, s: deviations before any plot
-KNOWN = np.array([2.5, np.radians(0.05), 0.05])  # m, rad, s: deviations from which on it is told
+KNOWN = np.array([2.5, np.radians(0.04), 0.05])  # m, rad, s: deviations from which on it is told
 LEAST_PLOTS = 20
 NEAR = 150.0  # m; so far a place may seem to lie from its known position
 NOT_KNOWN = 'not known'

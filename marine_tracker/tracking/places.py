@@ -31,10 +31,10 @@ AT_REST = 0.8  # m/s; a place surely moves less
 TRIAL = 6  # revolutions without a plot after which a place that is not established is forgotten
 MOST = 20_000  # rows
 SURE = 16.0  # log-likelihood ratio against chance: exceeded once in some 100 million tries
-TRIED = 3  # plots of a place whose neighbours are counted
+TRIED = 4  # plots of a place whose neighbours are counted, half of them in each revolution
 APART = 2.2  # times the gate's radius, from a place to its neighbours
 _ANGLES = np.arange(8) * (np.pi / 4)
-_AROUND = APART * np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], 1)
+_AROUND = APART * np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], 1).reshape(4, 2, 2).swapaxes(0, 1)
 UNNAMED = -1
 NEAR, CROWD = 1000.0, 4  # m; so many places within it, itself among them, are a crowd
 
@@ -136,11 +136,13 @@ def learn(before: Places, position: Array, variance: Array, time: Array, view: V
     no_more = after.share < np.maximum(ENDS, after.chance)
     keep &= ~(after.established & no_more & (after.looks > LEAST_LOOKS))
     after = append(take(after, keep), _new(position[~known], variance[~known], time[~known]))
-    after = take(after, slice(0, MOST))
-    often = np.minimum(after.share, after.lately) >= BECOMES
-    sure = ~after.established & _at_rest(after) & often
-    sure &= (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS)
-    sure[sure] = surplus(take(after, sure)) > SURE
+    if len(after.share) > MOST:
+        after = take(after, slice(0, MOST))
+    sure = (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS) & ~after.established
+    sure &= np.minimum(after.share, after.lately) >= BECOMES
+    if sure.any():
+        those = take(after, sure)
+        sure[sure] = _at_rest(those) & (surplus(those) > SURE)
     number = np.where(sure, UNNAMED, after.number)
     return after._replace(number=number, crowded=_crowded(after.position, number != 0))
 
@@ -152,7 +154,7 @@ def surplus(places: Places) -> Array:
     The plot that a place began with does not count.
     """
     looks = np.maximum(np.minimum(places.looks, MEMORY) - 1.0, 1.0)
-    around = len(_AROUND) * np.minimum(np.maximum(places.tried, 1), MEMORY)
+    around = _AROUND.shape[1] * np.minimum(np.maximum(places.tried, 1), MEMORY)
     hits = np.maximum(places.share * (looks + 1) - 1, 0)
     share = hits / looks
     pooled = (hits + around * places.chance) / (looks + around)
@@ -176,7 +178,7 @@ def _by_chance(places: Places, visible: BoolArray, plots: Array, view: View) -> 
     if not len(rows):
         return places
     reach = np.sqrt(GATE * (places.variance[rows] + WANDER**2))
-    around = places.position[rows, None] + reach[:, None, None] * _AROUND
+    around = places.position[rows, None] + reach[:, None, None] * _AROUND[places.tried[rows] % 2]
     counted = view.of(around)
     hit = np.zeros(counted.shape, bool)
     if len(plots):

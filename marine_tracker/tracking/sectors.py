@@ -31,7 +31,7 @@ from ..types import (
 from .gate import Pairs
 from .sweep import TURN, Sweep
 
-PATIENCE = 1 / 16  # of a revolution after the beam's passage that a track waits for its neighbours
+PATIENCE = 3 / 64  # of a revolution after the beam's passage that a track waits for its neighbours
 GAP = 0.5  # of a sector: where more is missing between two of them, a message was lost
 HAIR = 1e-6  # rad
 Found = tuple[Array, ...]  # what the map of clutter learns from
@@ -153,14 +153,14 @@ def decide(
     items, plots = len(seen.edge), len(pool.time)
     gone = unseen(waiting, seen, scan)
     pairs = take(seen.pairs, ~gone[seen.pairs.track])
-    due = (seen.edge <= scan.end) & ~gone
+    overdue = scan.end - PATIENCE * sweep.period
+    due = ((seen.edge <= scan.end) | (seen.middle <= overdue)) & ~gone
     graph = coo_array(
         (np.ones(len(pairs.track)), (pairs.track, items + pairs.plot)), (items + plots,) * 2
     )
     groups, group = connected_components(graph, directed=False)
     held = np.zeros(groups, bool)
     held[group[:items][~due & ~gone]] = True
-    overdue = scan.end - PATIENCE * sweep.period
     now = due & (~held[group[:items]] | (seen.middle <= overdue))
     wanted = np.zeros(plots, bool)
     wanted[pairs.plot[~now[pairs.track]]] = True

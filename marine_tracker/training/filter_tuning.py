@@ -17,12 +17,12 @@ from scipy import optimize
 
 from ..evaluation.report import Figure
 from ..types import Array, Numbers, take
-from . import gwnn_samples, ship_tracks, track_trials, training_tracks
+from . import gwnn_samples, track_trials, training_tracks
 from .filter_families import IMM, Family, Settings, filter_of
 
 # Weight of a cell where ships keep course and speed, by the target of the tuning.
 STRAIGHT_WEIGHT = {'training': 1.0, 'manoeuvre': 0.0}
-LEAST_TRACKS = 10 * len(ship_tracks.KINDS)  # every vessel class has as many kinds
+LEAST_TRACKS = 10 * max(len(waters.names) for waters in training_tracks.WATERS.values())
 DRAWN = 2  # times as many tracks are drawn: close ones are left out
 GLOBAL_SHARE = 2 / 3  # of the evaluations, all over the bounds; the rest go downhill
 POPULATION = 4  # times the number of settings searched, rounded up to 2^n
@@ -56,7 +56,7 @@ class TuningResult(NamedTuple):
 def course(tracks: int, rng: np.random.Generator, vessel_class: str = 'ship') -> Course:
     """About `tracks` tracks, the same number of each kind."""
     waters = training_tracks.WATERS[vessel_class]
-    names = list(waters.kinds)
+    names = waters.names
     each = tracks // len(names)
     drawn = training_tracks.draw(
         waters._replace(radars=waters.radars[:1]),
@@ -65,7 +65,7 @@ def course(tracks: int, rng: np.random.Generator, vessel_class: str = 'ship') ->
         rng,
     )
     keep = np.concatenate([np.flatnonzero(drawn.kind == i)[:each] for i in range(len(names))])
-    on = track_trials.trial(take(drawn.ships, keep), take(drawn.radar, keep), rng)
+    on = track_trials.trial(take(drawn.ships, keep), take(drawn.radar, keep), rng, drawn.hull[keep])
     kind, cells, counts, straight = drawn.kind[keep], [], [], []
     for i, name in enumerate(names):
         for phase, within in (('straight', ~on.phase), ('manoeuvre', on.phase)):
@@ -126,7 +126,7 @@ def compare(
     one, other = error @ times.T, against @ times.T
     known = (one > 0) & (other > 0)
     level = 0.5 * np.log(np.where(known, one, 1.0) / np.where(known, other, 1.0))
-    low, high = np.exp(np.percentile(weight @ level, [2.5, 97.5]))
+    low, high = np.exp(np.percentile(weight @ level / (weight @ known), [2.5, 97.5]))
     value = np.exp(weight @ (0.5 * np.log(error.sum(1) / against.sum(1))))
     return track_trials.Ratio(float(value), float(low), float(high))
 

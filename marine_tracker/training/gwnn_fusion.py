@@ -22,23 +22,13 @@ MOST = 6.0  # times the mean; largest weight of a sample for its noise
 BATCH, PEAK, WARM_UP = 1024, 4e-3, 200
 REWEIGH_EVERY, REWEIGH_BY = 250, 0.5  # steps between checks of the worst cells; weight change
 MOST_ERROR = 40.0  # true sigma^2; limit of squared errors in cells' means
+NEVER = -60.0  # log weight
 LARGE = 100.0  # sigma^2; likewise in the running errors
-MOST_EMPHASIS = 2.0  # largest log weight of a cell
+# Largest log weight of a cell, either way. With more, the worst cells would get what ships on
+# straight courses could gain, which is much more.
+MOST_EMPHASIS = 0.8
+VELOCITY = 1.0  # weight of a velocity error; that of the position is 1
 LAYOUT = net.Layout(levels=2, translations=5, q=1.2, outputs=gwnn.OUTPUTS)
-
-
-class Balance(NamedTuple):
-    """Priorities of the training.
-
-    velocity  weight of a velocity error; that of the position is 1
-    least     lowest log weight of a cell, where the network gains most
-    """
-
-    velocity: float = 0.7
-    least: float = -1.2
-
-
-USUAL = Balance()
 
 
 def fuse(output: FloatArray, batch: Samples) -> tuple[FloatArray, FloatArray]:
@@ -111,11 +101,18 @@ class Training(NamedTuple):
     against: Array
 
 
-def begin(samples: Samples, kinds: int, seed: int, layout: net.Layout = LAYOUT) -> Training:
-    """An untrained network for these samples, which have `kinds` kinds of motion."""
+def begin(
+    samples: Samples, kinds: int, seed: int, layout: net.Layout = LAYOUT, legs: bool = True
+) -> Training:
+    """An untrained network for these samples, which have `kinds` kinds of motion.
+
+    legs  whether it may choose the straight legs
+    """
     rng = np.random.default_rng([seed, 1 << 20])
     centre, scale = standardise(samples.seen)
     network = net.start(layout, centre, scale, rng)
+    if not legs:  # no gradient reaches what has no weight: so it stays
+        network.bias[gwnn.LOGITS][filters.LEG_EXPERTS] = NEVER
     cells = np.zeros((cell_count(kinds), 2))
     return Training(
         network,
@@ -126,14 +123,7 @@ def begin(samples: Samples, kinds: int, seed: int, layout: net.Layout = LAYOUT) 
     )
 
 
-def train(
-    training: Training,
-    samples: Samples,
-    seed: int,
-    steps: int,
-    until: int,
-    balance: Balance = USUAL,
-) -> Training:
+def train(training: Training, samples: Samples, seed: int, steps: int, until: int) -> Training:
     """Steps of Adam from the present state up to step `until` of `steps`.
 
     The arrays of the network and of the moments are changed in place.
@@ -142,7 +132,7 @@ def train(
     parameters = [network.inner, network.outer, network.bias]
     form = net.units(network.layout, np.float32)
     ways, weights = symmetries(), cell_weights(samples)
-    velocity = np.array([1, balance.velocity], np.float32)
+    velocity = np.array([1, VELOCITY], np.float32)
     for step in range(moments.steps, until):
         rng = np.random.default_rng([seed, 1 << 20, step])
         pick = rng.integers(0, len(samples.cell), BATCH)
@@ -165,7 +155,7 @@ def train(
         )
         moments = adam.step(parameters, gradients, moments, adam.cosine(step, steps, PEAK, WARM_UP))
         if (step + 1) % REWEIGH_EVERY == 0:
-            emphasis = emphasize(emphasis, size, against, balance.least)
+            emphasis = emphasize(emphasis, size, against)
             size *= 0.5
             against *= 0.5
     return Training(network, moments, emphasis, size, against)
@@ -179,11 +169,11 @@ def _by_cell(cell, values, count):
     )
 
 
-def emphasize(emphasis: Array, size: Array, against: Array, least: float) -> Array:
+def emphasize(emphasis: Array, size: Array, against: Array) -> Array:
     """Increases the weight of cells where the network gains least on the better IMM."""
     against = against.min(2)
     known = against[:, 0] > 1e-3
     ratio = np.sqrt(size / np.maximum(against, 1e-9))
     moved = emphasis + REWEIGH_BY * (ratio - ratio[known].mean(0))
-    moved = np.clip(moved, least, MOST_EMPHASIS)
+    moved = np.clip(moved, -MOST_EMPHASIS, MOST_EMPHASIS)
     return np.where(known[:, None], moved - moved[known].mean(0), 0.0)

@@ -18,7 +18,7 @@ from ..types import Array, BoolArray, IntArray, put, take
 from . import ship_tracks, training_tracks
 
 SCANS = 110
-CHUNK = 588  # tracks made at once, the same number of each kind
+CHUNK = 660  # tracks made at once, the same number of each kind
 EXPECTED, KNOWN = 0.22, 0.10  # share of the rows sampled in a scan: before the plot, after it
 CLIP = 30.0  # sigma: largest distance of the truth from the base
 

@@ -17,10 +17,8 @@ from . import gwnn_checkpoint, gwnn_samples, gwnn_spread
 from . import gwnn_fusion as fusion
 from .training_tracks import WATERS, Waters
 
-CHUNKS, STEPS = 40, 14000  # of the shipped training
+CHUNKS, STEPS = 48, 25000  # of the shipped training
 UNSEEN = 1 << 16  # number of a chunk that is never trained on
-# Ships keep their course for long times. Accuracy there must not be given up for the turns.
-BALANCE = {'ship': fusion.Balance(velocity=1.0, least=-0.4), 'small_craft': fusion.USUAL}
 FEW = 100  # a cell with fewer samples is not judged
 SAVE_EVERY = 500  # steps
 
@@ -36,7 +34,7 @@ class Plan(NamedTuple):
     chunks        number of chunks of `gwnn_samples.CHUNK` tracks
     steps         of the network that weights the filters; the other takes no more
     layout        of that network
-    balance       priorities of that network
+    legs          whether it may use the straight legs; without them, only for comparison
     """
 
     vessel_class: str
@@ -45,7 +43,7 @@ class Plan(NamedTuple):
     chunks: int = CHUNKS
     steps: int = STEPS
     layout: net.Layout = fusion.LAYOUT
-    balance: fusion.Balance = fusion.USUAL
+    legs: bool = True
 
     @property
     def bank(self) -> filters.Filters:
@@ -55,9 +53,7 @@ class Plan(NamedTuple):
 
 def plan(vessel_class: str, seed: int, **other: Any) -> Plan:
     """The plan of the shipped weights of a vessel class, with changes."""
-    return Plan(vessel_class, WATERS[vessel_class], seed, balance=BALANCE[vessel_class])._replace(
-        **other
-    )
+    return Plan(vessel_class, WATERS[vessel_class], seed)._replace(**other)
 
 
 def settings(plan: Plan) -> dict[str, Any]:
@@ -69,10 +65,10 @@ def settings(plan: Plan) -> dict[str, Any]:
         'chunks': plan.chunks,
         'steps': plan.steps,
         'layout': list(plan.layout),
-        'balance': list(plan.balance),
         'inputs': inputs.COUNT,
         'kinds': plan.waters.names,
-        'motion': list(plan.waters.kinds.values()),
+        'legs': plan.legs,
+        'motion': [*plan.waters.kinds.values(), *plan.waters.steered.values()],
         'radars': plan.waters.radars,
     }
 
@@ -110,22 +106,28 @@ def run(
         parts.append(gwnn_samples.make(plan.bank, plan.waters, plan.seed, chunk))
     samples = gwnn_samples.join(parts)
     del parts
-    training = training or fusion.begin(samples, len(plan.waters.names), plan.seed, plan.layout)
+    if not plan.legs:
+        samples.seen[:, inputs.OF_LEGS] = 0.0
+    training = training or fusion.begin(
+        samples, len(plan.waters.names), plan.seed, plan.layout, plan.legs
+    )
     for step in range(training.moments.steps, plan.steps, SAVE_EVERY):
         progress('fusion', step, plan.steps)
         training = fusion.train(
-            training,
-            samples,
-            plan.seed,
-            plan.steps,
-            min(step + SAVE_EVERY, plan.steps),
-            plan.balance,
+            training, samples, plan.seed, plan.steps, min(step + SAVE_EVERY, plan.steps)
         )
         gwnn_checkpoint.save(checkpoint, settings(plan), training)
     progress('spread', 0, 1)
     spread = gwnn_spread.train(
-        training.network, samples, plan.seed, min(plan.steps, gwnn_spread.STEPS)
+        training.network,
+        samples,
+        plan.seed,
+        min(plan.steps, gwnn_spread.STEPS),
+        vessel_class=plan.vessel_class,
     )
+    if not plan.legs:  # during the training these inputs were 0
+        for network in (training.network, spread):
+            network.inner[:-1][inputs.OF_LEGS] = 0.0
     weights = gwnn_weights.Weights(
         training.network,
         spread,
@@ -138,6 +140,7 @@ def run(
             'tracks': plan.chunks * gwnn_samples.CHUNK,
             'samples': len(samples.cell),
             'kinds': plan.waters.names,
+            'legs': plan.legs,
             'inputs': inputs.COUNT,
             'hidden': len(training.network.inner.T),
         },

@@ -37,18 +37,22 @@ class TrackTrial(NamedTuple):
 
 class Outcome(NamedTuple):
     """position [B, K] squared errors, sigma^2, sum of both axes; velocity likewise, m^2/s^2; nis
-    [B, K] of the plots; state: the estimator's after the last scan.
+    [B, K] of the plots; nees [B, K] of position and velocity by the covariance, 1 in theory; state:
+    the estimator's after the last scan.
     """
 
     position: Array
     velocity: Array
     nis: Array
+    nees: Array
     state: Any
 
 
-def trial(ships: Ships, radar: RunRadar, rng: np.random.Generator) -> TrackTrial:
-    """The tracks and a radar's plots of them."""
-    plots, seen = observe(ships, radar, rng)
+def trial(
+    ships: Ships, radar: RunRadar, rng: np.random.Generator, hull: Array | None = None
+) -> TrackTrial:
+    """The tracks and a radar's plots of them, which wander over the hull [B] m (`observe`)."""
+    plots, seen = observe(ships, radar, rng, hull)
     counts = np.zeros(seen.shape, bool)
     counts[:, SETTLED:] = True
     return TrackTrial(ships, radar, plots, seen, counts, phase(ships.manoeuvre))
@@ -69,13 +73,17 @@ def run(
     count, scans = ships.time.shape
     state = estimator.init(plots[0])
     refused = np.zeros(count)
-    position, velocity, nis = np.zeros((3, count, scans))
+    position, velocity, nis, nees = np.zeros((4, count, scans))
     for k in range(1, scans):
         ahead = estimator.extrapolate(state, ships.time[:, k])
         position[:, k] = _in_sigma(
             ahead.position - ships.position[:, k], ships.position[:, k], on.radar
         )
         velocity[:, k] = np.square(ahead.velocity - ships.velocity[:, k]).sum(1)
+        off = np.concatenate(
+            [ahead.position - ships.position[:, k], ahead.velocity - ships.velocity[:, k]], 1
+        )
+        nees[:, k] = (off * np.linalg.solve(ahead.covariance, off[..., None])[..., 0]).sum(1) / 4
         inverse, _ = invert_2x2(ahead.covariance[:, :2, :2] + plots[k].covariance)
         nis[:, k] = squared_distance(plots[k].position - ahead.position, inverse)
         taken = on.seen[:, k]
@@ -87,7 +95,7 @@ def run(
         state = estimator.update(state, take(plots[k], rows), rows)
         if watch is not None:
             estimator = watch(k, state) or estimator
-    return Outcome(position, velocity, nis, state)
+    return Outcome(position, velocity, nis, nees, state)
 
 
 def _in_sigma(off, place, radar):

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from ..simulation import motion
 from ..simulation.scenario import Scenario
 from ..types import Array, IntArray, put, take
-from . import ship_tracks
+from . import ship_tracks, steered_tracks
 from .ship_tracks import Kind, RunRadar, Ships
+from .steered_tracks import Steered
 
 SPEED = 25.0  # m/s, maximum target speed given to the tracker
 # Radars under hard conditions: limits of uniform draws, and the share of such radars to which they
@@ -57,17 +58,35 @@ class Radars(NamedTuple):
 class Waters(NamedTuple):
     """Where to learn: kinds of ships by name, equally often; sorts of radars, at most two.
 
+    steered   more kinds, of vessels that are steered
     scenario  its targets' tracks are one more kind
     """
 
     kinds: dict[str, Kind]
     radars: tuple[Radars, ...]
+    steered: dict[str, Steered] = {}
     scenario: Scenario | None = None
 
     @property
     def names(self) -> list[str]:
         """Names of all kinds, in the order of their numbers."""
-        return [*self.kinds, *([] if self.scenario is None else [f'scenario {self.scenario.name}'])]
+        told = [] if self.scenario is None else [f'scenario {self.scenario.name}']
+        return [*self.kinds, *self.steered, *told]
+
+    def without(self, name: str) -> 'Waters':
+        """The same without a kind of motion.
+
+        Raises ValueError if there is no such kind, or no other.
+        """
+        own = [*self.kinds, *self.steered]
+        if name not in own:
+            raise ValueError(f'kind of motion {name!r}; it must be one of {", ".join(own)}')
+        kinds, steered = dict(self.kinds), dict(self.steered)
+        kinds.pop(name, None)
+        steered.pop(name, None)
+        if not kinds:
+            raise ValueError(f'without {name!r} no kind of motion is left')
+        return self._replace(kinds=kinds, steered=steered)
 
 
 WATERS = {
@@ -96,6 +115,7 @@ WATERS = {
                 (3.0, 18.0),
             ),
         ),
+        steered_tracks.SHIPS,
     ),
     'small_craft': Waters(
         ship_tracks.SMALL_CRAFT,
@@ -115,6 +135,7 @@ WATERS = {
                 hull=(0.0, 5.0),
             ),
         ),
+        steered_tracks.SMALL_CRAFT,
     ),
 }
 
@@ -162,21 +183,39 @@ def draw(waters: Waters, kind: IntArray, scans: int, rng: np.random.Generator) -
     )
     jitter = np.where(hard, rng.uniform(*JITTER, count), 0.0)[:, None]
     steps = period[:, None] * (1 + jitter * np.clip(rng.standard_normal((count, scans)), -3, 3))
-    kind, names = np.asarray(kind), list(waters.kinds)
-    ships = ship_tracks.sail(
-        [names[i % len(names)] for i in kind],
-        by_log(*own['ranges'].T),
-        steps,
-        rng,
-        drawn('fastest'),
-        waters.kinds,
-    )
-    if waters.scenario is not None:
-        rows = np.flatnonzero(kind == len(names))
-        ships = put(ships, rows, _targets(waters.scenario, steps[rows], rng))
+    kind = np.asarray(kind)
+    ships, hull = sail(waters, kind, by_log(*own['ranges'].T), steps, rng, drawn('fastest'))
     nearest = np.hypot(*np.moveaxis(ships.position, -1, 0)).min(1)
     keep = np.flatnonzero(nearest > own['nearest'])
-    return take(Traffic(ships, radar, kind, sort, drawn('hull')), keep)
+    return take(Traffic(ships, radar, kind, sort, hull + drawn('hull')), keep)
+
+
+def sail(
+    waters: Waters,
+    kind: IntArray,
+    ranges: Array,
+    steps: Array,
+    rng: np.random.Generator,
+    fastest: Array,
+) -> tuple[Ships, Array]:
+    """Ships of the kinds [B] (numbers), and how far [B] m their plots wander over the hull.
+
+    ranges [B] m, at which they begin; steps [B, K] s: time since the previous scan; fastest [B] m/s
+    """
+    names, hull = list(waters.kinds), np.zeros(len(kind))
+    ships = ship_tracks.sail(
+        [names[i % len(names)] for i in kind], ranges, steps, rng, fastest, waters.kinds
+    )
+    for i, steered in enumerate(waters.steered.values(), len(names)):
+        rows = np.flatnonzero(kind == i)
+        own, hull[rows] = steered_tracks.sail(
+            steered, ranges[rows], steps[rows], rng, fastest[rows]
+        )
+        ships = put(ships, rows, own)
+    if waters.scenario is not None:
+        rows = np.flatnonzero(kind == len(waters.names) - 1)
+        ships = put(ships, rows, _targets(waters.scenario, steps[rows], rng))
+    return ships, hull
 
 
 def _targets(scenario: Scenario, steps, rng) -> Ships:

@@ -245,3 +245,18 @@ def test_without_ais_nothing_of_it_is_there_and_nothing_else_changes():
     watch.step(5)
     assert watch.output.ais is None
     assert not np.isin(watch.output.picture.alerts.kind, alarms.OF_AIS).any()
+
+
+def test_cpa_of_an_old_report_is_from_her_place_now_within_its_deviation():
+    """A boat of class B at 20 kn was heard 27 s ago, as far as 280 m back."""
+    watch = Watch(AisParameters(ais_activation='all'))
+    watch.ship(FAR, north=2.0, east=-0.8, course=120, speed=20, type_=18).step(1)
+    watch.ships[FAR][3]['sends'] = False
+    watch.step(9)
+    passing, row = watch.output.ais.approach, 0
+    offset = watch.place(FAR) - watch.now * watch.speed
+    relative = watch.ships[FAR][1] - watch.speed
+    cpa = abs(offset[0] * relative[1] - offset[1] * relative[0]) / np.hypot(*relative)
+    assert abs(passing.cpa[row] - cpa) < passing.cpa_sigma[row]
+    assert 20 < passing.cpa_sigma[row] < 1000
+    assert passing.range[row] == pytest.approx(np.hypot(*offset), abs=30)

@@ -9,15 +9,15 @@ from marine_tracker.networks import wavelet_network as net
 
 
 def test_training_by_command_gives_weights_that_load(tmp_path, command):
-    """Start to end, short: 588 tracks and 30 steps of training."""
+    """Start to end, short: 660 tracks and 30 steps of training."""
     file = tmp_path / 'w.npz'
     done = command(
-        'train', 'gwnn', '--seed', 2, '--tracks', 588, '--steps', 30, '--out', file, timeout=110
+        'train', 'gwnn', '--seed', 2, '--tracks', 660, '--steps', 30, '--out', file, timeout=110
     )
     assert done.returncode == 0, done.stderr
     assert 'steady, straight: position ratio' in done.stdout
     weights = gwnn.weights(str(file))
-    assert weights.manifest['seed'] == 2 and weights.manifest['tracks'] == 588
+    assert weights.manifest['seed'] == 2 and weights.manifest['tracks'] == 660
     assert not list(tmp_path.glob('*.part*'))
     assert net.group_size(weights.fusion.layout) == 20
 
@@ -36,7 +36,7 @@ def test_training_for_ones_own_radar_and_vessels(tmp_path, command):
         '--scenario',
         'busy_strait',
         '--tracks',
-        588,
+        660,
         '--steps',
         20,
         '--out',
@@ -57,6 +57,7 @@ def test_wrong_options_are_told(tmp_path, capsys):
         (('--seed', -1), '--seed is -1'),
         (('--out', tmp_path / 'no' / 'w.npz'), 'there is no folder'),
         (('--out', tmp_path / 'w.json'), 'that name is for'),
+        (('--without', 'canoe'), "kind of motion 'canoe'; it must be one of steady,"),
         (('--kinds', tmp_path / 'none.yaml'), 'none.yaml cannot be read'),
         (('--scenario', 'busy_street'), 'did you mean busy_strait?'),
     ):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators import cs_kalman, imm
-from marine_tracker.estimators.gwnn import bank, gwnn, inputs, monitor
-from marine_tracker.gaussian import linear_modes
+from marine_tracker.estimators.gwnn import bank, bank_settings, gwnn, inputs, monitor
+from marine_tracker.gaussian import leg_hypotheses, linear_modes
 from marine_tracker.geometry import polar_to_position, to_range_bearing
 from marine_tracker.networks import gwnn_weights
 from marine_tracker.parameters import VESSEL_CLASSES
@@ -82,13 +82,13 @@ class TestBank:
         on = make_trial('sharp')
         state = bank.begin(SHIP, on.plots[0], SPEED)
         alone = {
-            'base': imm.imm(bank.TUNED_ON_ALL, SPEED),
-            12: imm.imm(bank.TUNED_FOR_MANOEUVRE, SPEED),
+            'base': imm.imm(bank_settings.TUNED_ON_ALL, SPEED),
+            12: imm.imm(bank_settings.TUNED_FOR_MANOEUVRE, SPEED),
             bank.CS: cs_kalman.cs_kalman(SHIP.settings.manoeuvre, SPEED),
         }
         states = {key: one.init(on.plots[0]) for key, one in alone.items()}
         for plots in on.plots[1:]:
-            state = bank.correct(SHIP, bank.expect(SHIP, state, plots), plots)
+            state = bank.correct(SHIP, state, bank.expect(SHIP, state, plots), plots)
             states = {key: alone[key].update(states[key], plots, np.arange(SHARE)) for key in alone}
         time = on.plots[-1].time + PERIOD
         ahead = bank.look(SHIP, state, np.array([PERIOD]))
@@ -102,15 +102,45 @@ class TestBank:
         expected = alone['base'].extrapolate(states['base'], time)
         np.testing.assert_allclose(covariance, expected.covariance, rtol=1e-6, atol=1e-6)
 
-    def test_a_slow_filter_is_a_kalman_filter(self):
-        on = make_trial('steady')
+    def test_its_legs_are_those_of_the_arpa(self):
+        """The same hypotheses about the same plots; the expert is the mean of the likely ones."""
+        on = make_trial('sharp')
         state = drive_bank(on)
-        one = imm.imm(imm.Modes((PERIOD * SHIP.settings.slow[2] ** 2,), (0,), (1,), PERIOD), SPEED)
-        alone = drive(one, on)
-        expected = one.extrapolate(alone, on.plots[-1].time)
+        first = on.plots[0]
+        alone = leg_hypotheses.begin(first.position, first.covariance, first.time, SPEED / 2)
+        for before, plots in zip(on.plots, on.plots[1:]):
+            alone, shown = leg_hypotheses.update(
+                alone,
+                plots.time,
+                plots.time - before.time,
+                plots.position,
+                plots.covariance,
+                None,
+                bank.CERTAINTY,
+                SHIP.settings.habits,
+            )
+        np.testing.assert_allclose(state.legs.weight, alone.weight, rtol=1e-9, atol=1e-12)
+        ahead = bank.look(SHIP, state, np.array([PERIOD])).experts[:, bank.LEG_EXPERTS]
         np.testing.assert_allclose(
-            bank.look(SHIP, state, np.zeros(1)).experts[:2, 9].T, expected.position, atol=1e-6
+            ahead[:2, 0].T, shown[:, :2] + PERIOD * shown[:, 2:4], rtol=0, atol=1e-6
         )
+
+    def test_on_a_straight_course_the_leg_is_the_straight_line_fit(self):
+        """The leg that began first, 60 plots later: the line of least squares, weighted."""
+        on = make_trial('steady', count=10)
+        state = drive_bank(on)
+        ahead = bank.look(SHIP, state, np.zeros(1)).experts[:2, bank.LEG_EXPERTS.start + 2].T
+        for i in range(10):
+            rows, seen = [], []
+            for plots in on.plots:
+                root = np.linalg.cholesky(np.linalg.inv(plots.covariance[i])).T
+                step = plots.time[i] - state.time[i]
+                rows.append(root @ np.kron([1.0, step], np.eye(2)))
+                seen.append(root @ plots.position[i])
+            line = np.linalg.lstsq(np.concatenate(rows), np.concatenate(seen), rcond=None)[0]
+            assert (
+                np.hypot(*(ahead[i] - line[:2])) < 1.0
+            )  # m, of plots that scatter by 25 m or more
 
     def test_left_and_right_turns_are_told_apart(self):
         """A ship that turns to starboard lies to the right of what left turns expect."""
@@ -123,7 +153,7 @@ class TestBank:
             state = (
                 bank.begin(SHIP, plots, SPEED)
                 if state is None
-                else bank.correct(SHIP, bank.expect(SHIP, state, plots), plots)
+                else bank.correct(SHIP, state, bank.expect(SHIP, state, plots), plots)
             )
         ahead = bank.look(SHIP, state, np.array([PERIOD]))
         right, left = (ahead.experts[:2, j, 0] for j in bank.TURNS[1])
@@ -135,7 +165,7 @@ class TestBank:
 def drive_bank(on):
     state = bank.begin(SHIP, on.plots[0], SPEED)
     for plots in on.plots[1:]:
-        state = bank.correct(SHIP, bank.expect(SHIP, state, plots), plots)
+        state = bank.correct(SHIP, state, bank.expect(SHIP, state, plots), plots)
     return state
 
 
@@ -160,7 +190,7 @@ class TestInputs:
         state = drive(gwnn.gwnn(silent(gwnn.weights()), SPEED, PERIOD), on)
         seen = inputs.inputs(SHIP, state.bank, state.memory, PERIOD)
         assert seen.shape == (SHARE, inputs.COUNT) and np.isfinite(seen).all()
-        assert inputs.COUNT == 118
+        assert inputs.COUNT == 132
 
     def test_sigma_check_reads_the_true_deviation_of_the_plots(self):
         """True deviation over the stated one, within a sixth on the mean of 40 tracks."""
@@ -182,16 +212,18 @@ class TestFusion:
     def test_a_silent_network_is_roughly_the_imm(self, weights):
         on = make_trial('mix', count=100)
         own = track_trials.run(
-            gwnn.gwnn(silent(weights), SPEED, PERIOD, trust=monitor.Trust(fall=np.inf)), on, False
+            gwnn.gwnn(silent(weights), SPEED, PERIOD, trust=monitor.Trust(np.inf, np.inf)),
+            on,
+            False,
         )
-        base = track_trials.run(imm.imm(bank.TUNED_ON_ALL, SPEED), on, True)
+        base = track_trials.run(imm.imm(bank_settings.TUNED_ON_ALL, SPEED), on, True)
         assert track_trials.rms(own.position, on.counts) == pytest.approx(
             track_trials.rms(base.position, on.counts), rel=0.05
         )
 
     @pytest.mark.parametrize(
         ('vessel_class', 'modes'),
-        [('ship', bank.TUNED_ON_ALL), ('small_craft', imm.PRESETS['small_craft'])],
+        [('ship', bank_settings.TUNED_ON_ALL), ('small_craft', imm.PRESETS['small_craft'])],
     )
     def test_warming_up_a_track_is_the_imm(self, vessel_class, modes):
         on = make_trial('mix', scans=monitor.WARM - 1)
@@ -218,7 +250,7 @@ class TestFusion:
         """120 tracks: the interval's upper end must stay below the limit."""
         on = make_trial(kind, seed=77, count=120, scans=90)
         own = track_trials.run(gwnn.gwnn(weights, SPEED, PERIOD), on, False)
-        base = track_trials.run(imm.imm(bank.TUNED_ON_ALL, SPEED), on, True)
+        base = track_trials.run(imm.imm(bank_settings.TUNED_ON_ALL, SPEED), on, True)
         found = track_trials.ratio(own.position, base.position, on.counts, np.random.default_rng(0))
         assert found.high < limit
 
@@ -256,7 +288,7 @@ class TestFusion:
         on = make_trial('weave')
         network = gwnn.gwnn(weights, SPEED, PERIOD)
         state = drive(network, on)
-        base = imm.imm(bank.TUNED_ON_ALL, SPEED)
+        base = imm.imm(bank_settings.TUNED_ON_ALL, SPEED)
         now = state.bank.time
 
         def correction(scans):
@@ -318,6 +350,21 @@ class TestMonitor:
         assert (account.rho[account.state == 2] > 1).mean() > 0.9
         state = drive(sound, on, state, range(60, 120))
         assert (state.monitor.status == monitor.GWNN).mean() > 0.8
+
+    def test_among_agile_boats_a_break_shows_by_the_networks_own_filters(self, weights):
+        """There CS-Kalman is off by as much as the broken network. The base IMM is not."""
+        on = make_trial('agile', scans=60)
+        state = drive(gwnn.gwnn(weights, SPEED, PERIOD), on, scans=range(40))
+        assert (state.monitor.status == monitor.GWNN).mean() > 0.9
+        fallen, blind = np.zeros((2, SHARE), bool)
+        ways = ((fallen, monitor.TRUST), (blind, monitor.TRUST._replace(excess=np.inf)))
+        for found, trust in ways:
+            broken = gwnn.gwnn(off_by(weights, 3.0), SPEED, PERIOD, trust=trust)
+            after = state
+            for k in range(40, 50):
+                after = drive(broken, on, after, [k])
+                found |= after.monitor.status == monitor.FALLBACK
+        assert fallen.mean() > 0.85 and blind.mean() < 0.7
 
     def test_fallen_back_a_track_is_that_of_cs_kalman(self, weights):
         on = make_trial('steady', scans=50)
@@ -457,7 +504,7 @@ class TestWeights:
         fusion = weights.fusion
         other = fusion._replace(centre=fusion.centre[:-1])
         gwnn_weights.save(tmp_path / 'w.npz', weights._replace(fusion=other))
-        with pytest.raises(ValueError, match=r'another network: fusion_centre has shape \(117,\)'):
+        with pytest.raises(ValueError, match=r'another network: fusion_centre has shape \(131,\)'):
             gwnn.weights(str(tmp_path / 'w.npz'))
 
     def test_weights_of_another_vessel_class_are_refused(self):
@@ -504,8 +551,14 @@ def test_states_begin_and_end_at_any_time(weights):
         and after.monitor.status[SHARE + 3] == monitor.WARMUP
     )
     again = put(after, rows, take(both, rows))
-    for one, other in zip(again.bank, both.bank):
+    for one, other in zip(flat(again.bank), flat(both.bank)):
         np.testing.assert_array_equal(one, other)
+
+
+def flat(rows):
+    """All arrays of a nested state."""
+    for one in rows:
+        yield from flat(one) if isinstance(one, tuple) else (one,)
 
 
 class TestLearning:
@@ -518,7 +571,7 @@ class TestLearning:
         plain, learned = (
             track_trials.run(
                 gwnn.gwnn(
-                    biased, SPEED, PERIOD, trust=monitor.Trust(fall=np.inf), learning=learning
+                    biased, SPEED, PERIOD, trust=monitor.Trust(np.inf, np.inf), learning=learning
                 ),
                 on,
                 False,

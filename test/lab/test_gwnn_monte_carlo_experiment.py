@@ -8,22 +8,12 @@ import pytest
 from marine_tracker.cli import main
 from marine_tracker.estimators.gwnn import gwnn
 from marine_tracker.evaluation.result import BORNE_OUT, IN_PART, NOT_BORNE_OUT, draw
-from marine_tracker.lab.gwnn import claims, failures, figures, pictures, trials
-from marine_tracker.lab.gwnn.trials import ALONE, BRIEFLY, FLEETS, IMM, OWN, TANH, Cell
+from marine_tracker.lab.gwnn import claims, failures, figures, leave_one_out, pictures, trials
+from marine_tracker.lab.gwnn.trials import ALONE, FLEETS, IMM, LINE, MANOEUVRE, OWN, Cell
 from marine_tracker.networks.wavelet_network import forward
 from marine_tracker.training.track_trials import Ratio
 
-OTHERS = (
-    ALONE,
-    TANH,
-    BRIEFLY,
-    'IMM for manoeuvre',
-    'IMM as shipped',
-    'CV/CV',
-    'CV',
-    'CS',
-    'CS of the fallback',
-)
+OTHERS = (ALONE, MANOEUVRE, 'IMM as shipped', 'CV/CV', 'CS', 'CS of the fallback')
 
 
 def ratio(value, half=0.01):
@@ -35,8 +25,10 @@ def cell(vessel_class='ship', kind='mix', phase='straight', own=0.95, other=1.1)
     sizes = {OWN: own, **dict.fromkeys(OTHERS, other)}
     to_imm = {name: ratio(size) for name, size in sizes.items()}
     over = {name: ratio(own / sizes.get(name, 1.0)) for name in (IMM, *OTHERS)}
+    faster = {MANOEUVRE: over[MANOEUVRE]}
+    rms = {**sizes, IMM: 1.0}
     return Cell(
-        vessel_class, kind, phase, {**sizes, IMM: 1.0}, to_imm, dict(to_imm), over, 2.0, 0.001
+        vessel_class, kind, phase, rms, to_imm, dict(to_imm), over, faster, 2.0, 1.05, 0.001, 900
     )
 
 
@@ -74,6 +66,9 @@ class TestTracks:
             distance = np.hypot(*np.moveaxis(on.ships.position, -1, 0))
             assert distance.min() > fleet.nearest
             off = np.stack([plot.range for plot in on.plots], 1) - distance
+            if kind == 'long hull':  # the plots wander over it
+                assert off.std() > 1.2 * fleet.radar.range_sigma
+                continue
             # 4,500 plots or fewer: their deviation is known to a hundredth of itself or two.
             assert off.std() == pytest.approx(fleet.radar.range_sigma, rel=0.06)
 
@@ -107,15 +102,16 @@ class TestCells:
         """Found with 100 runs: .91, .91 and .87. 30 runs of 80 scans know that to .02 (deviation);
         .97 is three deviations or more above."""
         monkeypatch.setattr(trials, 'SCANS', 80)
-        weights = {OWN: gwnn.weights(vessel_class=vessel_class)}
+        weights = gwnn.weights(vessel_class=vessel_class)
         (found,) = trials.cells(
             vessel_class, kind, 30, FLEETS[vessel_class].radar, 3, None, weights
         )
         assert (found.kind, found.phase) == (kind, phase)
         assert found.position[OWN].value < 0.97
         assert found.idle < 0.05
-        absent = {TANH} if vessel_class == 'ship' else {TANH, BRIEFLY}
-        assert set(found.rms) == {OWN, IMM, *OTHERS} - absent
+        lone = {LINE} if kind == 'steady' else set()
+        assert set(found.rms) == {OWN, IMM, *OTHERS, *lone}
+        assert set(found.faster) == {MANOEUVRE, *lone} and 0.2 < found.nees < 2.0
         assert set(found.position) == set(found.velocity) == set(found.rms) - {IMM}
         assert set(found.over) == set(found.rms) - {OWN}
         for name, other in found.position.items():
@@ -133,18 +129,52 @@ class TestFigures:
         four = figures.geometric_mean([ratio(1.0)] * 4)
         assert four.high - 1 == pytest.approx(0.005, rel=0.02)
 
-    def test_a_cell_must_be_better_and_surely_not_worse(self):
-        for own, half, ok in ((0.99, 0.01, True), (0.995, 0.02, False), (1.005, 0.001, False)):
-            one = cell(own=own)
+    def test_no_cell_may_surely_be_worse(self):
+        for kind, own, half, ok in (
+            ('mix', 0.99, 0.02, True),
+            ('mix', 1.005, 0.01, True),
+            ('mix', 1.005, 0.001, False),
+            ('cargo', 1.015, 0.001, True),
+            ('cargo', 1.025, 0.001, False),
+        ):
+            one = cell(kind=kind, own=own)
             one.position[OWN] = ratio(own, half)
-            figure = named(figures.figures(findings(one)))['mix, straight: position ratio']
+            name = 'stranger, cargo' if kind == 'cargo' else kind
+            figure = named(figures.figures(findings(one, cell(kind='weave'))))[
+                f'{name}, straight: position ratio'
+            ]
             assert figure.ok is ok
-            assert figure.limit == '<= 1, upper end 1.01'
 
-    def test_some_cells_must_be_better_by_more(self):
-        found = named(figures.figures(findings(cell(kind='weave', phase='manoeuvre'))))
-        figure = found['weave, manoeuvre: position ratio']
-        assert figure.ok is False and figure.limit.startswith('<= 0.93')
+    def test_means_of_strangers_and_of_straight_courses_stand_apart(self):
+        found = named(
+            figures.figures(
+                findings(
+                    cell(own=0.8),
+                    cell(phase='manoeuvre', own=0.9),
+                    cell(kind='autopilot', own=0.94),
+                    cell(kind='tug', own=0.98),
+                )
+            )
+        )
+
+        def mean(name):
+            return found[f'{name} ratio, geometric mean over the cells'].value
+
+        assert mean('position') == pytest.approx((0.8 * 0.9 * 0.94) ** (1 / 3))
+        assert mean('straight cells, velocity') == pytest.approx((0.8 * 0.94) ** (1 / 2))
+        assert mean('never trained on, position') == pytest.approx(0.94)
+        assert mean('strangers, velocity') == pytest.approx(0.98)
+        assert found['strangers, NEES, mean over all scans'].ok is True
+
+    def test_turns_are_compared_with_the_imm_for_them(self):
+        one = cell(phase='manoeuvre', own=0.95, other=0.9)
+        figure = named(figures.figures(findings(one)))
+        assert figure[f'mix, manoeuvre: velocity ratio to the {MANOEUVRE}'].ok is False
+        straight = cell(kind='steady')
+        for ratios in (straight.over, straight.faster, straight.position, straight.velocity):
+            ratios[LINE] = ratio(1.08)
+        figure = named(figures.figures(findings(straight, cell())))
+        assert figure[f'steady, straight: velocity ratio to the {LINE}'].ok is True
 
     def test_what_is_demanded_beside_the_fair_cells(self):
         found = named(figures.figures(findings(cell())))
@@ -154,7 +184,7 @@ class TestFigures:
         assert found['mix: scans to fallback after a break of 3 sigma, p90'].value == 8.1
         assert found['mix, random weights: position ratio'].ok is True
         assert found['mix, weights not numbers: position ratio'].ok is False  # not finite
-        assert found['position ratio, geometric mean over the cells'].ok is True
+        assert found['position ratio, geometric mean over the cells'].ok is False  # .95
         mean = found['position ratio, geometric mean over the cells, CV/CV']
         assert mean.value == pytest.approx(1.1)
         assert found['small craft, rib, manoeuvre: position ratio to `imm`'].ok is True
@@ -165,14 +195,17 @@ class TestFigures:
             assert (f'mix, straight: position ratio, {name}' in found) == (name != ALONE)
 
 
+MEANS = 'errors below those of the strongest IMM by 7% (position) and 9% (velocity)'
+
+
 class TestClaims:
     BETTER = 'better than the IMM tuned on the same tracks'
 
     def test_all_cells_won(self):
-        found = claims_by_text(cell(), cell(phase='manoeuvre'))
+        found = claims_by_text(cell(own=0.9), cell(phase='manoeuvre', own=0.9))
         assert found[self.BETTER].verdict == BORNE_OUT
         assert '2 of 2 cells won, 0 lost' in found[self.BETTER].found
-        assert found['errors some 4 % below those of the strongest IMM'].verdict == BORNE_OUT
+        assert found[MEANS].verdict == BORNE_OUT
 
     def test_a_lost_cell_is_named_and_the_rest_is_in_part(self):
         found = claims_by_text(
@@ -184,19 +217,34 @@ class TestClaims:
     def test_worse_on_the_mean_is_not_borne_out(self):
         found = claims_by_text(cell(), cell(kind='agile', own=1.3))
         assert found[self.BETTER].verdict == NOT_BORNE_OUT
-        assert found['errors some 4 % below those of the strongest IMM'].verdict == NOT_BORNE_OUT
-
-    def test_wavelets_that_do_as_well_as_plain_units_are_told(self):
-        says = 'wavelets do better than plain sigmoids'
-        assert claims_by_text(cell(other=0.95))[says].verdict == NOT_BORNE_OUT
-        assert claims_by_text(cell(other=1.1))[says].verdict == BORNE_OUT
-        barely = cell(other=0.955)
-        barely.over[TANH] = ratio(0.995, 0.001)
-        assert claims_by_text(barely)[says].verdict == IN_PART
+        assert found[MEANS].verdict == NOT_BORNE_OUT
 
     def test_rubbish_that_gives_no_numbers_is_told(self):
         claim = claims_by_text(cell())['bad weights cost little more than CS-Kalman']
         assert claim.verdict == NOT_BORNE_OUT and '1.050, not numbers' in claim.found
+
+
+def test_kinds_left_out_stand_beside_the_same_kinds_trained_on():
+    found = {}
+    for way, own in ((leave_one_out.WHOLE, 0.94), ('no legs', 0.98), ('tanh units', 0.95)):
+        for kind in ('mix', 'weave'):
+            found[way, kind] = [cell(kind=kind, own=own)]
+    found['mix', 'mix'] = [cell(own=0.96)]
+    found['weave', 'weave'] = [cell(kind='weave', own=0.9)]
+    told = named(leave_one_out.figures(found, ['mix', 'weave']))
+    assert told['weave left out, straight: velocity ratio'].against.endswith('everything 0.940')
+    mean = told['position ratio, geometric mean: left out']
+    assert mean.value == pytest.approx((0.96 * 0.9) ** 0.5) and mean.ok is True
+    assert told['velocity ratio, geometric mean: no legs'].value == pytest.approx(0.98)
+
+
+@pytest.mark.slow
+def test_a_network_is_trained_without_a_kind_or_without_legs(monkeypatch):
+    monkeypatch.setattr(leave_one_out, 'CHUNKS', 1)
+    monkeypatch.setattr(leave_one_out, 'STEPS', 30)
+    for way in ('moored', leave_one_out.NO_LEGS, leave_one_out.PLAIN):
+        found = leave_one_out.measure(3, way, ['moored'], 5)
+        assert 0.3 < found['moored'][0].position[OWN].value < 3.0
 
 
 class TestFailures:

@@ -6,7 +6,7 @@ from marine_tracker.ais import ships
 from marine_tracker.ais.reports import positions
 from marine_tracker.ais.ship_table import none
 from marine_tracker.arpa.cpa import OwnMotion
-from marine_tracker.nodes import ais_cloud, ais_columns, ais_targets_cloud
+from marine_tracker.nodes import ais_cloud, ais_columns, ais_targets_cloud, display_ais
 from marine_tracker.nodes.targets_message import degrees, figure
 from marine_tracker.parameters import AisParameters, TrackerParameters
 from marine_tracker.service import Service
@@ -46,6 +46,14 @@ def test_ships_go_out_as_numbers_and_come_back(picture):
     assert ais_cloud.text_of(rows['name']).tolist() == ['SKAGEN', '']
     assert np.isnan(rows['heading']).tolist() == [False, True]
     assert rows['range'][0] == pytest.approx(900, abs=1)
+
+
+def test_the_page_gets_none_where_nothing_is_known(picture):
+    rows = ais_targets_cloud.read(ais_targets_cloud.message(picture, 12_000_000_000))
+    columns = display_ais.ships(rows)
+    assert columns['heading'] == [0.0, None] and columns['name'] == ['SKAGEN', '']
+    assert columns['course'][1] is None and columns['cpa'][1] is None
+    assert columns['mmsi'] == [219000001, 219000002]
 
 
 def test_reports_go_out_as_numbers_and_come_back():

@@ -336,6 +336,30 @@ def test_a_split_on_a_slow_disk_delays_nothing(graph, sender, node_helpers, tmp_
     assert len(files.paths) > 1 and np.diff(times).max() < 0.5 + passed / 400
 
 
+def replayed_as_live(folder, tmp_path):
+    """The table of a replay, run twice with the same bytes and with the tracks of the live run; and
+    how many of these were compared."""
+    tables = [tmp_path / name for name in ('once.csv', 'twice.csv')]
+    for table in tables:
+        assert cli.main(['replay', str(folder), '--out', str(table)]) == 0
+    assert tables[0].read_bytes() == tables[1].read_bytes()
+    rows, inside, compared = track_file.read(tables[0]), contents(folder), 0
+    order = np.lexsort((rows.track.astype(int), rows.scan))
+    scan, track, position = (a[order] for a in (rows.scan, rows.track.astype(int), rows.position))
+    starts = [str(event.message.header.stamp) for event in inside.events('radar/plots')]
+    number = {stamp: k for k, stamp in enumerate(starts)}
+    for event in inside.events('tracks_cloud'):
+        k = number[str(event.message.header.stamp)]
+        mine = slice(*np.searchsorted(scan, [k, k + 1]))
+        cloud = np.frombuffer(event.message.data, TRACK_TYPE)
+        cloud = cloud[np.argsort(cloud['id'])]
+        assert track[mine].tolist() == cloud['id'].tolist()
+        place = np.stack([cloud['x'], cloud['y']], -1)
+        np.testing.assert_allclose(position[mine], place, atol=0.01)
+        compared += len(cloud)
+    return tables[0], compared
+
+
 def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(
     launch, graph, node_helpers, tmp_path, capsys
 ):
@@ -353,27 +377,11 @@ def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(
     recorder.stop()
     tracker.stop()
 
-    tables = [tmp_path / name for name in ('once.csv', 'twice.csv')]
-    for table in tables:
-        assert cli.main(['replay', str(folder), '--out', str(table)]) == 0
-    assert tables[0].read_bytes() == tables[1].read_bytes()
-    rows = track_file.read(tables[0])
     inside = contents(folder)
     assert inside.parameters['estimator'] == 'imm' and inside.parameters['cpa_limit_nm'] == 0.7
-    compared = 0
-    starts = [str(event.message.header.stamp) for event in inside.events('radar/plots')]
-    for event in inside.events('tracks_cloud'):
-        k = starts.index(str(event.message.header.stamp))
-        cloud = np.frombuffer(event.message.data, TRACK_TYPE)
-        mine = rows.scan == k
-        assert sorted(rows.track[mine].astype(int)) == sorted(cloud['id'].tolist())
-        order = np.argsort(rows.track[mine].astype(int))
-        cloud = cloud[np.argsort(cloud['id'])]
-        place = np.stack([cloud['x'], cloud['y']], -1)
-        np.testing.assert_allclose(rows.position[mine][order], place, atol=0.01)
-        compared += len(cloud)
+    table, compared = replayed_as_live(folder, tmp_path)
     assert compared > 800
-    assert cli.main(['score', str(folder), str(tables[0])]) == 0
+    assert cli.main(['score', str(folder), str(table)]) == 0
     assert 'truth_targets' in capsys.readouterr().out
     assert cli.main(['incident', str(folder), '--at', '90']) == 0
     assert 'own ship: course' in capsys.readouterr().out
@@ -418,9 +426,7 @@ def test_a_recording_that_is_played_tells_no_old_logs_alarms_or_health(
 
 @pytest.mark.slow
 @pytest.mark.timeout(1500)
-def test_an_hour_of_a_busy_strait_is_read_back_by_rosbags_and_mcap_ros2_support(
-    launch, tmp_path, monkeypatch
-):
+def test_an_hour_of_a_busy_strait_is_read_back_by_rosbags_and_mcap_ros2_support(launch, tmp_path):
     """At rate 10; `HOUR_S` shortens it."""
     from mcap.reader import make_reader
     from mcap_ros2.decoder import DecoderFactory
@@ -463,6 +469,8 @@ def test_an_hour_of_a_busy_strait_is_read_back_by_rosbags_and_mcap_ros2_support(
                 assert decoded is not None
     assert sorted(other) == sorted(mine)
     print(json.dumps({name: files.topics[name].messages for name in files.topics}))
+    _, compared = replayed_as_live(folder, tmp_path)
+    assert compared > 10 * hour
 
 
 def test_the_command_records_for_a_while_and_shows_what_there_is(domain, tmp_path):

@@ -141,7 +141,7 @@ def test_a_mark_that_is_gone_keeps_what_it_told():
 
 
 SCENE = {
-    'duration_s': 270,
+    'duration_s': 300,
     'radar': {
         'rotation_rpm': 24,
         'max_range_m': 2500,

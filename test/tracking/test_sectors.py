@@ -9,8 +9,11 @@ from marine_tracker.geometry import wrap_angle
 from marine_tracker.parameters import TrackerParameters, from_mapping
 from marine_tracker.service import service_for
 from marine_tracker.simulation import radar, scenario, sectors
+from marine_tracker.tracking import sectors as parts_of
+from marine_tracker.tracking.gate import Pairs
 from marine_tracker.tracking.mounting import mounted
 from marine_tracker.tracking.radars import fused, merged
+from marine_tracker.tracking.sweep import sweep_of
 from marine_tracker.tracking.tracker import Tracker
 from marine_tracker.types import Sector, take
 
@@ -178,3 +181,17 @@ def test_a_sector_of_a_radar_mounted_askew_is_turned_like_its_plots(strait):
     assert turned.sector == pytest.approx(
         Sector(scan.sector.bearing + np.radians(12), scan.sector.angle)
     )
+
+
+def test_a_track_with_a_wide_gate_is_judged_soon_after_the_beam(strait):
+    """Whatever its gate, from the middle of it to the end of a sector a track waits so long."""
+    part = sectors.cut(strait[0][0], 16)[8]
+    period = 16 * (part.end - part.start)
+    passed = part.end - period * np.array([0.01, 0.04, 0.05, 0.2])
+    nothing = np.zeros(0, np.int64)
+    pairs = Pairs(nothing, nothing, np.zeros(0), np.zeros(0))
+    seen = parts_of.Windows(pairs, passed, passed + 0.3 * period)
+    pool = take(part.plots, slice(0))
+    waiting = parts_of.begin(part)
+    found = parts_of.decide(waiting, seen, part, pool, sweep_of(part), 0)
+    assert found.tracks.tolist() == [False, False, True, True]

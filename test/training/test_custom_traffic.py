@@ -39,7 +39,9 @@ def test_kinds_are_read_and_move_as_they_say(file):
     assert kinds['pilot boat'].speed == (6, 14) and kinds['pilot boat'].weave == (15, 80)
     assert kinds['barge'].angle == 150 and kinds['barge'].weave is None
     kind = np.repeat([0, 1], 60)
-    found = training_tracks.draw(WATERS._replace(kinds=kinds), kind, 60, np.random.default_rng(1))
+    found = training_tracks.draw(
+        WATERS._replace(kinds=kinds, steered={}), kind, 60, np.random.default_rng(1)
+    )
     speed = np.hypot(*np.moveaxis(found.ships.velocity, -1, 0))
     boats, barges = found.kind == 0, found.kind == 1
     assert 5 < speed[boats].min() and speed[boats].max() < 16 and speed[barges].max() <= 3
@@ -114,7 +116,7 @@ def harbour(duration=900.0):
 
 def test_a_scenario_gives_its_radar_and_its_targets():
     waters = custom_traffic.from_scenario(WATERS, harbour())
-    assert waters.names[-1] == 'scenario harbour' and len(waters.names) == len(WATERS.kinds) + 1
+    assert waters.names[-1] == 'scenario harbour' and len(waters.names) == len(WATERS.names) + 1
     kind = np.tile(np.arange(len(waters.names)), 40)
     found = training_tracks.draw(waters, kind, 60, np.random.default_rng(2))
     radar = found.radar
@@ -122,7 +124,7 @@ def test_a_scenario_gives_its_radar_and_its_targets():
     assert np.radians(1 / 1.2) <= radar.bearing_sigma.min()
     assert (np.median(radar.period), np.ptp(radar.period) < 0.2) == (pytest.approx(1.5), True)
     assert 0.7 <= radar.detection.min() and radar.detection.max() <= 1.0
-    own = found.kind == len(WATERS.kinds)
+    own = found.kind == len(WATERS.names)
     speed = np.hypot(*np.moveaxis(found.ships.velocity[own], -1, 0))
     still = speed.max(1) < 0.01
     assert 0.2 < still.mean() < 0.8

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators import cs_kalman, imm
-from marine_tracker.estimators.gwnn import bank
-from marine_tracker.training import filter_families, filter_tuning, ship_tracks, training_tracks
+from marine_tracker.estimators.gwnn import bank_settings
+from marine_tracker.training import filter_families, filter_tuning, training_tracks
 from marine_tracker.types import take
 
 # Restless: a CV mode of much noise, seldom left.
@@ -14,12 +14,12 @@ BAD = np.array([1.0, 1.0, 1.0, 0.9, 0.0, 0.0, 0.0])
 
 @pytest.fixture(scope='module')
 def few():
-    return filter_tuning.course(70, np.random.default_rng(1))
+    return filter_tuning.course(110, np.random.default_rng(1))
 
 
 def bowl(modes):
     """Least where noise and turn rate are those of the bank's IMM."""
-    wanted = bank.TUNED_ON_ALL
+    wanted = bank_settings.TUNED_ON_ALL
     return float(
         np.square(np.log(np.array(modes.noise) / wanted.noise)).sum()
         + np.log(modes.turn_rate[2] / wanted.turn_rate[2]) ** 2
@@ -27,7 +27,7 @@ def bowl(modes):
 
 
 def test_tracks_are_of_every_kind_alike_and_none_close(few):
-    assert np.bincount(few.kind).tolist() == [10] * len(ship_tracks.KINDS)
+    assert np.bincount(few.kind).tolist() == [10] * len(training_tracks.WATERS['ship'].names)
     place = few.trial.ships.position
     nearest = training_tracks.WATERS['ship'].radars[0].nearest
     assert np.hypot(place[..., 0], place[..., 1]).min() > nearest
@@ -37,15 +37,15 @@ def test_tracks_are_of_every_kind_alike_and_none_close(few):
 
 
 def test_fresh_tracks_are_not_those_of_the_search_nor_of_another_seed():
-    _, seen = filter_tuning.tune('training', 70, 1, 3)
+    _, seen = filter_tuning.tune('training', 110, 1, 3)
     again, fresh, other = (
-        filter_tuning.course(70, filter_tuning._tracks_rng(3, 0)),
-        filter_tuning.fresh(70, 3),
-        filter_tuning.fresh(70, 4),
+        filter_tuning.course(110, filter_tuning._tracks_rng(3, 0)),
+        filter_tuning.fresh(110, 3),
+        filter_tuning.fresh(110, 4),
     )
     starts = [one.trial.ships.position[:, 0] for one in (seen, fresh, other)]
     np.testing.assert_array_equal(again.trial.ships.position[:, 0], starts[0])
-    assert len(np.unique(np.concatenate(starts)[:, 0])) == 210
+    assert len(np.unique(np.concatenate(starts)[:, 0])) == 330
 
 
 def test_the_loss_is_the_mean_log_rms_of_the_cells_that_count(few):
@@ -71,7 +71,7 @@ def test_errors_are_in_deviations_of_the_plots_as_they_truly_are():
             plots=[take(plots, row) for plots in on.trial.plots],
         )
         part = on._replace(trial=trial, counts=on.counts[:, row], kind=on.kind[row])
-        return filter_tuning.errors(bank.TUNED_ON_ALL, part).sum()
+        return filter_tuning.errors(bank_settings.TUNED_ON_ALL, part).sum()
 
     assert rms(2.0) == pytest.approx(rms(1.0) / 4)
 
@@ -152,6 +152,6 @@ def test_settings_as_text_are_the_settings(name):
 @pytest.mark.parametrize('name', ['cv_cv', 'cv', 'cs'])
 def test_simpler_filters_are_tuned_the_same_way(name):
     """The search ends no worse than at the middle of the bounds, where it begins."""
-    found, _ = filter_tuning.tune('training', 70, 6, 1, family=filter_families.FAMILIES[name])
+    found, _ = filter_tuning.tune('training', 110, 6, 1, family=filter_families.FAMILIES[name])
     assert found.loss == found.best[-1] <= found.best[0]
     assert len(found.best) == 6

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from marine_tracker.estimators.gwnn import bank
-from marine_tracker.training import gwnn_samples, ship_tracks, training_tracks
+from marine_tracker.training import gwnn_samples, training_tracks
 from marine_tracker.training.gwnn_fusion import cell_weights, rivals
 
 
@@ -29,11 +29,12 @@ def test_they_are_sound_and_repeatable(samples):
 
 
 def test_every_kind_and_phase_is_there(samples):
-    count = np.bincount(samples.cell, minlength=gwnn_samples.cell_count(7)).reshape(7, 2, 2, 2)
-    names = list(ship_tracks.KINDS)
+    names = training_tracks.WATERS['ship'].names
+    count = np.bincount(samples.cell, minlength=gwnn_samples.cell_count(len(names)))
+    count = count.reshape(len(names), 2, 2, 2)
     for i, kind in enumerate(names):
         assert (count[i, 0].sum() > 0) == (kind != 'weave')
-        assert (count[i, 1].sum() > 0) == (kind not in ('steady', 'drift'))
+        assert (count[i, 1].sum() > 0) == (kind not in ('steady', 'drift')) or kind == 'moored'
 
 
 def test_after_a_plot_the_time_asked_for_is_the_plots(samples):

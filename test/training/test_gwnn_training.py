@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
-from marine_tracker.estimators.gwnn import bank, gwnn
+from marine_tracker.estimators.gwnn import bank, gwnn, inputs
+from marine_tracker.networks import wavelet_network as net
 from marine_tracker.training import gwnn_checkpoint, gwnn_samples, gwnn_training, training_tracks
 from marine_tracker.training import gwnn_fusion as fusion
 from marine_tracker.types import take
+
+KINDS = len(training_tracks.WATERS['ship'].names)
 
 
 @pytest.fixture(scope='module')
@@ -43,7 +46,7 @@ def test_gradients_of_fusing_are_those_of_differences(samples):
 
 def test_stopped_and_gone_on_it_ends_where_it_would_have(samples, tmp_path):
     def trained(stops):
-        training = fusion.begin(samples, 7, 3)
+        training = fusion.begin(samples, KINDS, 3)
         for until in stops:
             training = fusion.train(training, samples, 3, 60, until)
             gwnn_checkpoint.save(tmp_path / 'part', {'seed': 3}, training)
@@ -56,7 +59,7 @@ def test_stopped_and_gone_on_it_ends_where_it_would_have(samples, tmp_path):
 
 def test_checkpoints_of_other_trainings_and_damaged_ones_are_refused(samples, tmp_path):
     file = tmp_path / 'w.npz.part'
-    gwnn_checkpoint.save(file, {'seed': 3}, fusion.begin(samples, 7, 3))
+    gwnn_checkpoint.save(file, {'seed': 3}, fusion.begin(samples, KINDS, 3))
     with pytest.raises(ValueError, match=r'another training \(.*seed 3, not 4.*remove it'):
         gwnn_training.run(gwnn_training.plan('ship', 4, chunks=1, steps=10), file)
     file.write_bytes(file.read_bytes()[:3000])
@@ -66,7 +69,7 @@ def test_checkpoints_of_other_trainings_and_damaged_ones_are_refused(samples, tm
 
 def test_some_hundred_steps_already_gain(samples):
     """On the samples it sees, the network's emphasised cells fall below the base's error."""
-    training = fusion.train(fusion.begin(samples, 7, 5), samples, 5, 400, 400)
+    training = fusion.train(fusion.begin(samples, KINDS, 5), samples, 5, 400, 400)
     known = training.against[:, 0, 0] > 1e-3
     ratio = np.sqrt(training.size / training.against[..., 0])[known]
     assert ratio.mean() < 0.99
@@ -76,5 +79,33 @@ def test_the_worst_cells_gain_weight():
     size, against = np.ones((4, 2)), np.ones((4, 2))
     size[2] = 2.0
     against[3] = 0.0
-    emphasis = fusion.emphasize(np.zeros((4, 2)), size, np.stack([against, 2 * against], 2), -1.2)
+    emphasis = fusion.emphasize(np.zeros((4, 2)), size, np.stack([against, 2 * against], 2))
     assert (emphasis[2] > emphasis[0]).all() and (emphasis[3] == 0).all()
+
+
+def test_without_legs_no_weight_is_left_for_them(samples):
+    network = fusion.begin(samples, KINDS, 6, legs=False).network
+    batch = take(samples, slice(0, 300))
+    _, weight = fusion.fuse(net.forward(network, batch.seen), batch)
+    assert weight[:, bank.LEG_EXPERTS].max() < 1e-12
+
+
+@pytest.mark.slow
+def test_without_legs_a_network_neither_hears_nor_chooses_them(samples, tmp_path):
+    plan = gwnn_training.plan('ship', 6, chunks=1, steps=30, legs=False)
+    fusion_, spread, manifest = gwnn_training.run(plan, tmp_path / 'w.npz.part')
+    batch = take(samples, slice(0, 300))
+    seen = batch.seen.copy()
+    seen[:, inputs.OF_LEGS] = 7.0
+    for network in (fusion_, spread):
+        np.testing.assert_array_equal(net.forward(network, seen), net.forward(network, batch.seen))
+    _, weight = fusion.fuse(net.forward(fusion_, batch.seen), batch)
+    assert weight[:, bank.LEG_EXPERTS].max() < 1e-12 and manifest['legs'] is False
+
+
+def test_a_kind_left_out_is_not_there_and_unknown_ones_are_told():
+    waters = training_tracks.WATERS['ship']
+    for name in ('sharp', 'moored'):
+        assert set(waters.names) - set(waters.without(name).names) == {name}
+    with pytest.raises(ValueError, match="kind of motion 'canoe'; it must be one of steady, mix"):
+        waters.without('canoe')

@@ -1,5 +1,6 @@
 // The radar picture on its canvas: scale, rings, echoes, targets, own ship.
 
+import { drawShips } from './ais.js';
 import { NAUTICAL_MILE, toScreen } from './geometry.js';
 import { drawAreas, drawSafeCourses } from './dangers.js';
 import { echoKey, paintEchoes } from './echoes.js';
@@ -78,7 +79,9 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
       drawAreas(canvas, state, settings, scope, colors, local);
       drawStationary(canvas, state.fixed, scope.view, colors.trail);
       drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
-      drawTargets(canvas, state, settings, scope, colors, marks.id, local, names);
+      const ships = drawShips(canvas, state, settings, scope, colors, local);
+      const others = [...names, ...ships];
+      drawTargets(canvas, state, settings, scope, colors, marks.id, local, others);
     }
     drawTools(canvas, state, scope, colors, marks);
     drawMarks(canvas, scope, colors, marks);

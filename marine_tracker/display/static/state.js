@@ -23,6 +23,7 @@ export const UNACKNOWLEDGED = 2;
  * @property {Message|null} own
  * @property {Target[]} targets
  * @property {[number, number, number][]} fixed  stationary objects: number, x, y
+ * @property {Target[]} ships      of AIS (ais.js)
  * @property {Message|null} scan     the message that the targets came with, without its columns
  * @property {Message[]} plots       of the last scans, newest last
  * @property {any} spokes           radar video of the last turn (spokes.js)
@@ -49,6 +50,7 @@ export function emptyState() {
     own: null,
     targets: [],
     fixed: [],
+    ships: [],
     scan: null,
     plots: [],
     spokes: null,
@@ -92,6 +94,9 @@ export function receive(state, message, local) {
         period: message.period,
       };
       break;
+    case 'ships':
+      state.ships = rows(message.columns);
+      break;
     case 'plots':
       takePlots(state, message);
       break;
@@ -106,7 +111,14 @@ export function receive(state, message, local) {
       break;
     case 'demo':
       if (state.demo.run !== undefined && message.demo.run !== state.demo.run) {
-        Object.assign(state, { targets: [], scan: null, plots: [], spokes: null, trails: null }); // another run
+        Object.assign(state, {
+          targets: [],
+          ships: [],
+          scan: null,
+          plots: [],
+          spokes: null,
+          trails: null,
+        }); // another run
       }
       state.demo = message.demo;
       break;
@@ -190,9 +202,8 @@ export function staleness(state, local) {
 /** The columns of a message as rows. @returns {Target[]} */
 function rows(/** @type {Record<string, any[]>} */ columns) {
   const names = Object.keys(columns);
-  return columns.number.map((_, row) =>
-    Object.fromEntries(names.map((name) => [name, columns[name][row]])),
-  );
+  const first = columns[names[0]] ?? [];
+  return first.map((_, row) => Object.fromEntries(names.map((name) => [name, columns[name][row]])));
 }
 
 /** TT07; Q and the track's id while it is being acquired. @param {Target} target */

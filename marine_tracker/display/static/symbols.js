@@ -187,3 +187,83 @@ export function cross(/** @type {Canvas} */ canvas, x, y, color) {
   canvas.lineTo(x, y + 4);
   canvas.stroke();
 }
+
+const [HALF_BASE, HALF_HEIGHT] = [7, 11]; // px, of the triangle of an activated ship of AIS
+const ASLEEP = 0.72; // of that
+
+/** A ship of AIS: an acute triangle about her place; asleep small, of unknown CPA broken. */
+export function triangle(/** @type {Canvas} */ canvas, x, y, angle, color, look) {
+  const scale = look.sleeping ? ASLEEP : 1;
+  canvas.lineWidth = look.bold ? BOLD : THIN;
+  canvas.strokeStyle = color;
+  canvas.save();
+  canvas.translate(x, y);
+  canvas.rotate(angle);
+  canvas.setLineDash(look.broken ? [3, 2] : []);
+  canvas.beginPath();
+  canvas.moveTo(0, -scale * HALF_HEIGHT);
+  canvas.lineTo(scale * HALF_BASE, scale * HALF_HEIGHT);
+  canvas.lineTo(-scale * HALF_BASE, scale * HALF_HEIGHT);
+  canvas.closePath();
+  canvas.stroke();
+  canvas.setLineDash([]);
+  canvas.restore();
+}
+
+/** Her heading: a solid line from the apex, two triangles long, with a flag where she turns. */
+export function headingLine(/** @type {Canvas} */ canvas, x, y, angle, color, flag) {
+  const end = -5 * HALF_HEIGHT;
+  canvas.lineWidth = THIN;
+  canvas.strokeStyle = color;
+  canvas.save();
+  canvas.translate(x, y);
+  canvas.rotate(angle);
+  canvas.beginPath();
+  canvas.moveTo(0, -HALF_HEIGHT);
+  canvas.lineTo(0, end);
+  if (flag) canvas.lineTo(flag * HALF_BASE, end);
+  canvas.stroke();
+  canvas.restore();
+}
+
+/** Lost: a bold cross over the triangle. */
+export function across(/** @type {Canvas} */ canvas, x, y, color) {
+  const arm = HALF_HEIGHT;
+  canvas.lineWidth = BOLD;
+  canvas.strokeStyle = color;
+  canvas.beginPath();
+  canvas.moveTo(x - arm, y - arm);
+  canvas.lineTo(x + arm, y + arm);
+  canvas.moveTo(x - arm, y + arm);
+  canvas.lineTo(x + arm, y - arm);
+  canvas.stroke();
+}
+
+/** An AIS-SART: a circle with a cross in it. */
+export function beacon(/** @type {Canvas} */ canvas, x, y, color) {
+  canvas.lineWidth = THIN;
+  canvas.strokeStyle = color;
+  circle(canvas, x, y, RADIUS + 1);
+  const arm = (RADIUS + 1) * Math.SQRT1_2;
+  canvas.beginPath();
+  canvas.moveTo(x - arm, y - arm);
+  canvas.lineTo(x + arm, y + arm);
+  canvas.moveTo(x - arm, y + arm);
+  canvas.lineTo(x + arm, y - arm);
+  canvas.stroke();
+}
+
+/** An aid to navigation: a diamond with a crosshair. */
+export function aid(/** @type {Canvas} */ canvas, x, y, color) {
+  const arm = RADIUS + 1;
+  canvas.beginPath();
+  canvas.moveTo(x, y - arm);
+  canvas.lineTo(x + arm, y);
+  canvas.lineTo(x, y + arm);
+  canvas.lineTo(x - arm, y);
+  canvas.closePath();
+  canvas.lineWidth = THIN;
+  canvas.strokeStyle = color;
+  canvas.stroke();
+  cross(canvas, x, y, color);
+}

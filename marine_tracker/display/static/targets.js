@@ -1,5 +1,6 @@
 // The targets on the picture: symbols, vectors, hulls, ellipses, labels, where some were lost.
 
+import { byTrack, direction } from './ais.js';
 import { canvasAngle, edge, ellipse, toScreen, turned } from './geometry.js';
 import { placed } from './labels.js';
 import { Stamps } from './layers.js';
@@ -46,6 +47,7 @@ export function drawTargets(canvas, state, settings, scope, colors, chosen, loca
   const { view, middleX, middleY, radius } = scope;
   const shown = Math.floor(local / FLASH_S) % 2 === 0;
   const fresh = newTargets(state);
+  const joined = byTrack(state.ships);
   /** @type {import('./labels.js').Label[]} */
   const labels = [];
   const inOrder = [...state.targets].sort((a, b) => a.alarm - b.alarm); // the dangerous on top
@@ -75,7 +77,13 @@ export function drawTargets(canvas, state, settings, scope, colors, chosen, loca
     if (!(target.alarm === UNACKNOWLEDGED || caught) || shown) {
       if (target.status !== ACQUIRING) symbols.vector(canvas, x, y, right, down, color, danger);
       const look = danger ? 'danger' : caught ? 'caught' : target.status;
-      drawSymbol(canvas, look, target.danger_probability ?? 0, x, y, color, colors.danger);
+      const ship = joined.get(target.id); // one symbol for both, that of AIS
+      if (ship && target.status !== ACQUIRING && !caught) {
+        const angle = direction(ship, view.up) - view.up;
+        symbols.triangle(canvas, x, y, angle, color, { sleeping: false, bold: danger });
+      } else {
+        drawSymbol(canvas, look, target.danger_probability ?? 0, x, y, color, colors.danger);
+      }
     }
     const reference = target.number !== 0 && target.number === state.own.reference;
     if (reference) labels.push({ x, y, text: 'R', needed: true });

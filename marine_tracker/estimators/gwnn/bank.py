@@ -1,10 +1,11 @@
-"""The banks of filters that `gwnn` fuses: three IMMs, four slow CV filters and CS-Kalman.
+"""The banks of filters that `gwnn` fuses: three IMMs, straight legs and CS-Kalman.
 
 All take the same plots. They give 13 experts, each with its own estimate of the target:
 
     0-3    the modes of the base IMM: straight, any, turning right, turning left
     4-6    the nine-mode IMM: its mean, that of its right turns, that of its left turns
-    7-10   constant velocity with little to much noise
+    7-10   straight legs since a likely change (`gaussian.leg_hypotheses`): the mean of the likely
+           ones, the likeliest, the one that began first, the manoeuvre
     11     CS-Kalman, also the fallback of `gwnn`
     12     a second IMM, good where the base is not
 
@@ -13,115 +14,34 @@ vessel class (`BANKS`). They differ in data only (`BankSettings`).
 """
 
 import hashlib
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from ...gaussian import linear_modes
+from ...gaussian import leg_hypotheses, linear_modes
+from ...gaussian.leg_hypotheses import Legs
 from ...gaussian.linear import kalman_update
 from ...types import Array, Plots
-from .. import cs_kalman, imm
+from .. import cs_kalman
 from ..contract import Velocity, first_velocity
-from ..imm import Modes
+from .bank_settings import SETTINGS, BankSettings
 
-PERIOD = 60 / 22  # s, to which the settings refer
 EXPERTS = 13
-BASE, RICH, SLOW, SECOND = slice(0, 4), slice(4, 13), slice(13, 17), slice(17, 21)
+BASE, RICH, SECOND = slice(0, 4), slice(4, 13), slice(13, 17)
+LEG_EXPERTS = slice(7, 11)
 CS, SECOND_IMM = 11, 12  # experts
 TURNS = ((2, 3), (5, 6))  # experts right and left
-
-
-class BankSettings(NamedTuple):
-    """What tells the bank of one vessel class from that of another.
-
-    base       the IMM [4] that a silent network leaves: straight, any, turns right and left
-    nine       the richer IMM [9]: three that go straight, then turns right and left by turns
-    entered    [9] how readily each of the nine is entered when another is left
-    slow       [4] m/s^2, deviation over a scan of the white acceleration of the CV filters
-    second     another IMM [4]
-    manoeuvre  of CS-Kalman
-    """
-
-    base: Modes
-    nine: Modes
-    entered: tuple[float, ...]
-    slow: tuple[float, ...]
-    second: Modes
-    manoeuvre: cs_kalman.Manoeuvre
-
-
-def _modes(
-    acceleration: Sequence[float], turn_rate: Sequence[float], stay: tuple[float, ...]
-) -> Modes:
-    """Modes by the deviation, m/s^2, of their white acceleration over a scan."""
-    return Modes(tuple(PERIOD * a * a for a in acceleration), tuple(turn_rate), stay, PERIOD)
-
-
-def _turns(*degrees: float) -> tuple[float, ...]:
-    """Turn rates of nine modes, the last six turning right and left by turns; degrees a second."""
-    return (0, 0, 0, *np.radians([side * rate for rate in degrees for side in (1, -1)]).tolist())
-
-
-# The strongest four-mode IMMs that `marine_tracker tune imm` finds, by what they are tuned for:
-# every kind of motion and phase of the training tracks alike, or manoeuvres only.
-TUNED_ON_ALL = Modes(
-    noise=(2.7961e-06, 2.7429, 2.9895e-05, 2.9895e-05),
-    turn_rate=(0, 0, 0.021336, -0.021336),
-    stay=(0.99417, 0.95174, 0.91282, 0.91282),
-    period=PERIOD,
-)
-TUNED_FOR_MANOEUVRE = Modes(
-    noise=(1.8237e-06, 4.3522, 1.926e-05, 1.926e-05),
-    turn_rate=(0, 0, 0.023911, -0.023911),
-    stay=(0.93942, 0.98487, 0.93031, 0.93031),
-    period=PERIOD,
-)
-STRONGEST = {
-    'ship': {'training': TUNED_ON_ALL, 'manoeuvre': TUNED_FOR_MANOEUVRE},
-    'small_craft': {
-        'training': Modes(
-            noise=(8.5223e-06, 0.12801, 0.48679, 0.48679),
-            turn_rate=(0, 0, 0.20941, -0.20941),
-            stay=(0.99492, 0.9547, 0.55, 0.55),
-            period=PERIOD,
-        ),
-        'manoeuvre': Modes(
-            noise=(5.6615e-05, 2.2873, 0.0091991, 0.0091991),
-            turn_rate=(0, 0, 0.32648, -0.32648),
-            stay=(0.9055, 0.90073, 0.75464, 0.75464),
-            period=PERIOD,
-        ),
-    },
-}
-
-SETTINGS = {
-    'ship': BankSettings(
-        base=TUNED_ON_ALL,
-        nine=_modes((0.0005, 0.05, 0.6) + (0.03,) * 6, _turns(1, 2.5, 6), (0.992,) + (0.85,) * 8),
-        entered=(1, 1, 0.5, 1, 1, 1, 1, 0.5, 0.5),
-        slow=(0.0005, 0.006, 0.03, 0.12),
-        second=TUNED_FOR_MANOEUVRE,
-        manoeuvre=cs_kalman.Manoeuvre(1.0, 1 / 60),
-    ),
-    # The product's own filters, so that the network begins where they are.
-    'small_craft': BankSettings(
-        base=imm.PRESETS['small_craft'],
-        nine=_modes((0.005, 0.2, 1.5) + (0.1,) * 6, _turns(4, 10, 22), (0.97,) + (0.85,) * 8),
-        entered=(1, 1, 0.5, 1, 1, 1, 1, 0.5, 0.5),
-        slow=(0.002, 0.02, 0.1, 0.4),
-        second=STRONGEST['small_craft']['training'],
-        manoeuvre=cs_kalman.PRESETS['small_craft'],
-    ),
-}
+CERTAINTY = 10.0  # degrees of freedom of the plots' stated noise, for the legs
+OLD = 0.01  # least probability of the leg that began first
+CHANGES_KEEP = 0.98  # share of the counted changes that is kept at a plot
 
 
 class Filters(NamedTuple):
     """A bank, built of its settings.
 
-    modes  all 21 with the three chains over them
+    modes  all 17 with the three chains over them
     base   the base IMM alone
-    start  [21]    mode probabilities of a track of one plot
+    start  [17]    mode probabilities of a track of one plot
     sides  [2, 9]  which of the nine modes turn right, and left
     mark   of the settings: weights belong to the filters that they were trained over
     """
@@ -136,8 +56,7 @@ class Filters(NamedTuple):
 
 def build(settings: BankSettings) -> Filters:
     """The bank with these settings."""
-    slow = _modes(settings.slow, (0,) * 4, (1,) * 4)
-    groups = (settings.base, settings.nine, slow, settings.second)
+    groups = (settings.base, settings.nine, settings.second)
     chains = [
         linear_modes.Chain(at, linear_modes.transition_power(modes.stay, modes.period, entered))
         for at, modes, entered in (
@@ -170,7 +89,7 @@ def _mark(settings: BankSettings) -> str:
         for modes in (settings.base, settings.nine, settings.second)
         for number in (*modes.noise, *modes.turn_rate, *modes.stay, modes.period)
     ]
-    numbers += [*settings.entered, *settings.slow, *settings.manoeuvre]
+    numbers += [*settings.entered, *settings.habits, *settings.manoeuvre]
     return hashlib.sha256(' '.join(f'{number:.9g}' for number in numbers).encode()).hexdigest()[:16]
 
 
@@ -181,8 +100,11 @@ class BankState(NamedTuple):
     """All filters' states.
 
     time           [N]         s, last plot
-    weight         [N, 21]     mode probabilities, summing to 1 in each IMM
-    rows           [N, 21, 14] means and packed covariances of the modes (`linear_modes`)
+    weight         [N, 17]     mode probabilities, summing to 1 in each IMM
+    rows           [N, 17, 14] means and packed covariances of the modes (`linear_modes`)
+    legs                       hypotheses about the target's last change (`leg_hypotheses`)
+    likely         [N, 14]     mean and packed covariance of the likely ones
+    changes        [N]         how often a manoeuvre was believed in lately, in plots
     cs_mean        [N, 6]      of CS-Kalman
     cs_covariance  [N, 6, 6]
     """
@@ -190,6 +112,9 @@ class BankState(NamedTuple):
     time: Array
     weight: Array
     rows: Array
+    legs: Legs
+    likely: Array
+    changes: Array
     cs_mean: Array
     cs_covariance: Array
 
@@ -199,7 +124,7 @@ class Ahead(NamedTuple):
 
     mean          [4, N]      of the base IMM: position m, velocity m/s
     experts       [4, 13, N]
-    weight        [21, N]     mode probabilities
+    weight        [17, N]     mode probabilities
     acceleration  [2, N]      m/s^2, of CS-Kalman
     """
 
@@ -220,8 +145,20 @@ def begin(
     rows[..., [4, 5, 8]] = linear_modes.packed_noise(plots.covariance).T[:, None]
     rows[..., 11:] = linear_modes.packed_noise(velocity.covariance).T[:, None]
     cs = cs_kalman.cs_kalman(bank.settings.manoeuvre, max_speed).init(plots, velocity)
+    legs = Legs(
+        rows[:, : 1 + leg_hypotheses.LEGS].copy(),
+        np.tile(leg_hypotheses.START, (count, 1)),
+        np.tile(plots.time[:, None], leg_hypotheses.LEGS),
+    )
     return BankState(
-        plots.time.copy(), np.tile(bank.start, (count, 1)), rows, cs.mean, cs.covariance
+        plots.time.copy(),
+        np.tile(bank.start, (count, 1)),
+        rows,
+        legs,
+        rows[:, 0].copy(),
+        np.zeros(count),
+        cs.mean,
+        cs.covariance,
     )
 
 
@@ -230,7 +167,7 @@ def look(bank: Filters, state: BankState, step: Array) -> Ahead:
     mean, weight = linear_modes.mix_means(bank.modes, state.rows[..., :4], state.weight, step)
     columns = linear_modes.move_means(bank.modes, linear_modes.columns_of(mean), step)
     cs = cs_kalman.predict_mean(state.cs_mean, step, bank.settings.manoeuvre)
-    return _ahead(bank, columns, np.ascontiguousarray(weight.T), cs)
+    return _ahead(bank, state, columns, np.ascontiguousarray(weight.T), cs, step)
 
 
 def base(bank: Filters, state: BankState, time: Array) -> Array:
@@ -241,7 +178,9 @@ def base(bank: Filters, state: BankState, time: Array) -> Array:
     return linear_modes.combine(columns, weight.T)
 
 
-def _ahead(bank: Filters, columns: Array, weight: Array, cs: Array) -> Ahead:
+def _ahead(
+    bank: Filters, state: BankState, columns: Array, weight: Array, cs: Array, step: Array
+) -> Ahead:
     mean = (columns[:, BASE] * weight[BASE]).sum(1)
     experts = np.empty((4, EXPERTS, len(cs)))
     experts[:, :4] = columns[:, BASE]
@@ -249,17 +188,35 @@ def _ahead(bank: Filters, columns: Array, weight: Array, cs: Array) -> Ahead:
     for k in (0, 1):
         side = weight[RICH] * bank.sides[k][:, None]
         experts[:, 5 + k] = (columns[:, RICH] * (side / side.sum(0))).sum(1)
-    experts[:, 7:11] = columns[:, SLOW]
+    experts[:, LEG_EXPERTS] = _legs_ahead(state, step)
     experts[:, CS] = cs[:, cs_kalman.POSITION_VELOCITY].T
     experts[:, SECOND_IMM] = (columns[:, SECOND] * weight[SECOND]).sum(1)
     return Ahead(mean, experts, weight, cs[:, [2, 5]].T)
+
+
+def _legs_ahead(state: BankState, step: Array) -> Array:
+    """The experts [4, 4, N] of the legs as they were after the last plot, straight on."""
+    mean, weight = state.legs.rows[..., :4], state.legs.weight[:, 1:]
+    row = np.arange(len(mean))
+    first = np.where(weight > OLD, state.legs.begun, np.inf).argmin(1)
+    found = np.stack(
+        [
+            state.likely[:, :4].T,
+            mean[row, 1 + weight.argmax(1)].T,
+            mean[row, 1 + first].T,
+            mean[:, 0].T,
+        ],
+        1,
+    )
+    found[:2] += step * found[2:]
+    return found
 
 
 class Expected(NamedTuple):
     """The filters just before a plot, and how well it fits.
 
     ahead    what they expect at the plot's time
-    columns  [14, 21, N]  the modes
+    columns  [14, 17, N]  the modes
     cs       CS-Kalman's mean [N, 6] and covariance [N, 6, 6]
     nis      [N]  squared Mahalanobis distance of the plot by the base IMM
     """
@@ -281,10 +238,11 @@ def expect(bank: Filters, state: BankState, plots: Plots) -> Expected:
     _, nis, _ = linear_modes.innovate(
         mixture, plots.position.T, linear_modes.packed_noise(plots.covariance)
     )
-    return Expected(_ahead(bank, columns[:4], weight, cs[0]), columns, cs, nis)
+    ahead = _ahead(bank, state, columns[:4], weight, cs[0], step)
+    return Expected(ahead, columns, cs, nis)
 
 
-def correct(bank: Filters, expected: Expected, plots: Plots) -> BankState:
+def correct(bank: Filters, state: BankState, expected: Expected, plots: Plots) -> BankState:
     """The filters after the plots that `expect` was given."""
     columns, score = linear_modes.correct(
         expected.columns, plots.position.T, linear_modes.packed_noise(plots.covariance)
@@ -300,6 +258,23 @@ def correct(bank: Filters, expected: Expected, plots: Plots) -> BankState:
         plots.covariance,
         cs_kalman.POSITION,
     )
+    legs, likely = leg_hypotheses.update(
+        state.legs,
+        plots.time,
+        plots.time - state.time,
+        plots.position,
+        plots.covariance,
+        None,
+        CERTAINTY,
+        bank.settings.habits,
+    )
     return BankState(
-        plots.time, np.ascontiguousarray(weight.T), linear_modes.rows_of(columns), mean, covariance
+        plots.time,
+        np.ascontiguousarray(weight.T),
+        linear_modes.rows_of(columns),
+        legs,
+        likely,
+        CHANGES_KEEP * state.changes + legs.weight[:, 0],
+        mean,
+        covariance,
     )

@@ -27,7 +27,7 @@ from . import bank as filters
 from . import monitor as monitors
 from .bank import BankState, Expected
 from .inputs import ResidualMemory
-from .monitor import EXPECTED, FALLBACK, GWNN, TRUST, WARM, Monitor, Trust, judge
+from .monitor import FALLBACK, GWNN, TRUST, WARM, Monitor, Trust, judge
 
 GATE, REFUSALS = 16.0, 2  # squared distance from the base; largest number of plots refused in a row
 SETTLED = 10  # plots before any is refused
@@ -121,7 +121,7 @@ def advance(
     """
     expected = filters.expect(bank, state, plots)
     used = ~((expected.nis > GATE) & (memory.refused < REFUSALS) & (memory.plots >= SETTLED))
-    after = filters.correct(bank, expected, plots)
+    after = filters.correct(bank, state, expected, plots)
     if not used.all():
         after = where(used, after, state)
     memory = inputs.remember(memory, expected, plots, plots.time - state.time, used)
@@ -178,19 +178,10 @@ def gwnn(
 
     def init(plots: Plots, velocity: Velocity | None = None) -> GwnnState:
         count = len(plots.time)
-        zero = np.zeros(count)
-        monitor = Monitor(
-            zero,
-            zero + EXPECTED,
-            zero + EXPECTED,
-            np.full((count, 2), EXPECTED),
-            zero.copy(),
-            zero.copy(),
-        )
         return GwnnState(
             filters.begin(bank, plots, max_speed, velocity),
             inputs.begin(plots),
-            monitor,
+            monitors.begin(count),
             np.zeros((count, OUTPUTS + SPREADS)),
             adaptation.begin(count, weights.fusion, learning),
         )
@@ -237,7 +228,9 @@ def gwnn(
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state: GwnnState, plots: Plots, rows: IntArray) -> GwnnState:
-        before = take(state, rows)
+        # If all rows had a plot, there is no need to copy them out and in again.
+        whole = len(rows) == len(state.output) and bool((rows[1:] > rows[:-1]).all())
+        before = state if whole else take(state, rows)
         frame = before.memory.frame
         after, memory, expected = advance(bank, before.bank, before.memory, plots)
         at = look(before.bank, frame, expected.ahead, plots.time)
@@ -255,11 +248,9 @@ def gwnn(
                 adapted, residual, at.scans, np.where(sound[:, None, None], units, 0.0)
             )
         monitor = judge(before.monitor, plots, expected.ahead, shift, memory, wrong, trust)
-        return put(
-            state,
-            rows,
-            GwnnState(after, memory, monitor, np.where(sound[:, None], output, 0.0), adapted),
-        )
+        output = np.where(sound[:, None], output, 0.0)
+        updated = GwnnState(after, memory, monitor, output, adapted)
+        return updated if whole else put(state, rows, updated)
 
     return Estimator(init, extrapolate, update, account)
 

@@ -12,53 +12,56 @@ import numpy as np
 from ...gaussian import linear_modes
 from ...types import Array, BoolArray, Plots
 from . import bank as filters
+from .bank_settings import PERIOD
 
-SCAN = filters.PERIOD  # s; the unit of time of every input, for any period of the radar
+SCAN = PERIOD  # s; the unit of time of every input, for any period of the radar
 VELOCITY = 4 * SCAN  # s
 VAGUER = 1.5  # times; sigma grows by no more from plot to plot: a plot shared
 # by several targets may be as vague as it likes
 TELLS = 100.0  # times; a plot still vaguer is no plot to count
 FARTHEST = 25.0  # sigma; larger distances of experts from the base are cut to this
 MEMORIES = (2.0, 5.0, 12.0)  # plots over which the base's innovations are averaged
-SLOW_KEEP = (0.6, 0.85)  # share of the slow filters' mean innovations that is kept at a plot
+LEGS_KEEP = (0.6, 0.85)  # share of the legs' mean innovations that is kept at a plot
 NIS_KEEP = (0.8, 0.95)
 WORST = 25.0  # largest squared residual that counts
 DETAIL_KEEP = 0.96
 DETAIL_SCALE = float(np.sqrt(np.pi / 2))  # makes the mean size of a unit normal 1
-TRENDS = len(MEMORIES) + len(SLOW_KEEP) * 4
+TRENDS = len(MEMORIES) + len(LEGS_KEEP) * 4
 # Experts whose residuals are kept in addition to the base's.
-JUDGED = (4, filters.CS, filters.SECOND_IMM)
+JUDGED = (4, 7, filters.CS, filters.SECOND_IMM)
+LEGS_TELL = 8  # what the legs say of themselves: `_legs`
 LONE = (0, 1, 4, 7, 8, 9, 10, 11, 12)  # experts without a mirror image
 
 # How each block of inputs changes with the axes: vector; vector that also changes sign when the
 # picture is mirrored; pair without signs; number; number that changes sign when mirrored.
 V, PV, E, S, P = 'vector', 'pseudovector', 'even pair', 'scalar', 'pseudoscalar'
-KINDS = (
-    (V,) * 2 * len(LONE)
-    + (V, PV) * 4
-    + (S, S, S, P)
-    + (S, S, S)
-    + (S, P) * 3
-    + (S, S, S, P)
-    + (E,) * 3
-    + (V,) * TRENDS
-    + (S, S)
-    + (S,) * 2 * (1 + len(JUDGED))
-    + (E,)
-    + (V, E, V)
-    + (S,) * 3
+_LEGS = range(filters.LEG_EXPERTS.start, filters.LEG_EXPERTS.stop)
+_BLOCKS = (
+    [(V, expert in _LEGS) for expert in LONE for _ in range(2)]
+    + [(kind, False) for kind in (V, PV) * 4]
+    + [(kind, False) for kind in (S, S, S, P) + (S, S, S) + (S, P) * 3 + (S, S, S, P)]
+    + [(S, True)] * LEGS_TELL
+    + [(E, False)] * 3
+    + [(E, True)] * 2
+    + [(V, trend >= len(MEMORIES)) for trend in range(TRENDS)]
+    + [(S, False)] * 2
+    + [(S, expert in _LEGS) for _ in NIS_KEEP for expert in (None, *JUDGED)]
+    + [(kind, False) for kind in (E, V, E, V) + (S,) * 3]
 )
+KINDS = tuple(kind for kind, _ in _BLOCKS)
 COUNT = sum(1 if kind in (S, P) else 2 for kind in KINDS)
-_KEEP = np.array([1 - 1 / m for m in MEMORIES] + [keep for keep in SLOW_KEEP for _ in range(4)])
+# [COUNT] whether an input tells of the legs.
+OF_LEGS = np.array([legs for kind, legs in _BLOCKS for _ in range(1 if kind in (S, P) else 2)])
+_KEEP = np.array([1 - 1 / m for m in MEMORIES] + [keep for keep in LEGS_KEEP for _ in range(4)])
 
 
 class ResidualMemory(NamedTuple):
     """What is kept of the plots beside the filters.
 
     frame     [N, 4]      unit vector east and north to the last plot; its sigma along, across, m
-    trend     [N, 11, 2]  averaged innovations, sigma: the base's, then the slow filters'
+    trend     [N, 11, 2]  averaged innovations, sigma: the base's, then the legs'
     nis       [N, 2]      averaged squared distances of the plots from the base
-    fit       [N, 2, 4]   averaged squared residuals, sigma^2, of the base and the experts JUDGED
+    fit       [N, 2, 5]   averaged squared residuals, sigma^2, of the base and the experts JUDGED
     detail    [N, 2]      deviation of the plots as their own differences tell it, over the
                           stated one: level 1 of a Haar decomposition of the innovations
     last      [N, 2]      innovation of the last plot, sigma
@@ -158,11 +161,10 @@ def remember(
     frame[:, 2:] = np.minimum(frame[:, 2:], VAGUER * memory.frame[:, 2:])
     sigma = frame[:, 2:].T
     off = turn(frame, plots.position.T - expected.ahead.mean[:2]) / sigma  # [2, N]
-    slow = (
-        turn(frame, plots.position.T[:, None] - expected.columns[:2, filters.SLOW]) / sigma[:, None]
-    )  # [2, 4, N]
+    legs = expected.ahead.experts[:2, filters.LEG_EXPERTS]
+    slow = turn(frame, plots.position.T[:, None] - legs) / sigma[:, None]  # [2, 4, N]
     new = np.concatenate(
-        [np.repeat(off[:, None], len(MEMORIES), 1)] + [slow] * len(SLOW_KEEP), 1
+        [np.repeat(off[:, None], len(MEMORIES), 1)] + [slow] * len(LEGS_KEEP), 1
     ).transpose(2, 1, 0)
     keep = _KEEP[:, None]
     trend = keep * memory.trend + (1 - keep) * np.minimum(np.maximum(new, -8.0), 8.0)
@@ -211,14 +213,18 @@ def inputs(
     blocks.append(_modes(weight[filters.RICH], 3))
     blocks.append(_modes(weight[filters.SECOND], 2))
 
+    blocks.append(_legs(state))
     columns = linear_modes.columns_of(state.rows[:, : filters.RICH.stop])
     posterior = state.weight.T
     base = linear_modes.combine(columns[:, filters.BASE], posterior[filters.BASE])
     rich = linear_modes.combine(columns[:, filters.RICH], posterior[filters.RICH])
+    legs = state.likely.T
     for spread, unit in (
         (base[[4, 5, 8]], sigma),
         (base[[11, 12, 13]], sigma / VELOCITY),
         (rich[[4, 5, 8]], sigma),
+        (legs[[4, 5, 8]], sigma),
+        (legs[[11, 12, 13]], sigma / VELOCITY),
     ):
         blocks.append(0.5 * np.log(_along_across(frame, spread) / (unit * unit) + 1e-6))
     blocks.append(np.arcsinh(memory.trend).transpose(1, 2, 0).reshape(2 * TRENDS, -1))
@@ -248,6 +254,28 @@ def _modes(weight: Array, straight: int) -> Array:
         right, left = weight[k], weight[k + 1]
         blocks.append(np.stack([np.log(right + left + 1e-4), right - left]))
     return np.concatenate(blocks)
+
+
+def _legs(state: filters.BankState) -> Array:
+    """What the legs say of themselves [LEGS_TELL, N].
+
+    The logarithms of: the probability of a manoeuvre; that of each leg, the one that began first
+    first; the mean age of the legs in scans; that of the likeliest leg; the changes believed in
+    lately.
+    """
+    weight, begun = state.legs.weight, state.legs.begun
+    legs = weight[:, 1:]
+    order = np.argsort(np.where(legs > 1e-9, begun, np.inf), 1)
+    age = (state.time[:, None] - begun) / SCAN
+    mean = (legs * age).sum(1) / legs.sum(1)
+    likeliest = np.take_along_axis(age, legs.argmax(1)[:, None], 1)[:, 0]
+    return np.concatenate(
+        [
+            np.log(weight[:, :1] + 1e-4).T,
+            np.log(np.take_along_axis(legs, order, 1) + 1e-4).T,
+            np.log1p(np.maximum(np.stack([mean, likeliest, state.changes]), 0.0)),
+        ]
+    )
 
 
 def _along_across(frame: Array, spread: Array) -> Array:

@@ -2,8 +2,9 @@
 
 J is the mean squared residual of a filter's expectations, in the plots' own sigmas, over about the
 last twelve plots. A track falls back on CS-Kalman when the J of its network exceeds that of
-CS-Kalman by more than `Trust.fall`, or when the network's output is not a number. It returns when
-the network has been better often enough in a row.
+CS-Kalman by more than `Trust.fall`, or that of the base IMM, which the network only corrects, by
+more than `Trust.excess`, or when the network's output is not a number. It returns when the network
+has been better than CS-Kalman, and not worse than the base, often enough in a row.
 """
 
 from typing import NamedTuple
@@ -26,18 +27,23 @@ REASONS = (
     'expectations worse than those of CS-Kalman',
     'network output is not a number',
     'network output out of all proportion',
+    'expectations worse than those of its own filters',
 )
+OWN_FILTERS = 4.0  # the last of these
 
 
 class Trust(NamedTuple):
     """When a track falls back on CS-Kalman, and when it returns to the network.
 
-    fall   J of the network over J of CS-Kalman above which the track falls back
-    back   the same of the last few plots, below which the network counts as the better one
-    times  plots in a row at which it must be the better one to be heard again
+    fall    J of the network over J of CS-Kalman above which the track falls back
+    excess  J of the network less J of the base above which it falls back, sigma^2
+    back    J of the network over J of CS-Kalman of the last few plots, below which the network
+            counts as the better one, if it is not above the base's by half the excess either
+    times   plots in a row at which it must be the better one to be heard again
     """
 
-    fall: float = 1.6
+    fall: float = 2.0
+    excess: float = 3.0
     back: float = 1.0
     times: int = 3
 
@@ -51,7 +57,8 @@ class Monitor(NamedTuple):
     status      WARMUP, GWNN or FALLBACK
     network     J of the network, used or not: mean squared residual of its expectations, sigma^2
     cs          J of CS-Kalman
-    lately      both again, [N, 2], over fewer plots
+    base        J of the base IMM
+    lately      all three again, [N, 3], over fewer plots
     better      plots in a row at which an unused network was the better one
     reason      of FALLBACK: index into REASONS
     """
@@ -59,9 +66,17 @@ class Monitor(NamedTuple):
     status: Array
     network: Array
     cs: Array
+    base: Array
     lately: Array
     better: Array
     reason: Array
+
+
+def begin(count: int) -> Monitor:
+    """Monitors of new tracks."""
+    zero, usual = np.zeros(count), np.full(count, EXPECTED)
+    lately = np.full((count, 3), EXPECTED)
+    return Monitor(zero, usual, usual, usual, lately, zero, zero)
 
 
 def account(monitor: Monitor) -> Account:
@@ -98,25 +113,35 @@ def judge(
         return np.where(size < WORST, size, WORST)  # nan counts as worst
 
     speaking = memory.plots > WARM  # before, its output was still empty
-    residuals = np.stack(
-        [residual(ahead.mean[:2] + shift[:2]), residual(ahead.experts[:2, filters.CS])], 1
-    )
+    base = ahead.mean[:2]
+    places = base + shift[:2], ahead.experts[:2, filters.CS], base
+    residuals = np.stack([residual(place) for place in places], 1)
 
     def averaged(j: Array, keep: float) -> Array:
         return np.where(speaking[:, None], keep * j + (1 - keep) * residuals, j)
 
-    network, cs = averaged(np.stack([monitor.network, monitor.cs], 1), KEEP).T
+    network, cs, own = averaged(np.stack([monitor.network, monitor.cs, monitor.base], 1), KEEP).T
     lately = averaged(monitor.lately, KEEP_LATELY)
     rho = network / cs
     sound = wrong == 0
     fallen = monitor.status == FALLBACK
-    ahead_of_cs = sound & (lately[:, 0] < trust.back * lately[:, 1])
-    better = np.where(fallen & ahead_of_cs, monitor.better + 1, 0.0)
-    away = np.where(fallen, better < trust.times, rho > trust.fall) | ~sound
+    off = network - own > trust.excess
+    fit = sound & (lately[:, 0] < trust.back * lately[:, 1])
+    fit &= lately[:, 0] < lately[:, 2] + 0.5 * trust.excess
+    better = np.where(fallen & fit, monitor.better + 1, 0.0)
+    away = np.where(fallen, better < trust.times, (rho > trust.fall) | off) | ~sound
     status = np.where(memory.plots < WARM, WARMUP, np.where(away, FALLBACK, GWNN))
     reason = np.where(
         status != FALLBACK,
         0.0,
-        np.where(~sound, wrong, np.where(fallen, np.maximum(monitor.reason, 1.0), 1.0)),
+        np.where(
+            ~sound,
+            wrong,
+            np.where(
+                fallen,
+                np.maximum(monitor.reason, 1.0),
+                np.where(rho > trust.fall, 1.0, OWN_FILTERS),
+            ),
+        ),
     )
-    return Monitor(status, network, cs, lately, better, reason)
+    return Monitor(status, network, cs, own, lately, better, reason)

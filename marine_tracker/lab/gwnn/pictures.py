@@ -5,19 +5,17 @@ from typing import Any
 
 from ...evaluation.result import Picture
 from .figures import SHIPPED, Findings, fair_cells
-from .trials import HELD_OUT, OWN, TANH, Cell
+from .trials import HELD_OUT, MANOEUVRE, OWN, Cell, is_stranger
 
 # Colours of Okabe and Ito, safe for colour-blind readers; the markers differ too. OWN is drawn
 # last.
 STYLES = {
     'CS': ('x', '#000000', 'current statistical model (tuned)'),
     'CV/CV': ('D', '#cc79a7', 'IMM of two constant velocities (tuned)'),
-    'IMM for manoeuvre': ('s', '#e69f00', 'IMM tuned for manoeuvre'),
+    MANOEUVRE: ('s', '#e69f00', 'IMM tuned for manoeuvre'),
     SHIPPED: ('^', '#009e73', '`imm` as shipped'),
-    TANH: ('o', '#56b4e9', 'GWNN with plain tanh units'),
     OWN: ('o', '#0072b2', 'GWNN'),
 }
-LEFT_OUT = {'ship': SHIPPED, 'small_craft': TANH}  # keeps the picture readable
 LEAST, MOST = 0.8, 1.6  # ratio; larger values are written as a number at the edge
 LINE = 0.16  # rows between two estimators
 
@@ -41,9 +39,11 @@ def compare(figure: Any, cells: list[Cell], title: str) -> None:
     """Rows of cells: straight courses, manoeuvres, then kinds of motion outside the training."""
     groups: dict[str, list[Cell]] = {'straight': [], 'manoeuvre': [], 'never trained on': []}
     for cell in cells:
-        groups['never trained on' if cell.kind in HELD_OUT else cell.phase].append(cell)
+        new = cell.kind in HELD_OUT or is_stranger(cell.vessel_class, cell.kind)
+        groups['never trained on' if new else cell.phase].append(cell)
     rows = [cell for group in groups.values() for cell in group]
-    shown = [name for name in STYLES if name != LEFT_OUT[cells[0].vessel_class]]
+    ships = cells[0].vessel_class == 'ship'  # for whom one rival less keeps the picture readable
+    shown = [name for name in STYLES if name != SHIPPED or not ships]
     least = min([LEAST] + [0.97 * cell.position[name].value for cell in rows for name in shown])
     axes = figure.add_subplot(xscale='log', xlim=(least, MOST), ylim=(len(rows) - 0.5, -0.5))
     for row, cell in enumerate(rows):
@@ -80,16 +80,7 @@ def compare(figure: Any, cells: list[Cell], title: str) -> None:
     axes.set_axisbelow(True)
     for name in reversed(shown):
         mark, colour, text = STYLES[name]
-        axes.plot(
-            [],
-            [],
-            mark,
-            color=colour,
-            markersize=_size(name),
-            linestyle='',
-            markerfacecolor='white' if name == TANH else colour,
-            label=text,
-        )
+        axes.plot([], [], mark, color=colour, markersize=_size(name), linestyle='', label=text)
     axes.plot([], [], color='0.35', linewidth=1, label='1: IMM tuned on all kinds of motion')
     figure.legend(
         loc='outside upper left',
@@ -121,11 +112,4 @@ def _mark(axes, y: float, name: str, ratio) -> None:
         )
         return
     axes.plot([ratio.low, ratio.high], [y, y], color=colour, linewidth=1.2)
-    axes.plot(
-        ratio.value,
-        y,
-        mark,
-        color=colour,
-        markersize=_size(name),
-        markerfacecolor='white' if name == TANH else colour,
-    )
+    axes.plot(ratio.value, y, mark, color=colour, markersize=_size(name))

@@ -11,16 +11,15 @@ import numpy as np
 
 from ...estimators import cs_kalman, imm
 from ...estimators.contract import Estimator
-from ...estimators.gwnn import bank, gwnn, monitor
-from ...estimators.imm import Modes
+from ...estimators.gwnn import bank_settings, gwnn, monitor
 from ...geometry import unit_vector
 from ...networks import gwnn_weights
-from ...training import ship_tracks, track_trials
+from ...training import ship_tracks, track_trials, training_tracks
 from ...training.track_trials import Ratio
 from ...training.training_tracks import WATERS
 from ...training.tuned import TUNED
 from ...types import take
-from . import held_out_tracks
+from . import held_out_tracks, strangers
 
 SCANS = 150
 SPEED = 25.0  # m/s, maximum target speed given to every estimator
@@ -33,9 +32,12 @@ HELD_OUT = {
     'AIS': held_out_tracks.real_ships,
     'boat': held_out_tracks.recorded_boats,
 }
-# The network; the network with plain units; with its monitor switched off; the reference of all
-# ratios.
-OWN, TANH, ALONE, IMM = 'GWNN', 'tanh units', 'never falling back', 'IMM'
+# The network; with its monitor switched off; the reference of all ratios.
+OWN, ALONE, IMM = 'GWNN', 'never falling back', 'IMM'
+MANOEUVRE, LINE = 'IMM for manoeuvre', 'straight line'
+# Kinds whose ships never change course nor speed: a fit to all plots is the best there can be.
+STRAIGHT_KINDS = ('steady', 'still')
+NEARLY_NONE = 1e-9  # m^2/s^3, density of the acceleration in that fit
 
 
 class Conditions(NamedTuple):
@@ -83,20 +85,15 @@ FLEETS = {
 }
 
 
-# Result of a short search: 75 evaluations on ships. Compared with the strongest IMM it shows how
-# much the tuning is worth.
-BRIEFLY = 'IMM tuned in brief'
-IN_BRIEF = Modes(
-    tuple(bank.PERIOD * a * a for a in (0.0010256, 0.79201, 0.014074, 0.014074)),
-    (0, 0, 0.020922, -0.020922),
-    (0.99797, 0.78744, 0.78744, 0.78744),
-    bank.PERIOD,
-)
-
-
 def kinds(vessel_class: str) -> tuple[str, ...]:
-    """All kinds of motion that a vessel class is judged on."""
-    return *WATERS[vessel_class].kinds, *FLEETS[vessel_class].held_out
+    """All kinds of motion that a vessel class is judged on; strangers last."""
+    own = *WATERS[vessel_class].names, *FLEETS[vessel_class].held_out
+    return own + (tuple(strangers.CRAFT) if vessel_class == 'ship' else ())
+
+
+def is_stranger(vessel_class: str, kind: str) -> bool:
+    """Whether ships of this kind come from the independent simulation."""
+    return vessel_class == 'ship' and kind in strangers.CRAFT
 
 
 def trial(
@@ -113,7 +110,10 @@ def trial(
     steps = period * (1 + radar.jitter * np.clip(rng.standard_normal((2 * runs, SCANS)), -3, 3))
     low, high = np.log(fleet.ranges)
     ranges = np.exp(rng.uniform(low, high, 2 * runs))
-    if kind in HELD_OUT:
+    hull = np.zeros(2 * runs)
+    if is_stranger(vessel_class, kind):
+        ships = strangers.sail(kind, steps, rng)
+    elif kind in HELD_OUT:
         ships = HELD_OUT[kind](_file(data, kind), steps, rng)
         if kind in RECORDED:  # recorded tracks may lie anywhere: move them to where the others are
             away = ranges[:, None] * unit_vector(rng.uniform(0, 2 * np.pi, 2 * runs))
@@ -121,11 +121,14 @@ def trial(
                 position=ships.position + (away - ships.position[:, SCANS // 2])[:, None]
             )
     else:
-        ships = ship_tracks.sail(
-            [kind] * 2 * runs, ranges, steps, rng, kinds=WATERS[vessel_class].kinds
+        waters = WATERS[vessel_class]
+        number = np.full(2 * runs, waters.names.index(kind))
+        ships, hull = training_tracks.sail(
+            waters, number, ranges, steps, rng, np.full(2 * runs, np.inf)
         )
     nearest = np.hypot(*np.moveaxis(ships.position, -1, 0)).min(1)
-    ships = take(ships, np.flatnonzero(nearest > fleet.nearest)[:runs])
+    keep = np.flatnonzero(nearest > fleet.nearest)[:runs]
+    ships, hull = take(ships, keep), hull[keep]
     every = np.ones(len(ships.time))
     return track_trials.trial(
         ships,
@@ -138,6 +141,7 @@ def trial(
             period * every,
         ),
         rng,
+        hull if hull.any() else None,
     )
 
 
@@ -150,27 +154,33 @@ def _file(data, kind) -> Path | None:
     return data / file
 
 
-def rivals(vessel_class: str) -> dict[str, Estimator]:
-    """The filters to compare the network with. The IMM is tuned on the tracks of the network's
-    training.
+def rivals(vessel_class: str, kind: str) -> dict[str, Estimator]:
+    """The filters to compare the network with.
+
+    The IMMs are tuned on the tracks of the network's training; for ships of the independent
+    simulation, on tracks of that.
     """
-    best, tuned = bank.STRONGEST[vessel_class], TUNED[vessel_class]
-    brief = {BRIEFLY: imm.imm(IN_BRIEF, SPEED)} if vessel_class == 'ship' else {}
+    tuned = TUNED[vessel_class]
+    best = (
+        strangers.TUNED
+        if is_stranger(vessel_class, kind)
+        else bank_settings.STRONGEST[vessel_class]
+    )
+    line = imm.Modes((NEARLY_NONE,), (0.0,), (1.0,), bank_settings.PERIOD)
     return {
         IMM: imm.imm(best['training'], SPEED),
-        **brief,
-        'IMM for manoeuvre': imm.imm(best['manoeuvre'], SPEED),
+        MANOEUVRE: imm.imm(best['manoeuvre'], SPEED),
         'IMM as shipped': imm.imm(imm.PRESETS[vessel_class], SPEED),
         'CV/CV': imm.imm(tuned.cv_cv, SPEED),
-        'CV': imm.imm(tuned.cv, SPEED),
         'CS': cs_kalman.cs_kalman(tuned.cs, SPEED),
         'CS of the fallback': fallback(vessel_class),
+        **({LINE: imm.imm(line, SPEED)} if kind in STRAIGHT_KINDS else {}),
     }
 
 
 def fallback(vessel_class: str) -> Estimator:
     """What `gwnn` falls back to."""
-    return cs_kalman.cs_kalman(bank.SETTINGS[vessel_class].manoeuvre, SPEED)
+    return cs_kalman.cs_kalman(bank_settings.SETTINGS[vessel_class].manoeuvre, SPEED)
 
 
 def network(
@@ -186,8 +196,10 @@ class Cell(NamedTuple):
     rms       position RMS in sigma, by estimator
     position  ratio of position RMS to the IMM's, for every other estimator; velocity likewise
     over      ratio of the network's position RMS to each other estimator's
-    nis       mean NIS of the network
+    faster    likewise of the velocity, to those it is to be compared with
+    nis       mean NIS of the network; nees: mean NEES over its degrees of freedom, 1 in theory
     idle      share of the scans in fallback
+    scans     their number
     """
 
     vessel_class: str
@@ -197,8 +209,11 @@ class Cell(NamedTuple):
     position: dict[str, Ratio]
     velocity: dict[str, Ratio]
     over: dict[str, Ratio]
+    faster: dict[str, Ratio]
     nis: float
+    nees: float
     idle: float
+    scans: int
 
 
 def cells(
@@ -208,12 +223,9 @@ def cells(
     radar: Conditions,
     seed: int,
     data: Path | None,
-    weights: dict[str, gwnn_weights.Weights],
+    weights: gwnn_weights.Weights,
 ) -> list[Cell]:
-    """Both phases of one kind of motion.
-
-    weights  of the network, OWN, and of other networks to compare with it
-    """
+    """Both phases of one kind of motion, with these weights of the network."""
     rng = np.random.default_rng(seed)
     on = trial(vessel_class, kind, runs, radar, rng, data)
     period = 60 / radar.rpm
@@ -222,22 +234,13 @@ def cells(
     def watch(k, state):
         fallen[:, k] = state.monitor.status == monitor.FALLBACK
 
-    outcomes = {
-        OWN: track_trials.run(network(vessel_class, weights[OWN], period), on, False, watch)
-    }
+    outcomes = {OWN: track_trials.run(network(vessel_class, weights, period), on, False, watch)}
     outcomes[ALONE] = track_trials.run(
-        network(vessel_class, weights[OWN], period, trust=monitor.Trust(fall=np.inf)),
-        on,
-        gated=False,
+        network(vessel_class, weights, period, trust=monitor.Trust(np.inf, np.inf)), on, gated=False
     )
-    for name in weights:
-        if name != OWN:
-            outcomes[name] = track_trials.run(
-                network(vessel_class, weights[name], period), on, gated=False
-            )
     outcomes |= {
         name: track_trials.run(rival, on, gated=True)
-        for name, rival in rivals(vessel_class).items()
+        for name, rival in rivals(vessel_class, kind).items()
     }
     found = []
     for phase, within in (('straight', ~on.phase), ('manoeuvre', on.phase)):
@@ -262,8 +265,15 @@ def cells(
                 {name: ratio(name, IMM, 'position') for name in outcomes if name != IMM},
                 {name: ratio(name, IMM, 'velocity') for name in outcomes if name != IMM},
                 {name: ratio(OWN, name, 'position') for name in outcomes if name != OWN},
+                {
+                    name: ratio(OWN, name, 'velocity')
+                    for name in (MANOEUVRE, LINE)
+                    if name in outcomes
+                },
                 float(outcomes[OWN].nis[chosen & on.seen].mean()),
+                float(outcomes[OWN].nees[chosen].mean()),
                 float(fallen[chosen].mean()),
+                int(chosen.sum()),
             )
         )
     return found

@@ -13,7 +13,7 @@ from ...parameters import TrackerParameters, VideoParameters, from_mapping
 from ...recording import spokes_file
 from ...service import Service
 from ...tracking.lifecycle import COASTING, CONFIRMED
-from ...types import Array
+from ...types import Array, PolarPlots
 from ...video import chain, picture
 
 SIZE = 900  # pixels
@@ -25,7 +25,8 @@ DEFAULT_BEAM = 2.0
 
 class Recorded(NamedTuple):
     """name; shown [SIZE, SIZE] north up to `reach` m; plots [M, 2] m of the last scan; tracks
-    [N, 2] m with velocity [N, 2] m/s; plots a scan, confirmed moving targets alive, on average."""
+    [N, 2] m with velocity [N, 2] m/s; plots a scan, confirmed moving targets alive, on average;
+    plots of every scan."""
 
     name: str
     shown: NDArray[np.uint8]
@@ -35,6 +36,7 @@ class Recorded(NamedTuple):
     velocity: Array
     mean_plots: float
     mean_moving: float
+    every: list[PolarPlots]
 
 
 def follow(path: Path) -> Recorded:
@@ -47,6 +49,7 @@ def follow(path: Path) -> Recorded:
     extraction = chain.Chain(parameters)
     known, polar = extraction.start(), picture.start()
     counts: list[tuple[int, int]] = []
+    every: list[PolarPlots] = []
     last = np.empty((0, 2))
     for sweep in spokes_file.sweeps(video):
         times = sweep.time[np.isfinite(sweep.time)]
@@ -58,6 +61,7 @@ def follow(path: Path) -> Recorded:
             polar = picture.painted(polar, spokes)
         for scan in done.scans:
             memory, output = service.step(memory, scan)
+            every.append(scan.plots)
             status = output.report.tracks.status
             alive = (status == CONFIRMED) | (status == COASTING)
             speed = np.hypot(*output.estimate.velocity[alive].T)
@@ -78,6 +82,7 @@ def follow(path: Path) -> Recorded:
         output.estimate.velocity[alive],
         float(mean[0]),
         float(mean[1]),
+        every,
     )
 
 

@@ -22,7 +22,7 @@ from ...evaluation import parallel, report
 from ...evaluation.report import Figure
 from ...evaluation.result import Picture, Progress, Result, silent
 from ...types import Array
-from . import false_alarms, pictures, points, recorded, whole
+from . import false_alarms, matched, pictures, points, recorded, whole
 
 HELP = 'plots from radar video: false alarms, detection, accuracy, resolution, whole chain'
 RUNS = 40
@@ -96,6 +96,7 @@ def run(
         figures += [
             Figure(f'{one.name}: plots a revolution', one.mean_plots, ''),
             Figure(f'{one.name}: moving targets alive', one.mean_moving, ''),
+            *_matched(path.with_suffix('.nmea'), one),
         ]
         drawn.append(Picture(f'video_{one.name}', (8.0, 8.0), partial(recorded.paint, of=one)))
     return Result(figures, pictures=drawn)
@@ -207,6 +208,22 @@ def _whole(ours: whole.Held, theirs: whole.Held) -> list[Figure]:
     ):
         figures.append(Figure(f'{against}: {name}', value, unit, None, None, against))
     return figures
+
+
+def _matched(path: Path, one: recorded.Recorded) -> list[Figure]:
+    """The vessels that told AIS, where a file beside the recording tells them."""
+    if not path.exists():
+        return []
+    vessels = matched.read(path)
+    found = matched.match(vessels, one.every)
+    moving = found.near & found.moving
+    against = f'{found.moving.sum()} that tell AIS'
+    return [
+        Figure(f'{one.name}: moving vessels with a plot', moving.sum(), '', against=against),
+        Figure(f'{one.name}: the same at wrong bearings', found.by_chance, '', against=against),
+        Figure(f'{one.name}: range of plots off by', found.range, 'm'),
+        Figure(f'{one.name}: bearing of plots off by', math.degrees(found.bearing), 'deg'),
+    ]
 
 
 def _pictures(

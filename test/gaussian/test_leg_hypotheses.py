@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from marine_tracker.arpa import leg_hypotheses as legs
-from marine_tracker.arpa.leg_hypotheses import AT_FIRST, LEGS, STRAIGHT, Habits
+from marine_tracker.gaussian import leg_hypotheses as legs
+from marine_tracker.gaussian.leg_hypotheses import AT_FIRST, LEGS, STRAIGHT, Habits
 from marine_tracker.gaussian.linear_modes import unpack
 
 OBSERVE = np.eye(2, 4)

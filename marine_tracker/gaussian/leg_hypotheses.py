@@ -1,10 +1,11 @@
 """Straight-line fits from every likely beginning of the target's present leg, with weights.
 
-The best filter for predicting the next plot is not the best one for course, speed and CPA. That one
-must remember for minutes while a ship keeps its course, and must forget at once what was before a
-turn. If the end of the last turn were known, a straight-line fit to the plots since then would be
-optimal. It is not known. So several such fits run in parallel, with different beginnings, and with
-one filter for a target that manoeuvres. Their weights are their probabilities given the plots.
+Course, speed and CPA come from them (`arpa.motion`), and they are experts of the estimator `gwnn`.
+Such a filter must remember for minutes while a ship keeps its course, and must forget at once what
+was before a turn. If the end of the last turn were known, a straight-line fit to the plots since
+then would be optimal. It is not known. So several such fits run in parallel, with different
+beginnings, and with one filter for a target that manoeuvres. Their weights are their probabilities
+given the plots.
 
 The model: a target keeps course and speed for `hold` s on average, then manoeuvres (white
 acceleration) for `manoeuvre` s on average. Within a hypothesis about the last change, all is linear
@@ -21,13 +22,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..gaussian import linear_modes
 from ..types import Array
+from . import linear_modes
 
 LEGS = 4
 STRAIGHT = 1e-6  # m^2/s^3, density of acceleration on a straight leg: almost none
 AT_FIRST = 0.8  # probability that a new target is on a straight leg
 LEAST_SHOWN = 0.05  # less likely hypotheses are not shown
+START = np.array([1 - AT_FIRST, AT_FIRST] + [0.0] * (LEGS - 1))  # probabilities after one plot
 ONE, OTHER = np.triu_indices(LEGS + 1, 1)
 
 
@@ -68,9 +70,7 @@ def begin(position: Array, covariance: Array, time: Array, speed_sigma: float) -
     rows[..., :2] = position[:, None]
     rows[..., [4, 5, 8]] = linear_modes.packed_noise(covariance).T[:, None]
     rows[..., [11, 13]] = speed_sigma**2
-    weight = np.zeros((count, 1 + LEGS))
-    weight[:, 0], weight[:, 1] = 1 - AT_FIRST, AT_FIRST
-    return Legs(rows, weight, np.tile(time[:, None], LEGS))
+    return Legs(rows, np.tile(START, (count, 1)), np.tile(time[:, None], LEGS))
 
 
 def update(
@@ -79,8 +79,8 @@ def update(
     step: Array,
     position: Array,
     covariance: Array,
-    stretch: Array,
-    certainty: Array,
+    stretch: Array | None,
+    certainty: float | Array,
     habits: Habits,
 ) -> tuple[Legs, Array]:
     """Takes one plot for each of N tracks at `time` [N] s, `step` [N] s after the last one.
@@ -88,18 +88,19 @@ def update(
     position    [N, 2]     m
     covariance  [N, 2, 2]  m^2
     stretch     [N, 2, 2]  correction for the wrong deviations of all earlier plots: see
-    `plot_noise`
+                           `arpa.plot_noise`; None: they were right
     certainty   [N]        degrees of freedom of `covariance`: number of plots that it is based on
     Returns the hypotheses, and the mean and covariance [N, 14] of the likely ones.
     """
     columns = linear_modes.columns_of(legs.rows)
-    _stretch(columns, stretch)
+    if stretch is not None:
+        _stretch(columns, stretch)
     columns, weight, begun = _change(
         columns, legs.weight.T, legs.begun.T, time - step, np.abs(step), habits
     )
-    density = np.full(1 + LEGS, STRAIGHT)
+    density = np.full((1 + LEGS, 1), STRAIGHT)
     density[0] = habits.noise
-    columns = linear_modes.move(linear_modes.bank(density, np.zeros(1 + LEGS), ()), columns, step)
+    columns = linear_modes.move(linear_modes.straight(density), columns, step)
     noise = linear_modes.packed_noise(covariance)
     _, distance, (_, _, _, determinant) = linear_modes.innovate(columns, position.T, noise)
     columns, _ = linear_modes.correct(columns, position.T, noise)
@@ -107,15 +108,21 @@ def update(
     # wrong plot.
     score = -0.5 * (np.log(determinant) + (certainty + 2) * np.log1p(distance / certainty))
     weight = linear_modes.reweigh(weight, score)
-    likely = np.where(weight > LEAST_SHOWN, weight, 0.0)
     return (
         Legs(
             linear_modes.rows_of(columns),
             np.ascontiguousarray(weight.T),
             np.ascontiguousarray(begun.T),
         ),
-        linear_modes.combine(columns, likely / likely.sum(0)).T,
+        linear_modes.combine(columns, likely_weight(weight)).T,
     )
+
+
+def likely_weight(weight: Array) -> Array:
+    """Probabilities [1 + LEGS, N] without the unlikely hypotheses."""
+    likely = np.where(weight > LEAST_SHOWN, weight, 0.0)
+    found: Array = likely / likely.sum(0)
+    return found
 
 
 def _change(
