@@ -87,20 +87,21 @@ def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
     if clutter.scans < 2:  # a target's own first plot would make its small cell one of clutter
         return found
     area = scans * _AREA[row]
-    for plots, cells in ((_block(clutter.plots, row, sector), 9), (clutter.plots[cell], 1)):
+    for plots, cells in ((_block(clutter.plots)[cell], 9), (clutter.plots[cell], 1)):
         found = (scans * plots + WEIGHT) / (cells * area + WEIGHT / found)
     return found
 
 
-def _block(plots: Array, row: IntArray, sector: IntArray) -> Array:
-    """Sum [N] of the plots in each small cell and the eight around it."""
+def _block(plots: Array) -> Array:
+    """Sum [RINGS * SECTORS] of the plots in each small cell and the eight around it."""
     grid = plots.reshape(RINGS, SECTORS)
-    found = np.zeros(len(row))
-    for up in (-1, 0, 1):
-        ring = row + up
-        inside = (ring >= 0) & (ring < RINGS)
-        for aside in (-1, 0, 1):
-            found += inside * grid[ring % RINGS, (sector + aside) % SECTORS]
+    three = np.zeros((RINGS + 2, SECTORS))
+    three[1:-1] = grid
+    three[1:-1, 1:] += grid[:, :-1]
+    three[1:-1, :-1] += grid[:, 1:]
+    three[1:-1, 0] += grid[:, -1]
+    three[1:-1, -1] += grid[:, 0]
+    found: Array = (three[:-2] + three[1:-1] + three[2:]).ravel()
     return found
 
 
