@@ -7,6 +7,7 @@ import numpy as np
 from ...ais import join
 from ...evaluation import report
 from ...evaluation.report import Figure
+from ...geometry import unit_vector
 from ...types import Array
 from . import traffic
 from .tallies import SETTLED
@@ -14,11 +15,13 @@ from .traffic import Moment
 
 ESTIMATORS = ('gwnn', 'imm')
 LIAR = {'walk_mps': 5.0}
+LIES = 60.0  # s
 
 
 class Off(NamedTuple):
-    """Mean squares, m^2: of tracks without fusion, with it, and of AIS itself; and the deviations
-    by which a liar moved her track most beside the same without fusion."""
+    """Mean squares, m^2: of tracks without fusion, with it, and of AIS itself; and by how many
+    deviations a liar moved her track her way, beside the same without fusion: the mean of the first
+    LIES s, of the ship that moved it most."""
 
     alone: float
     fused: float
@@ -30,26 +33,27 @@ def of_scene(seed: int, estimator: str) -> Off:
     """One scene, honest, then with liars, each with fusion and without."""
     alone, fused = (_follow(seed, estimator, on, None) for on in (False, True))
     honest, lied = (_follow(seed, estimator, on, LIAR) for on in (False, True))
-    moved = [
-        float(np.hypot(*(lied[1][key][:2] - honest[1][key][:2])) / honest[1][key][2])
-        for key in set(lied[1]) & set(honest[1])
-    ]
+    moved: dict[int, list[float]] = {}
+    for scan, ship in set(lied[1]) & set(honest[1]):
+        of, beside = lied[1][scan, ship], honest[1][scan, ship]
+        moved.setdefault(ship, []).append(float((of[0] - beside[0]) / beside[1]))
     return Off(
         float(np.mean(alone[0][:, 0])),
         float(np.mean(fused[0][:, 0])),
         float(np.mean(fused[0][:, 1])),
-        max(moved, default=0.0),
+        max((float(np.mean(one)) for one in moved.values()), default=0.0),
     )
 
 
 def _follow(
     seed: int, estimator: str, fuse: bool, spoof: dict[str, float] | None
 ) -> tuple[Array, dict[tuple[int, int], Array]]:
-    """Squares [K, 2] m^2 of joined tracks and of AIS; place and deviation of liars' tracks by scan
-    and ship."""
+    """Squares [K, 2] m^2 of joined tracks and of AIS; of liars' tracks by scan and ship the place,
+    m along her way, and its deviation."""
     scene = traffic.scene(seed, minutes=5.0, spoof=spoof)
     assert scene.fleet.ais is not None
     begins = np.array([one.spoofed[0] for one in scene.fleet.ais.targets])
+    way = unit_vector(np.array([one.spoofed[3] for one in scene.fleet.ais.targets]))
     squares: list[tuple[float, float]] = []
     liars: dict[tuple[int, int], Array] = {}
     scans = [0]
@@ -63,9 +67,10 @@ def _follow(
         tracks, estimate = output.report.tracks, output.estimate
         place = estimate.position + (now - estimate.time)[:, None] * estimate.velocity
         for row, ship in enumerate(moment.ship.tolist()):
-            if ship > 0 and tracks.number[row] and now > begins[ship - 1]:
+            if ship > 0 and tracks.number[row] and 0 < now - begins[ship - 1] < LIES:
                 spread = np.sqrt(0.5 * np.trace(estimate.covariance[row, :2, :2]))
-                liars[scans[0], ship] = np.append(place[row], max(spread, 1.0))
+                along = float(place[row] @ way[ship - 1])
+                liars[scans[0], ship] = np.array([along, max(spread, 1.0)])
         whose = dict(zip(tracks.id.tolist(), range(len(tracks.id))))
         for k in (ships.joined.state == join.BOTH).nonzero()[0].tolist():
             ship = int(traffic.number_of(ships.ships.mmsi[k]))
