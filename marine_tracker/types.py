@@ -194,7 +194,7 @@ class Tracks(NamedTuple):
     number      [N]  the ARPA's target number, given at confirmation; 0 while tentative
     status      [N]  one of tracking.lifecycle.TENTATIVE, CONFIRMED, COASTING, LOST, STATIONARY
     history     [N]  bits: bit k tells whether the track had a plot k scans ago
-    score       [N]  log-odds that the plots come from a target and not from clutter
+    existence   [N]  probability that there is a target
     age         [N]  scans since its first plot in which the track could be seen
     first_time  [N]  s, first plot
     last_time   [N]  s, last plot
@@ -208,7 +208,7 @@ class Tracks(NamedTuple):
     number: IntArray
     status: CodeArray
     history: IntArray
-    score: Array
+    existence: Array
     age: IntArray
     first_time: Array
     last_time: Array

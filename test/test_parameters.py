@@ -57,7 +57,7 @@ def test_a_number_beyond_its_limits_is_refused_by_name_value_and_limit(kind, fie
 def test_the_limits_themselves_are_allowed():
     TrackerParameters(
         gate_probability=0.5,
-        max_score=100.0,
+        confirm_existence=0.999999,
         confirm_hits=2,
         confirm_scans=2,
         min_range_m=0.0,

@@ -11,7 +11,8 @@ import numpy as np
 from ..extent.land_map import LandMap, on_land
 from ..geometry import NAUTICAL_MILE
 from ..tracking import land_mask
-from ..tracking.lifecycle import LOST, REASONS, STATIONARY, TENTATIVE, hits
+from ..tracking.history import hits
+from ..tracking.lifecycle import LOST, REASONS, STATIONARY, TENTATIVE
 from ..tracking.tracker import Tracker, TrackerMemory
 from ..types import Array
 from . import zones
@@ -166,8 +167,11 @@ def _tentative(where: str, tracker: Tracker, memory: TrackerMemory, row: int) ->
     missing = []
     if had < p.confirm_hits:
         missing.append(f'{p.confirm_hits} in {p.confirm_scans} are needed')
-    if tracks.score[row] < p.confirm_score:
-        missing.append(f'its score is {tracks.score[row]:.1f}, {p.confirm_score:.1f} is needed')
+    if tracks.existence[row] < p.confirm_existence:
+        missing.append(
+            f'it is a target with probability {tracks.existence[row]:.3g}, '
+            f'{p.confirm_existence:g} is needed'
+        )
     return Reason('tentative', '; '.join([text, *missing]), True)
 
 

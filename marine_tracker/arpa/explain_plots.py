@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry import KNOT, NAUTICAL_MILE, to_range_bearing
-from ..tracking import clutter_map, score
+from ..tracking import surroundings
 from ..tracking.initiate import PAIRING_GATE
 from ..tracking.land_mask import on_land
 from ..tracking.lifecycle import TENTATIVE
@@ -217,20 +217,16 @@ def clutter(
         radar = seen.scan.radar
         p, noise = tracker.radars[radar], noise_of(tracker.radars[radar], seen.scan)
         away, bearing = to_range_bearing((there.position - antenna(seen.scan))[None])
-        density = clutter_map.density(memory.radars[radar].clutter, away, bearing)
+        known = memory.radars[radar].known
         sigma = np.array([noise.range_sigma, max(float(away[0]) * noise.bearing_sigma, 1.0)])
         log_det = np.log(2 * sigma**2 + 2 * noise.glint_sigma**2).sum()
-        gain = float(
-            score.evidence(np.array([2.0]), np.array([log_det]), density, p.detection_probability)[
-                0
-            ]
-        )
+        density, most = surroundings.prospects(known, away, bearing, log_det, p)
         a_scan = float(density[0]) * NAUTICAL_MILE**2
         text = f'false plots here{of_radar(arpa, radar)}: {a_scan:.2g} a scan and square mile'
-        most = max(gain, 0.0) * p.confirm_scans
-        if most < p.confirm_score:
+        hopeless = float(most[0]) < p.confirm_existence
+        if hopeless:
             text += (
-                f'; even {p.confirm_scans} plots in a row give a score of {most:.1f} only, '
-                f'{p.confirm_score:.1f} confirms'
+                f'; even {p.confirm_scans} plots in a row make a target no more probable than '
+                f'{most[0]:.2g}, {p.confirm_existence:g} confirms'
             )
-        yield Reason('clutter', text, most < p.confirm_score)
+        yield Reason('clutter', text, hopeless)

@@ -8,7 +8,7 @@ from ..estimators import Account, Estimator
 from ..extent.hull_clearance import hull_clearance
 from ..extent.hulls import Shapes
 from ..geometry import wrap_bearing
-from ..tracking import lifecycle
+from ..tracking import history, lifecycle
 from ..tracking.lifecycle import CONFIRMED
 from ..tracking.tracker import Report
 from ..types import Array, BoolArray, CodeArray, IntArray, take
@@ -101,8 +101,8 @@ def view(
         picture.harmless,
         np.isin(targets.id, alerts.id[active]),
         picture.overlap < 1,
-        lifecycle.hits(tracks.history, lifecycle.TEN),
-        lifecycle.misses_in_a_row(tracks.history),
+        history.hits(tracks.history, lifecycle.TEN),
+        history.misses_in_a_row(tracks.history),
         picture.time - tracks.first_time,
         estimator.account(tracks.state) if estimator.account else no_account(len(tracks.id)),
         None if shapes is None else _hulls(picture, take(shapes, picture.row)),

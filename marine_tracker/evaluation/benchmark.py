@@ -131,6 +131,7 @@ def run_tracker(scene: Traffic, estimator: str) -> Iterator[BenchmarkResult]:
         glint_sigma_m=0.0,
         scan_period_s=PERIOD,
         max_tracks=min(2 * targets + 1000, 100000),
+        association='nearest',  # as Stone Soup does it
     )
     clock = Clock()
     service = Service(parameters, estimator=clock.time(ESTIMATORS[estimator](parameters)))

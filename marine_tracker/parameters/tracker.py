@@ -92,7 +92,8 @@ class TrackerParameters:
     )
     range_resolution_m: float = parameter(
         30.0,
-        'Depth of a radar cell: echoes of one target lie no farther apart; for extent.',
+        'Depth of a radar cell: echoes of one target lie no farther apart, and two targets in '
+        'it give one plot.',
         unit='m',
         low=1.0,
         high=1000.0,
@@ -100,7 +101,7 @@ class TrackerParameters:
     )
     beam_width_deg: float = parameter(
         1.0,
-        'Horizontal beam width of the antenna, which is that of a cell; for extent.',
+        'Horizontal beam width of the antenna, which is that of a cell.',
         unit='deg',
         low=0.1,
         high=30.0,
@@ -175,6 +176,13 @@ class TrackerParameters:
         high=0.999999,
         live=True,
     )
+    association: str = parameter(
+        'joint',
+        'How contested plots are shared out: by all joint associations, and two targets in one '
+        'cell of the radar share its plot (joint); or to one track each (nearest).',
+        choices=('joint', 'nearest'),
+        live=True,
+    )
     doppler_gate: bool = parameter(
         True,
         'Whether a plot must have the radial speed over ground that its track expects, where '
@@ -183,7 +191,7 @@ class TrackerParameters:
     )
     detection_probability: float = parameter(
         0.85,
-        'Probability that a target gives a plot, as the track score assumes it.',
+        'Probability that a target gives a plot, as long as nothing else is known of it.',
         low=0.1,
         high=0.99,
         live=True,
@@ -194,19 +202,18 @@ class TrackerParameters:
     confirm_scans: int = parameter(
         5, 'N of M-of-N confirmation: ... within this many scans.', low=2, high=20, live=True
     )
-    confirm_score: float = parameter(
-        8.0,
-        'Track score (log-odds against clutter) that confirmation needs as well.',
-        low=-10.0,
-        high=50.0,
+    confirm_existence: float = parameter(
+        0.95,
+        'Probability that there is a target, which confirmation needs as well.',
+        low=0.1,
+        high=0.999999,
         live=True,
     )
-    max_score: float = parameter(
-        15.3,
-        'Upper limit of the track score: how long a good track lives without plots. A miss costs '
-        '-ln(1 - detection_probability); a confirmed track is lost below 0.',
-        low=1.0,
-        high=100.0,
+    lose_existence: float = parameter(
+        0.2,
+        'A confirmed track is lost when the probability that its target is there falls below this.',
+        low=0.0001,
+        high=0.99,
         live=True,
     )
     hold_hits: int = parameter(

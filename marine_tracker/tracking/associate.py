@@ -69,9 +69,9 @@ def _solve(track: IntArray, plot: IntArray, gain: Array) -> IntArray:
     plots, column = np.unique(plot, return_inverse=True)
     if len(tracks) <= FEW:
         return _assign(row, column, gain, np.arange(len(row)), len(tracks), len(plots))
-    track_part, plot_part = _components(row, column, len(tracks), len(plots))
-    height, row_place = _places(track_part, len(tracks))
-    width, column_place = _places(plot_part, len(tracks))
+    track_part, plot_part = components(row, column, len(tracks), len(plots))
+    height, row_place = places(track_part, len(tracks))
+    width, column_place = places(plot_part, len(tracks))
     row, column, part = row_place[row], column_place[column], track_part[row]
     order = part.argsort(kind='stable')
     parts = height.nonzero()[0]
@@ -100,7 +100,7 @@ def _assign(
     return found
 
 
-def _components(
+def components(
     row: IntArray, column: IntArray, rows: int, columns: int
 ) -> tuple[IntArray, IntArray]:
     """Connected components of a bipartite graph with the edges (row [P], column [P]).
@@ -122,7 +122,7 @@ def _components(
         of_row = lower
 
 
-def _places(part: IntArray, parts: int) -> tuple[IntArray, IntArray]:
+def places(part: IntArray, parts: int) -> tuple[IntArray, IntArray]:
     """Members of each part [parts], and each member's place within its part."""
     size = np.bincount(part, minlength=parts)
     place = np.empty(len(part), np.int64)

@@ -24,6 +24,13 @@ class Limits(NamedTuple):
     reach: float
 
 
+class Shares(NamedTuple):
+    """Of the pairs in the gate, the part that radial speeds leave: of tracks, and of lone plots."""
+
+    tracks: float
+    lone: float
+
+
 def limits(radar: TrackerParameters) -> Limits:
     """The limits from a radar's parameters; infinite if `doppler_gate` is off."""
     reach = float(ndtri(0.5 + 0.5 * radar.gate_probability)) if radar.doppler_gate else np.inf
@@ -32,17 +39,19 @@ def limits(radar: TrackerParameters) -> Limits:
 
 def agreeing(
     pairs: Pairs, ahead: Extrapolation, lone: Plots, plots: Plots, limits: Limits
-) -> Pairs:
-    """The pairs of the gate that radial speeds do not exclude.
+) -> tuple[Pairs, Shares]:
+    """The pairs of the gate that radial speeds do not exclude, and what shares of all they are.
 
     The rows of `pairs.track` are first those of `ahead`, the N tracks, then those of `lone`, the
     lone plots of the last scan. Of these only the radial speed is known. A plot without radial
     speed agrees with every track.
     """
     if plots.radial_speed is None:
-        return pairs
+        return pairs, Shares(1.0, 1.0)
     fit = _agree(pairs.track, pairs.plot, ahead, lone, plots, plots.radial_speed, limits)
-    return take(pairs, fit)
+    seam = pairs.track.searchsorted(len(ahead.time))
+    shares = ((np.count_nonzero(of) + 1) / (len(of) + 1) for of in (fit[:seam], fit[seam:]))
+    return take(pairs, fit), Shares(*shares)
 
 
 def _agree(

@@ -4,56 +4,47 @@ import numpy as np
 
 from ..parameters import TrackerParameters
 from ..types import HISTORY, Array, BoolArray, CodeArray, IntArray, Tracks
+from . import existence
+from .history import hits
 from .look import Look
 
 TENTATIVE, CONFIRMED, COASTING, LOST, STATIONARY = range(5)
 STATUS_NAMES = ('tentative', 'confirmed', 'coasting', 'lost', 'stationary')
 MISSED, OUT_OF_RANGE, MERGED = range(1, 4)
 REASONS = ('', 'missed', 'out of range', 'merged')
-TEN = 10  # scans in which the standards count a target's plots
+TEN, SHOWS = 10, 5  # a target that shows in so many scans of ten is kept (IMO A.823)
+SURE, SURE_PLOTS = 20, 10  # scans, or plots in the last 20 of them, that leave no doubt
 IN_THE_DARK = 30  # scans without a plot after which even a track in the blind zone is lost
 
 
-_HALF = HISTORY // 2
-_BITS = (np.arange(1 << _HALF)[:, None] >> np.arange(_HALF)) & 1  # of every half history
-_COUNT = _BITS.sum(1)
-_SINCE = np.where(_BITS.any(1), _BITS.argmax(1), _HALF)
+def record(tracks: Tracks, hit: BoolArray, visible: BoolArray, ratio: Array) -> Tracks:
+    """Records one scan: the tracks `hit` [N] had a plot; visible [N] were where the radar can see.
 
-
-def hits(history: IntArray, scans: int) -> IntArray:
-    """Plots [N] of each history [N] in its last `scans` scans (at most types.HISTORY)."""
-    recent = history & ((1 << scans) - 1)
-    count = _COUNT[recent & (len(_COUNT) - 1)]
-    found: IntArray = count if scans <= _HALF else count + _COUNT[recent >> _HALF]
-    return found
-
-
-def misses_in_a_row(history: IntArray) -> IntArray:
-    """Scans [N] since the last plot of each history [N], at most types.HISTORY."""
-    since = _SINCE[history & (len(_SINCE) - 1)]
-    found: IntArray = np.where(since < _HALF, since, _HALF + _SINCE[history >> _HALF])
-    return found
-
-
-def record(
-    tracks: Tracks, rows: IntArray, gained: Array, visible: BoolArray, parameters: TrackerParameters
-) -> Tracks:
-    """Records one scan: the tracks `rows` [K] had a plot; visible [N] were where the radar can see.
-
-    gained [K]: what those plots add to the scores (see score.py). A scan in which a track could not
-    be seen, and had no plot, is not recorded for it.
+    ratio [N]: likelihood ratios of what the scan showed (existence.py). A scan in which a track
+    could not be seen, and had no plot, is not recorded for it.
     """
-    hit = np.zeros(len(visible), bool)
-    hit[rows] = True
     counted = hit | visible
     history = ((tracks.history << 1) | hit) & ((1 << HISTORY) - 1)
-    score = tracks.score + np.log(1 - parameters.detection_probability) * (visible & ~hit)
-    score[rows] += gained
     return tracks._replace(
         history=np.where(counted, history, tracks.history),
-        score=np.minimum(score, parameters.max_score),
+        existence=existence.after(tracks.existence, ratio, counted),
         age=tracks.age + counted,
     )
+
+
+def sure(tracks: Tracks) -> BoolArray:
+    """Mask [N] of the targets that have been followed long enough to be beyond doubt."""
+    known = (tracks.age >= SURE) | (hits(tracks.history, HISTORY) >= SURE_PLOTS)
+    found: BoolArray = (tracks.status != TENTATIVE) & known
+    return found
+
+
+def given_up(tracks: Tracks, reason: CodeArray) -> IntArray:
+    """Plots [N] of each track that ends, with its reason [N], before its target was beyond doubt:
+    they were clutter's. 0 for all others."""
+    none = (reason == MISSED) & (tracks.age < SURE)
+    found: IntArray = np.where(none, hits(tracks.history, HISTORY), 0)
+    return found
 
 
 def held_by_another(
@@ -91,28 +82,33 @@ def judge(
 ) -> tuple[CodeArray, CodeArray]:
     """Status [N] and reason [N] of a loss, by the named rules.
 
-    hit [N] had a plot in this scan, or of another radar recently; beyond [N] is outside the range
+    hit [N] had a plot in this scan, or of another radar or track; beyond [N] is outside the range
     of every radar; drift [N] is the deviation of the extrapolated position over that of a plot; now
     s.
 
     M of N: a tentative track is confirmed by `confirm_hits` plots in `confirm_scans` scans, if its
-    score also reaches `confirm_score`. It is lost when its plots can no longer reach that. A
-    confirmed track is lost when its score falls below 0, when its last 10 scans had fewer plots
-    than `hold_hits`, or when it coasts and `drift` exceeds `max_drift`: in such a wide search the
-    next plot found would not be the target's.
+    existence also reaches `confirm_existence`. It is lost when its plots can no longer reach that.
+    A confirmed track is lost when its existence falls below `lose_existence` (a sure one not while
+    it shows in 5 of 10 scans), when its last 10 scans had fewer plots than `hold_hits`, or when it
+    coasts and `drift` exceeds `max_drift`: in such a wide search the next plot found would not be
+    the target's.
     """
     needed, window = parameters.confirm_hits, parameters.confirm_scans
     tentative = tracks.status == TENTATIVE
     recent = hits(tracks.history, window)
-    confirmed = ~tentative | ((recent >= needed) & (tracks.score >= parameters.confirm_score))
+    confirmed = ~tentative | (
+        (recent >= needed) & (tracks.existence >= parameters.confirm_existence)
+    )
     # Give up when even plots in all remaining scans of the window would be too few.
     remaining = np.maximum(window - tracks.age, 0)
+    ten = hits(tracks.history, TEN)
+    held = sure(tracks) & (ten >= SHOWS)
     gone = np.where(
         tentative,
         ~confirmed & (recent + remaining < needed),
-        (tracks.score < 0)
+        ((tracks.existence < parameters.lose_existence) & ~held)
         | (~hit & (drift > parameters.max_drift))
-        | ((hits(tracks.history, TEN) < parameters.hold_hits) & (tracks.age >= TEN)),
+        | ((ten < parameters.hold_hits) & (tracks.age >= TEN)),
     )
     left = beyond & ~hit
     lost = gone | left | (now - tracks.last_time > IN_THE_DARK * parameters.scan_period_s)
@@ -126,16 +122,18 @@ def judge(
 def step(
     tracks: Tracks,
     seen: Look,
-    gained: Array,
+    ratio: Array,
     elsewhere: BoolArray,
+    sharing: IntArray,
     radar: TrackerParameters,
     farthest: float,
     now: float,
 ) -> tuple[Tracks, CodeArray]:
     """The tracks after one scan, recorded and judged, and the reason [N] of each loss.
 
-    gained     [K]  what the plots add to the scores of the tracks that had one (see score.py)
+    ratio      [N]  likelihood ratios of what the scan showed of the tracks (existence.py)
     elsewhere  [N]  held by another radar (see `held_by_another`)
+    sharing    [U]  rows of tracks that share the plot of another track (unresolved.py)
     radar      parameters of the one that scanned
     farthest   m, the largest range of all radars
     now        s, end of the scan
@@ -143,9 +141,9 @@ def step(
     in_range = (seen.distance >= radar.min_range_m) & (seen.distance <= radar.max_range_m)
     in_range &= seen.swept
     tracks = tracks._replace(bearing=seen.bearing)
-    rows = seen.hit.nonzero()[0]
-    tracks = record(tracks, rows, gained, in_range & ~elsewhere, radar)
-    held = seen.hit | elsewhere
+    held, ratio = seen.hit | elsewhere, ratio.copy()
+    held[sharing], ratio[sharing] = True, 1.0
+    tracks = record(tracks, seen.hit, in_range & ~elsewhere, ratio)
     status, reason = judge(tracks, radar, held, seen.distance > farthest, seen.drift, now)
     return tracks._replace(status=status), reason
 

@@ -35,31 +35,30 @@ class Look(NamedTuple):
 
 def look(
     tracks: Tracks,
-    rows: IntArray,
+    plot_of: IntArray,
     plots: Plots,
     ahead: Extrapolation,
     expected: Expected,
     noise: Noise,
     scan: Scan,
 ) -> Look:
-    """What the scan showed: for the tracks `rows` [K] their K plots, for the others the
-    expectation.
+    """What the scan showed: of the tracks that took a plot, plot_of [N] >= 0, that plot; of the
+    others the expectation.
 
     tracks           N, with their new `last_time`; those that `ahead` lacks are new and have a plot
     ahead, expected  the tracks before the update; `expected` may have more rows after them
     """
     count, before = len(tracks.id), len(ahead.time)
-    hit = np.zeros(count, bool)
-    hit[rows] = True
-    missed = (~hit).nonzero()[0]
+    hit = plot_of >= 0
+    rows, missed = hit.nonzero()[0], (~hit).nonzero()[0]
     time = tracks.last_time.copy()
     time[missed] = np.maximum(ahead.time[missed], time[missed])
     predicted = np.full((count, 2), np.nan)
     later = time[:before] - ahead.time
     predicted[:before] = ahead.position + later[:, None] * ahead.velocity
     distance, bearing, drift = np.zeros((3, count))
-    distance[rows] = plots.range
-    bearing[rows] = plots.bearing
+    distance[rows] = plots.range[plot_of[rows]]
+    bearing[rows] = plots.bearing[plot_of[rows]]
     distance[missed], bearing[missed] = to_range_bearing(
         ahead.position.take(missed, 0) - expected.origin.take(missed, 0)
     )

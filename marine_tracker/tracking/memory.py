@@ -3,20 +3,20 @@
 from typing import Any, NamedTuple
 
 from ..types import Array, BoolArray, CodeArray, IntArray, Plots, Scan, Tracks
-from . import at_rest, clutter_map, offsets, sectors
+from . import at_rest, offsets, sectors, surroundings
 
 
 class OfRadar(NamedTuple):
     """The memory of one radar.
 
     leftover  plots of its last scan that belong to no track: one may be a new target's first plot
-    clutter   the density of its false plots
+    known     of its false plots, and of how targets show
     offsets   of its ranges and bearings, and the lag of its plots
     waiting   what its sectors left undecided; None: whole revolutions
     """
 
     leftover: Plots
-    clutter: clutter_map.ClutterMap
+    known: surroundings.Surroundings
     offsets: offsets.Offsets
     waiting: sectors.Waiting | None = None
 
@@ -67,7 +67,7 @@ class Report(NamedTuple):
 
 
 class Left(NamedTuple):
-    """What a scan left: mask [M] of the plots that are lone; and what the map of clutter learns."""
+    """What a scan left: mask [M] of the plots that are lone; and what is learnt from it."""
 
     free: BoolArray
     found: sectors.Found

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from ..types import BoolArray, Extrapolation, IntArray, Tracks
+from ..types import HISTORY, BoolArray, Extrapolation, IntArray, Tracks
 from .gate import Pairs
-from .lifecycle import LOST, TENTATIVE, hits, misses_in_a_row
+from .history import hits, misses_in_a_row
+from .lifecycle import LOST, TENTATIVE, sure
 
 SAME = 9.49  # chi-square with 4 degrees of freedom, 95 %
 RECENT = 10  # scans in which two tracks must share the plots of one target
@@ -20,7 +21,8 @@ def duplicates(pairs: Pairs, plot_of: IntArray, ahead: Extrapolation, tracks: Tr
 
     A track is superfluous if it had no plot because another track took one in its gate, both agree
     in position and velocity, and together they recently had no more plots than one target gives (or
-    this one had none for long). Two ships in company both get plots. Ships that cross differ in
+    this one had none for long). Two sure tracks may be two ships in one cell of the radar: of them
+    more scans must tell so. Two ships in company both get plots. Ships that cross differ in
     velocity.
     """
     track, plot, status = pairs.track, pairs.plot, tracks.status
@@ -34,9 +36,9 @@ def duplicates(pairs: Pairs, plot_of: IntArray, ahead: Extrapolation, tracks: Tr
     look = (starved[track] & (owner[plot] >= 0)).nonzero()[0]
     one, other = track[look], owner[plot[look]]
     mine, others = tracks.history[one], tracks.history[other]
-    sharing = (hits(mine, RECENT) + hits(others, RECENT) <= RECENT + 1) | (
-        misses_in_a_row(mine) >= STARVED
-    )
+    old = sure(tracks)[one] & sure(tracks)[other]
+    few = [hits(mine, n) + hits(others, n) <= n + 1 for n in (RECENT, HISTORY)]
+    sharing = np.where(old, few[1], few[0] | (misses_in_a_row(mine) >= STARVED))
     keep = (status[one] == TENTATIVE) | ((status[other] != TENTATIVE) & sharing)
     one, other = one[keep], other[keep]
     if not len(one):

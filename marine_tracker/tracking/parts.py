@@ -27,7 +27,9 @@ class Core(Protocol):
     ) -> tuple[TrackerMemory, Report, Left]:
         """The tracks of the memory with the plots of the scan."""
 
-    def learnt(self, memory: TrackerMemory, radar: int, found: sectors.Found) -> TrackerMemory:
+    def learnt(
+        self, memory: TrackerMemory, radar: int, end: float, found: sectors.Found
+    ) -> TrackerMemory:
         """The memory after a whole revolution."""
 
 
@@ -62,7 +64,7 @@ def step(tracker: Core, memory: TrackerMemory, scan: Scan) -> tuple[TrackerMemor
     )
     if not sectors.complete(waiting):
         return memory, report
-    memory = tracker.learnt(memory, scan.radar, sectors.found(waiting))
+    memory = tracker.learnt(memory, scan.radar, scan.end, sectors.found(waiting))
     return changed(memory, scan.radar, waiting=sectors.next_revolution(waiting)), report
 
 

@@ -1,16 +1,27 @@
 """One scan in, tracks out: all steps of the tracker on one page."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from ..estimators import ESTIMATORS, Estimator, Velocity
 from ..geometry import to_range_bearing
 from ..parameters import TrackerParameters
-from ..types import Array, Extrapolation, Plots, Scan, Tracks, append, take
+from ..types import (
+    Array,
+    BoolArray,
+    CodeArray,
+    Extrapolation,
+    IntArray,
+    Plots,
+    Scan,
+    Tracks,
+    append,
+    take,
+)
 from . import (
     at_rest,
-    clutter_map,
     doppler,
     land_mask,
     late_plots,
@@ -18,21 +29,23 @@ from . import (
     offsets,
     parts,
     places,
-    score,
     sectors,
+    surroundings,
 )
 from .associate import associate, gain
-from .expected import expect
-from .gate import gate, gate_size, split
+from .existence import EVEN
+from .expected import Expected, expect
+from .gate import Pairs, gate, gate_size, split
 from .initiate import pair_up, unexplained
+from .joint import take_plots
 from .land_mask import on_land
 from .lifecycle import LOST, STATIONARY, TENTATIVE
-from .look import look
+from .look import Look, look
 from .memory import Left, OfRadar, changed
 from .memory import Report as Report
 from .memory import TrackerMemory as TrackerMemory
 from .merge import duplicates
-from .noise import noise_of
+from .noise import Noise, noise_of
 from .radars import HELD_REVOLUTIONS, held_updates, radars_of
 from .silence import unmistakable
 from .sweep import sweep_of
@@ -73,7 +86,7 @@ class Tracker:
         """No tracks yet."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         plots = Plots(none, none, none, none, pairs, pairs, np.zeros((0, 2, 2)))
-        of_radar = OfRadar(plots, clutter_map.empty(), offsets.begin())
+        of_radar = OfRadar(plots, surroundings.unknown(), offsets.begin())
         return TrackerMemory(
             self._begin(plots, 1, 0),
             (of_radar,) * len(self.radars),
@@ -94,13 +107,15 @@ class Tracker:
         if scan.sector is not None:
             return parts.step(self, memory, scan)
         memory, report, left = self.judge(memory, scan)
-        return self.learnt(memory, scan.radar, left.found), report
+        return self.learnt(memory, scan.radar, scan.end, left.found), report
 
-    def learnt(self, memory: TrackerMemory, radar: int, found: sectors.Found) -> TrackerMemory:
+    def learnt(
+        self, memory: TrackerMemory, radar: int, end: float, found: sectors.Found
+    ) -> TrackerMemory:
         """The memory after a whole revolution: false plots, and places where plots always are."""
         p, of_radar = self.radars[radar], memory.radars[radar]
-        for_clutter, (position, variance, time), told = found[:2], found[2:5], found[5:]
-        clutter = clutter_map.learn(of_radar.clutter, *for_clutter)
+        around, (position, variance, time), told = found[:5], found[5:8], found[8:]
+        learnt = surroundings.learn(of_radar.known, end, of_radar.leftover, *around)
         known, number = at_rest.name(memory.ground.places, memory.next_number)
         if p.stationary_places:
             view = places.View(memory.origin, p.min_range_m, p.max_range_m)
@@ -108,32 +123,21 @@ class Tracker:
         off = offsets.learn(of_radar.offsets, known, position, variance, told, p, self.marks)
         ground = memory.ground._replace(places=known, revolutions=memory.ground.revolutions + 1)
         memory = memory._replace(next_number=number, ground=ground)
-        return changed(memory, radar, clutter=clutter, offsets=off)
+        return changed(memory, radar, known=learnt, offsets=off)
 
     def judge(
         self, memory: TrackerMemory, scan: Scan, others: int = 0
     ) -> tuple[TrackerMemory, Report, Left]:
         """The tracks of the memory with the plots of the scan; `others` tracks are not judged."""
-        p, of_radar = self.radars[scan.radar], memory.radars[scan.radar]
-        tracks, count = memory.tracks, len(memory.tracks.id)
-        noise = noise_of(p, scan)
-        measured = noise.locate(scan)
-        plots, lone = noise.with_glint(measured), noise.with_glint(of_radar.leftover)
-        speed = p.max_target_speed_mps
-
-        # extrapolate: every track to the time the beam passes it
-        sweep = sweep_of(scan)
-        beam = sweep.time_at(tracks.bearing)
-        ahead = self.estimator.extrapolate(late_plots.as_of(tracks, beam), beam)
-
-        # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
-        expected = expect(ahead, lone, scan, speed)
-        pairs, left_out = gate(noise.with_glint(expected), measured, sweep, noise, self.gate_size)
-        pairs = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
-        pairs = unmistakable(pairs, ahead, plots, tracks.last_time, scan.start, p.scan_period_s)
-        pairs, starts = split(pairs, count)
+        p, tracks, count = self.radars[scan.radar], memory.tracks, len(memory.tracks.id)
+        view = self._view(memory, scan)
+        ahead, expected, plots, lone = view.ahead, view.expected, view.plots, view.lone
+        pairs, starts = split(view.pairs, count)
 
         # associate
+        evidence = surroundings.weigh(
+            memory.radars[scan.radar].known, pairs, view.share, tracks, expected, plots, p
+        )
         worth = gain(pairs, self.gate_size)
         plot_of = associate(pairs.track, pairs.plot, worth, count, len(plots.time))
 
@@ -141,56 +145,71 @@ class Tracker:
         free = unexplained(plots, pairs, plot_of, tracks)
         afloat = ~on_land(self.land, plots.position)
         free &= afloat
-        room = max(0, p.max_tracks - count - others)
+        room, speed = max(0, p.max_tracks - count - others), p.max_target_speed_mps
         first, second = pair_up(lone, plots, starts.track, starts.plot, free, speed, room)
         free[second] = False
+        new = take(lone, first)
         if len(first):
-            tracks = append(tracks, self._begin(take(lone, first), memory.next_id, scan.radar))
+            tracks = append(tracks, self._begin(new, memory.next_id, scan.radar))
         plot_of = np.append(plot_of, second)
 
         # update
-        rows = (plot_of >= 0).nonzero()[0]
-        chosen = take(plots, plot_of[rows])
-        tracks = late_plots.update(self.estimator, tracks, chosen, rows, scan.radar)
+        taken = take_plots(pairs, evidence, plot_of, tracks, ahead, expected, plots, p)
+        tracks = late_plots.update(self.estimator, tracks, taken.plots, taken.rows, scan.radar)
 
         # judge: record the scan for each track, and decide its status
-        seen = look(tracks, rows, chosen, ahead, expected, noise, scan)
-        gained = score.gained(pairs, plot_of, take(lone, first), chosen, of_radar.clutter, p)
-        elsewhere = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
-        tracks, reason = lifecycle.step(tracks, seen, gained, elsewhere, p, self.farthest, scan.end)
+        seen = look(tracks, plot_of, plots, ahead, expected, view.noise, scan)
+        ratio = surroundings.ratio(evidence, pairs, plot_of, new, plots, p)
+        other = lifecycle.held_by_another(tracks, scan.radar, seen.time, pairs.track, self.held)
+        rest = other, taken.sharing, p, self.farthest, scan.end
+        tracks, reason = lifecycle.step(tracks, seen, ratio, *rest)
         tracks, reason = lifecycle.merge(tracks, reason, duplicates(pairs, plot_of, ahead, tracks))
-        hit, was = seen.hit, np.zeros(len(plot_of), bool)
-        was[:count] = memory.tracks.status == STATIONARY
-        still = at_rest.standing(
-            hit, chosen, ahead, noise.with_glint(expected).covariance[:count], seen.time
+        judged = self._at_rest(memory, tracks, plot_of, seen, view, afloat)
+        return _remember(memory, scan, view, judged, seen, plot_of, reason, first, free)
+
+    def _view(self, memory: TrackerMemory, scan: Scan) -> '_View':
+        """The scan's plots, where tracks and lone plots are expected, and the pairs of the gate."""
+        p, tracks = self.radars[scan.radar], memory.tracks
+        noise = noise_of(p, scan)
+        measured = noise.locate(scan)
+        plots = noise.with_glint(measured)
+        lone = noise.with_glint(memory.radars[scan.radar].leftover)
+
+        # extrapolate: every track to the time the beam passes it
+        sweep = sweep_of(scan)
+        beam = sweep.time_at(tracks.bearing)
+        ahead = self.estimator.extrapolate(late_plots.as_of(tracks, beam), beam)
+
+        # gate: tracks, and the lone plots of the last scan, whose targets may be anywhere near
+        expected = expect(ahead, lone, scan, p.max_target_speed_mps)
+        echoing = noise.with_glint(expected)
+        pairs, left_out = gate(echoing, measured, sweep, noise, self.gate_size)
+        pairs, share = doppler.agreeing(pairs, ahead, lone, plots, self.doppler[scan.radar])
+        pairs = unmistakable(pairs, ahead, plots, tracks.last_time, scan.start, p.scan_period_s)
+        spread = echoing.covariance[: len(tracks.id)]
+        return _View(
+            p, noise, measured, plots, lone, ahead, expected, spread, pairs, share, left_out
         )
+
+    def _at_rest(
+        self,
+        memory: TrackerMemory,
+        tracks: Tracks,
+        plot_of: IntArray,
+        seen: Look,
+        view: '_View',
+        afloat: BoolArray,
+    ) -> '_Judged':
+        """The tracks with those at rest as such, and numbered; which plots tell places."""
+        was = np.zeros(len(plot_of), bool)
+        was[: len(memory.tracks.id)] = memory.tracks.status == STATIONARY
+        chosen = take(view.plots, plot_of[seen.hit])
+        still = at_rest.standing(seen.hit, chosen, view.ahead, view.spread, seen.time)
         ground, tracks, learnable = at_rest.step(memory.ground, tracks, was, still)
         tracks, next_number = lifecycle.number(tracks, memory.next_number)
-
-        # remember
-        begun = take(of_radar.leftover, first)
-        nowhere = np.delete(np.arange(len(lone.time)), first)
         fixed = afloat.copy()
-        fixed[plot_of[hit & ~learnable]] = False
-        rest = take(plots, fixed)
-        found = (
-            *(lone.range[nowhere], lone.bearing[nowhere]),
-            *(rest.position, at_rest.larger(rest.covariance), rest.time),
-            *(rest.range, rest.bearing, rest.origin, offsets.rates(scan, rest.time, p)),
-        )
-        alive = tracks.status != LOST
-        memory = TrackerMemory(
-            tracks if alive.all() else take(tracks, alive),
-            memory.radars,
-            scan.own_ship.position[-1],
-            memory.next_id + len(first),
-            next_number,
-            ground,
-        )
-        told = seen.time, tracks, seen.predicted, plot_of, reason, begun, left_out, scan
-        report = Report(*told, at_rest.shown(ground))
-        memory = changed(memory, scan.radar, leftover=take(measured, free))
-        return memory, report, Left(free, found)
+        fixed[plot_of[seen.hit & ~learnable]] = False
+        return _Judged(tracks, ground, next_number, fixed)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """Takes over the memory of another tracker for this one's estimator. No track is lost.
@@ -230,7 +249,7 @@ class Tracker:
             number=none,
             status=np.full(count, TENTATIVE, np.int8),
             history=none + 1,
-            score=np.zeros(count),
+            existence=np.full(count, EVEN),
             age=none + 1,
             first_time=plots.time,
             last_time=plots.time,
@@ -239,3 +258,74 @@ class Tracker:
             radar=(np.full(count, radar, np.int8) if len(self.radars) > 1 else None),
             past=late_plots.nothing_yet(state, plots, self.updates),
         )
+
+
+class _View(NamedTuple):
+    """What a scan shows, before any plot is a track's: M plots, N tracks, L lone plots.
+
+    radar     parameters of the one that scanned; noise: of its plots
+    measured  the plots as they are; plots, lone: with the covariance of glint
+    ahead     the tracks when the beam passes them; expected: tracks, then lone plots
+    spread    [N, 2, 2] m^2, of the places where the tracks may echo
+    pairs     of the gate; share: what part of them radial speeds left
+    left_out  number of pairs beyond the budget
+    """
+
+    radar: TrackerParameters
+    noise: Noise
+    measured: Plots
+    plots: Plots
+    lone: Plots
+    ahead: Extrapolation
+    expected: Expected
+    spread: Array
+    pairs: Pairs
+    share: doppler.Shares
+    left_out: int
+
+
+class _Judged(NamedTuple):
+    """Tracks as the scan has judged them; the places; mask [M] of the plots that tell places."""
+
+    tracks: Tracks
+    ground: at_rest.Ground
+    next_number: int
+    fixed: BoolArray
+
+
+def _remember(
+    memory: TrackerMemory,
+    scan: Scan,
+    view: _View,
+    judged: _Judged,
+    seen: Look,
+    plot_of: IntArray,
+    reason: CodeArray,
+    first: IntArray,
+    free: BoolArray,
+) -> tuple[TrackerMemory, Report, Left]:
+    """The memory after a scan, the report of it, and what it left.
+
+    plot_of, reason [N] of the tracks; first [B]: the lone plots that began the last B of them;
+    free [M]: the plots that are lone now
+    """
+    tracks, lone, leftover = judged.tracks, view.lone, memory.radars[scan.radar].leftover
+    nowhere = take(lone, np.delete(np.arange(len(lone.time)), first))
+    at = take(view.plots, judged.fixed)
+    sure = lifecycle.sure(tracks) & (tracks.status != STATIONARY)
+    found = surroundings.found(sure, lifecycle.given_up(tracks, reason), seen, nowhere)
+    found = (*found, at.position, at_rest.larger(at.covariance), at.time)
+    found = (*found, at.range, at.bearing, at.origin, offsets.rates(scan, at.time, view.radar))
+    alive = tracks.status != LOST
+    after = TrackerMemory(
+        tracks if alive.all() else take(tracks, alive),
+        memory.radars,
+        scan.own_ship.position[-1],
+        memory.next_id + len(first),
+        judged.next_number,
+        judged.ground,
+    )
+    told = seen.time, tracks, seen.predicted, plot_of, reason, take(leftover, first)
+    report = Report(*told, view.left_out, scan, at_rest.shown(judged.ground))
+    after = changed(after, scan.radar, leftover=take(view.measured, free))
+    return after, report, Left(free, found)

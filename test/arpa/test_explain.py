@@ -135,8 +135,11 @@ def test_a_track_that_is_being_built_tells_what_is_missing():
     why = sea.why(2205, -895)
     assert '2 plots in its last 2 scans' in why['tentative']
     assert '4 in 6 are needed' in why['tentative']
-    sea = Sea(confirm_score=45.0).sail(*moving([2200, -900], [5, 5], 5))
-    assert '45.0 is needed' in sea.why(2220, -880)['tentative']
+    rng = np.random.default_rng(8)
+    crowd = [rng.uniform([2000, -1100], [2600, -500], (60, 2)).tolist() for _ in range(8)]
+    told = moving([2200, -900], [5, 5], 3)
+    sea = Sea(confirm_existence=0.9997).sail(*crowd, *[a + b for a, b in zip(crowd, told)])
+    assert '0.9997 is needed' in sea.why(2210, -890)['tentative']
 
 
 def test_a_first_plot_is_alone():
@@ -174,9 +177,9 @@ def test_leaps_beyond_the_greatest_speed_are_told_in_knots():
 def test_dense_clutter_that_no_track_can_stand_out_of_is_told():
     rng = np.random.default_rng(7)
     scans = [rng.uniform([1500, 1500], [2600, 2600], (350, 2)).tolist() for _ in range(14)]
-    sea = Sea(confirm_score=20.0).sail(*scans)
+    sea = Sea(confirm_existence=0.9997).sail(*scans)
     clutter = [reason for reason in sea.ask(2000, 2000) if reason.about == 'clutter'][0]
-    assert clutter.decides and '20.0 confirms' in clutter.text
+    assert clutter.decides and '0.9997 confirms' in clutter.text
     calm = [reason for reason in sea.ask(-2000, -2000) if reason.about == 'clutter'][0]
     assert not calm.decides
 

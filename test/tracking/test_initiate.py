@@ -3,9 +3,9 @@ import itertools
 import numpy as np
 import pytest
 
+from marine_tracker.tracking.existence import ratio_of_two
 from marine_tracker.tracking.expected import reach
 from marine_tracker.tracking.initiate import pair_up
-from marine_tracker.tracking.score import first_score
 from marine_tracker.types import Plots
 
 PERIOD = 60 / 22
@@ -123,18 +123,23 @@ def test_targets_within_their_speed_are_within_reach():
     assert np.mean(distance < 13.8) > 0.999
 
 
+def worth(before, now, density, speed=SPEED):
+    """Log-odds of a pair where a target begins for every two hundred false plots of 1e-8 / m^2."""
+    begins = np.array([5e-11])
+    return np.log(ratio_of_two(before, now, np.array([density]), begins, speed, 0.8))[0]
+
+
 def test_a_pair_in_dense_clutter_is_worth_less():
+    """Twice: its first plot is likelier clutter, and so is its second."""
     before, now = plots([[0, 900]]), plots([[20, 900]], PERIOD)
-    sparse, dense = (
-        first_score(before, now, np.array([density]), SPEED, 0.8)[0] for density in (1e-8, 1e-5)
-    )
-    assert sparse - dense == pytest.approx(np.log(1000))
+    sparse, dense = (worth(before, now, density) for density in (1e-8, 1e-5))
+    assert sparse - dense == pytest.approx(2 * np.log(1000))
     assert sparse > 0
 
 
 def test_a_second_plot_that_could_lie_anywhere_is_worth_less():
-    before, density = plots([[0, 900]]), np.array([1e-7])
-    near = first_score(before, plots([[20, 900]], PERIOD), density, SPEED, 0.8)
-    late = first_score(before, plots([[20, 900]], 10 * PERIOD), density, SPEED, 0.8)
-    fast = first_score(before, plots([[20, 900]], PERIOD), density, 5 * SPEED, 0.8)
-    assert late[0] < near[0] and fast[0] < near[0]
+    before = plots([[0, 900]])
+    near = worth(before, plots([[20, 900]], PERIOD), 1e-7)
+    late = worth(before, plots([[20, 900]], 10 * PERIOD), 1e-7)
+    fast = worth(before, plots([[20, 900]], PERIOD), 1e-7, 5 * SPEED)
+    assert late < near and fast < near

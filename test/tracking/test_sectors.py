@@ -53,7 +53,7 @@ def test_tracks_are_those_of_whole_revolutions_within_rounding(strait, count):
     expected, found = (confirmed(tracker, memory, time) for memory in (whole, parts))
     assert len(expected) == len(found) == 40
     assert found == pytest.approx(expected, abs=1e-6)
-    clutter = [memory.radars[0].clutter for memory in (whole, parts)]
+    clutter = [memory.radars[0].known.clutter for memory in (whole, parts)]
     assert clutter[0].scans == clutter[1].scans
 
 

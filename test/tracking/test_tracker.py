@@ -97,7 +97,7 @@ def test_a_new_target_gets_the_next_number(parameters, revolution):
 
 def test_ids_are_unique_and_numbers_follow_each_other_in_clutter(parameters, revolution):
     rng = np.random.default_rng(3)
-    tracker = Tracker(parameters(confirm_score=-5.0))  # many false tracks are confirmed
+    tracker = Tracker(parameters(confirm_existence=0.1))  # many false tracks are confirmed
     scans = [
         revolution(k, FLEET, COURSES, rng=rng, seen=rng.random(4) < 0.8, false=60, reach=2500)
         for k in range(60)
@@ -246,9 +246,7 @@ def test_a_target_that_passes_close_by_is_kept(parameters, revolution, nearest):
 
 def test_a_track_lives_through_the_blind_zone(parameters, revolution):
     """Five scans nearer than the radar sees; a single miss would end the track elsewhere."""
-    tracker = Tracker(
-        parameters(min_range_m=150.0, max_score=1.0, confirm_score=0.5, max_drift=1000.0)
-    )
+    tracker = Tracker(parameters(min_range_m=150.0, lose_existence=0.99, max_drift=1000.0))
     velocity = np.array([0.0, 12.0])
     position = np.array([130.0, -25 * PERIOD * 12.0])
 
@@ -329,7 +327,7 @@ def test_a_plot_dead_ahead_of_a_nearby_coasting_track(parameters, vessel_class):
     tracker = Tracker(parameters(vessel_class=vessel_class, max_drift=1000.0, range_sigma_m=5.0))
     own, memory = np.zeros((1, 2)), tracker.start()
     for k in range(12):
-        near = k < 3 or k > 6
+        near = k < 5 or k > 8
         distance = np.r_[np.full(20, 3000.0 + k), [300.0 + k] * near]
         bearing = np.r_[np.arange(20) * 0.3 + 0.1, [0.0] * near]
         at = np.full(len(bearing), k * PERIOD)
