@@ -126,18 +126,19 @@ def test_a_lost_target_stands_in_the_picture_once_more(sea):
         for k, scan in enumerate(scans[:80])
     ]
     pictures = [(report, picture) for report, _, picture in run((silent, truths, parameters))]
-    counts = [len(picture.targets.id) for _, picture in pictures]
-    last = max(k for k, count in enumerate(counts) if count)
-    report, picture = pictures[last]
-    assert 60 < last <= 71 and (report.tracks.status[picture.row] == LOST).all()
-    assert counts[last] == 3 and not any(counts[last + 1 :])
-    lost = picture.alerts.kind == alarms.LOST_TARGET
-    assert set(picture.alerts.number[lost]) == {1, 2, 3}
-    assert picture.alerts.position[lost] == pytest.approx(
-        picture.motion.position[np.argsort(picture.targets.number)][
-            np.argsort(np.argsort(picture.alerts.number[lost]))
-        ]
-    )
+    last = {}  # scan in which each target stood last, and where
+    for k, (report, picture) in enumerate(pictures):
+        gone = report.tracks.status[picture.row] == LOST
+        for number, at, lost in zip(picture.targets.number, picture.motion.position, gone):
+            assert number not in last or not last[number][2]  # once more, and never again
+            last[number] = k, at, lost
+    assert set(last) == {1, 2, 3} and all(lost for _, _, lost in last.values())
+    assert all(60 < k <= 71 for k, _, _ in last.values())
+    alerts = pictures[max(k for k, _, _ in last.values())][1].alerts
+    lost = alerts.kind == alarms.LOST_TARGET
+    assert set(alerts.number[lost]) == {1, 2, 3}
+    for number, position in zip(alerts.number[lost], alerts.position[lost]):
+        assert position == pytest.approx(last[number][1])
 
 
 def test_another_arpa_goes_on_from_the_memory(sea):

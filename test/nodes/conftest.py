@@ -74,9 +74,13 @@ class Graph:
         self._thread = threading.Thread(target=self._spin, daemon=True)
 
     def _spin(self):
+        from rclpy.exceptions import InvalidHandle
+
         while not self._stop.is_set():
             try:
                 self.executor.spin_once(timeout_sec=0.1)
+            except InvalidHandle:
+                continue  # of what a test took away while rclpy looked at it
             except Exception as error:
                 self.errors.append(error)
 

@@ -239,7 +239,7 @@ def test_a_ship_that_goes_alongside_stays_one_target(harbour):
 
 
 def test_an_anchored_ship_that_is_seen_six_times_in_ten_never_vanishes(harbour):
-    numbers = [harbour.number_at(k, 3)[0] for k in range(25, 160)]
+    numbers = [harbour.number_at(k, 3)[0] for k in range(30, 160)]
     assert all(numbers) and len(set(numbers)) == 1
 
 
