@@ -31,14 +31,14 @@ CHECK := .venv/.for-check$(CHOICE)
 demo: $(DEMO)
 	@exec $(BIN)/python .ci/foreground.py $(BIN)/marine_tracker demo $(ARGS)
 
-# Two halves side by side: the nodes, which run in real time and mostly wait, four files at a time; the
+# Two halves side by side: the nodes, which run in real time and mostly wait, three files at a time; the
 # arithmetic in the time that they leave, its output at its end.
 test: $(TEST)
 	@$(MAKE) --no-print-directory --jobs=2 --keep-going --output-sync=target nodes arithmetic
 
 # Code 5: ARGS leaves no test in this half. A `+` line is not held back.
 nodes:
-	+@$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' -n 4 --dist loadfile $(ARGS) || [ $$? = 5 ]
+	+@$(BIN)/python -m pytest -m 'not slow and not fuzz and nodes' -n 3 --dist loadfile $(ARGS) || [ $$? = 5 ]
 
 arithmetic:
 	@nice -n 19 $(BIN)/python -m pytest -m 'not slow and not fuzz and not nodes' -n auto --maxprocesses 4 \

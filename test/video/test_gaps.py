@@ -94,5 +94,5 @@ def test_a_track_in_a_gap_counts_no_miss_and_lives(pictures, blind):
         south = (report.tracks.number > 0) & (np.abs(report.tracks.bearing - 3.84) < 0.2)
         lost += int((report.tracks.status[south] == LOST).sum())
         coasted += int((report.tracks.status[south] == COASTING).sum())
-    assert coasted > 4
+    assert coasted >= 4  # a track of six plots is not sure yet
     assert lost == (0 if blind else 1)
