@@ -16,6 +16,7 @@ import numpy as np
 from ..parameters import TrackerParameters
 from ..types import Extrapolation, IntArray, Plots, Tracks, take
 from . import unresolved
+from .encounters import NOTHING, Contested
 from .equivalent_plot import equivalents
 from .expected import Expected
 from .gate import Pairs
@@ -30,11 +31,13 @@ class Taken(NamedTuple):
     plots    K + U plots
     rows     [K + U]  of the tracks that take them
     sharing  [U]      the last of them: tracks that share another's plot
+    contested         what confirmed tracks contest; nothing where that is not looked at
     """
 
     plots: Plots
     rows: IntArray
     sharing: IntArray
+    contested: Contested
 
 
 def take_plots(
@@ -55,9 +58,9 @@ def take_plots(
     rows = (plot_of >= 0).nonzero()[0]
     chosen = take(plots, plot_of[rows])
     if radar.association == 'nearest' or not len(pairs.track):
-        return Taken(chosen, rows, rows[:0])
+        return Taken(chosen, rows, rows[:0], NOTHING)
     count = len(ahead.time)
-    contested = _contested(pairs, tracks, len(plots.time))
+    doubtful, contested = NOTHING, _contested(pairs, tracks, len(plots.time))
     if len(contested):
         here = tracks.existence[:count] * evidence.detected
         odds = here / (1 - here * radar.gate_probability)
@@ -70,13 +73,13 @@ def take_plots(
             len(plots.time),
         )
         chance /= np.maximum(np.bincount(some.track, chance, count)[some.track], 1e-300)
+        doubtful = Contested(some.track, some.plot, chance)
         chosen = equivalents(some, chance, plot_of, rows, chosen, ahead, plots)
     both = unresolved.shared(pairs, plot_of, tracks, ahead, expected.origin, radar)
     if not len(both.track):
-        return Taken(chosen, rows, both.track)
-    return Taken(
-        unresolved.split(both, rows, chosen, ahead, plots), np.append(rows, both.track), both.track
-    )
+        return Taken(chosen, rows, both.track, doubtful)
+    chosen = unresolved.split(both, rows, chosen, ahead, plots)
+    return Taken(chosen, np.append(rows, both.track), both.track, doubtful)
 
 
 def _contested(pairs: Pairs, tracks: Tracks, plots: int) -> IntArray:

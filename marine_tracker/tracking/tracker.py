@@ -23,6 +23,7 @@ from ..types import (
 from . import (
     at_rest,
     doppler,
+    encounters,
     land_mask,
     late_plots,
     lifecycle,
@@ -94,6 +95,7 @@ class Tracker:
             1,
             1,
             at_rest.begin(),
+            encounters.begin(),
         )
 
     def extrapolate(self, tracks: Tracks, time: float | Array) -> Extrapolation:
@@ -155,6 +157,8 @@ class Tracker:
 
         # update
         taken = take_plots(pairs, evidence, plot_of, tracks, ahead, expected, plots, p)
+        met = memory.encounters, taken.contested, plot_of, tracks, ahead, scan.end
+        memory = memory._replace(encounters=encounters.step(*met))
         tracks = late_plots.update(self.estimator, tracks, taken.plots, taken.rows, scan.radar)
 
         # judge: record the scan for each track, and decide its status
@@ -324,8 +328,9 @@ def _remember(
         memory.next_id + len(first),
         judged.next_number,
         judged.ground,
+        memory.encounters,
     )
     told = seen.time, tracks, seen.predicted, plot_of, reason, take(leftover, first)
-    report = Report(*told, view.left_out, scan, at_rest.shown(judged.ground))
+    report = Report(*told, view.left_out, scan, at_rest.shown(judged.ground), memory.encounters)
     after = changed(after, scan.radar, leftover=take(view.measured, free))
     return after, report, Left(free, found)
