@@ -157,6 +157,7 @@ class Tracker:
 
         # update
         taken = take_plots(pairs, evidence, plot_of, tracks, ahead, expected, plots, p)
+        plot_of = taken.plot_of
         met = memory.encounters, taken.contested, plot_of, tracks, ahead, scan.end
         memory = memory._replace(encounters=encounters.step(*met))
         tracks = late_plots.update(self.estimator, tracks, taken.plots, taken.rows, scan.radar)
