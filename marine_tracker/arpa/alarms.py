@@ -156,7 +156,7 @@ class Tracking(NamedTuple):
     overlap   [N]  of the gates and
     other     [N]  row of the track they overlap with, as swap_risk gives them
     swapped   [N]  probability that they have exchanged their target with another track and
-    rival     [N]  row of that track, as tracking.encounters tells them
+    rival     [N]  row of that track, as tracking.meetings tells them
     in_the_way  of stationary objects, as Stationary.way tells it
     nearly    stationary objects are nearly dangerous
     """
@@ -229,7 +229,7 @@ def step(
             0,
             single(fallen, max(settings.fallback_share * confirmed, 1), fallen, confirmed),
         ),
-        (SWAP_RISK, 0, of_tracks(situation, numbered, swap, partner)),
+        (SWAP_RISK, 0, of_tracks(situation, numbered, swap, partner.astype(float))),
         (
             STATIONARY_DANGER,
             0,

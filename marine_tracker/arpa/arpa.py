@@ -6,7 +6,7 @@ import numpy as np
 
 from ..geometry import NAUTICAL_MILE, polar_to_position
 from ..parameters import ArpaParameters, TrackerParameters
-from ..tracking import encounters
+from ..tracking import meetings
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.noise import noise_of
@@ -67,7 +67,7 @@ class Picture(NamedTuple):
     harmless  [T]  own ship is at anchor and the target does not certainly come nearer
     danger    [T]  one of situation.SAFE, NEARLY, DANGEROUS
     swapped   [T]  probability that the track has exchanged its target with another one since they
-                   met (tracking.encounters)
+                   met (tracking.meetings)
     events    what happened to targets in this scan
     alerts    those that are not normal
     changed   the alerts that changed in this scan, also those that became normal
@@ -236,7 +236,7 @@ class Arpa:
             ahead.position, ahead.covariance[:, :2, :2] + noise, own.position, self.gate_size
         )
         other[rows] = np.where(found >= 0, np.append(rows, -1)[found], -1)
-        return overlap, other, *encounters.told(report.encounters, tracks.id)
+        return overlap, other, *meetings.told(report.meetings, tracks.id)
 
 
 def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> tuple[Targets, IntArray]:

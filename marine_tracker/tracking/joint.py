@@ -16,12 +16,12 @@ import numpy as np
 from ..parameters import TrackerParameters
 from ..types import Array, Extrapolation, IntArray, Plots, Tracks, take
 from . import unresolved
-from .encounters import NOTHING, Contested
 from .equivalent_plot import equivalents
 from .expected import Expected
 from .gate import Pairs
 from .lifecycle import TENTATIVE
 from .marginals import marginals
+from .meetings import NOTHING, Contested
 from .surroundings import Evidence
 
 NOBODY = np.zeros(0, np.int64)

@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from ..types import Array, BoolArray, CodeArray, IntArray, Plots, Scan, Tracks
-from . import at_rest, encounters, offsets, sectors, surroundings
+from . import at_rest, meetings, offsets, sectors, surroundings
 
 
 class OfRadar(NamedTuple):
@@ -30,7 +30,7 @@ class TrackerMemory(NamedTuple):
     next_id      the next track's id
     next_number  the next confirmed track's target number
     ground       places where plots always are
-    encounters   tracks that have met
+    meetings   tracks that have met
     """
 
     tracks: Tracks
@@ -39,7 +39,7 @@ class TrackerMemory(NamedTuple):
     next_id: int
     next_number: int
     ground: at_rest.Ground
-    encounters: encounters.Encounters
+    meetings: meetings.Meetings
 
 
 class Report(NamedTuple):
@@ -55,7 +55,7 @@ class Report(NamedTuple):
     begun      [B]     the first plots, of the last scan, of the new tracks: the last B
     scan       whose plots `plot` refers to: of a sector those that were decided in it
     places     where plots always are, as they are to be shown
-    encounters tracks that have met, by id
+    meetings tracks that have met, by id
     """
 
     time: Array
@@ -67,7 +67,7 @@ class Report(NamedTuple):
     left_out: int
     scan: Scan
     places: at_rest.Shown
-    encounters: encounters.Encounters
+    meetings: meetings.Meetings
 
 
 class Left(NamedTuple):
