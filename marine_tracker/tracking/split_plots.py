@@ -1,25 +1,29 @@
 """Plots of one target: a long ship, or one in a broken echo, may give two of them in a scan.
 
-Two targets in one resolution cell give one plot. So two plots in one cell, of which no two tracks
-claim one each, are of one target. The track takes their mean; and no new track begins beside it.
+Two targets in one resolution cell give one plot. So two plots in one cell, or a ship's length more
+apart, are of one target if they lie in the gate of one track only. The track takes their mean; and
+no new track begins beside a plot of another one.
 """
 
 import numpy as np
 
 from ..geometry import wrap_angle
 from ..parameters import TrackerParameters
-from ..types import BoolArray, IntArray, Plots
+from ..types import Array, BoolArray, IntArray, Plots
 from .equivalent_plot import placed
 from .gate import Pairs, window_pairs
 
-HULL = 2.0  # times glint: so much farther apart than a cell may the plots of a known target be
+HULL = 3.0  # times glint: so much farther apart than a cell may bow and stern of a ship be
+FEW = 0.05  # false plots: where more are expected within reach, one may lie there by chance
 
 
-def fused(pairs: Pairs, plot_of: IntArray, plots: Plots, radar: TrackerParameters) -> Plots:
+def fused(
+    pairs: Pairs, plot_of: IntArray, plots: Plots, density: Array, radar: TrackerParameters
+) -> Plots:
     """The plots, of which those that tracks took, plot_of [N] or -1, lie at the mean of all that
     are their target's.
 
-    pairs  of the gate, those of tracks only
+    pairs  of the gate, those of tracks only; density [M] of false plots, 1 / m^2 and scan
     """
     if len(pairs.track) == np.count_nonzero(plot_of >= 0):
         return plots
@@ -27,8 +31,13 @@ def fused(pairs: Pairs, plot_of: IntArray, plots: Plots, radar: TrackerParameter
     of_track = plot_of[pairs.track]
     beside = ((of_track >= 0) & (of_track != pairs.plot) & (wanted[pairs.plot] == 1)).nonzero()[0]
     plot, other = of_track[beside], pairs.plot[beside]
-    reach = HULL * radar.glint_sigma
-    one = _in_one_cell(plots, plot, other, radar, reach) & (wanted[plot] == 1)
+    if not len(plot):
+        return plots
+    depth, width = _reach(plots.range[plot], radar)
+    one = np.abs(plots.range[plot] - plots.range[other]) < depth
+    one &= np.abs(wrap_angle(plots.bearing[plot] - plots.bearing[other])) < width
+    one &= 4 * depth * width * plots.range[plot] * density[plot] < FEW
+    one &= wanted[plot] == 1
     plot, other = plot[one], other[one]
     if not len(plot):
         return plots
@@ -39,17 +48,12 @@ def fused(pairs: Pairs, plot_of: IntArray, plots: Plots, radar: TrackerParameter
     return placed(plots, rows, total / count[:, None], plots.covariance[rows])
 
 
-def _in_one_cell(
-    plots: Plots, one: IntArray, two: IntArray, radar: TrackerParameters, more: float
-) -> BoolArray:
-    """Mask [K] of the pairs of plots in one resolution cell, which is `more` m larger."""
-    range_, bearing = plots.range, plots.bearing
-    across = range_[one] * np.radians(radar.beam_width_deg)
-    aside = range_[one] * np.abs(wrap_angle(bearing[one] - bearing[two]))
-    found: BoolArray = (np.abs(range_[one] - range_[two]) < radar.range_resolution_m + more) & (
-        aside < across + more
-    )
-    return found
+def _reach(range_: Array, radar: TrackerParameters) -> tuple[float, Array]:
+    """How far apart in range, m, and bearing [K], rad, at the ranges [K] m, plots of one target
+    may be."""
+    hull = HULL * radar.glint_sigma
+    width = np.radians(radar.beam_width_deg) + hull / np.maximum(range_, 1.0)
+    return radar.range_resolution_m + hull, np.minimum(width, np.pi)
 
 
 def alone(second: IntArray, plot_of: IntArray, plots: Plots, radar: TrackerParameters) -> BoolArray:
@@ -58,9 +62,8 @@ def alone(second: IntArray, plot_of: IntArray, plots: Plots, radar: TrackerParam
     """
     if not len(second):
         return np.ones(0, bool)
-    depth, width = radar.range_resolution_m, np.radians(radar.beam_width_deg)
     range_, bearing = plots.range[second], plots.bearing[second]
-    half = np.full(len(second), width)
+    depth, half = _reach(range_, radar)
     rank = np.full(len(plots.time), len(second))
     rank[second] = np.arange(len(second))
     rank[plot_of[plot_of >= 0]] = -1

@@ -144,7 +144,7 @@ class Tracker:
         worth = gain(pairs, self.gate_size)
         plot_of = associate(pairs.track, pairs.plot, worth, count, len(plots.time))
 
-        plots = split_plots.fused(pairs, plot_of, plots, p)
+        plots = split_plots.fused(pairs, plot_of, plots, evidence.density, p)
 
         # initiate: from plots of this scan and the last one that belong to no track
         free = unexplained(plots, pairs, plot_of, tracks)
