@@ -33,7 +33,7 @@ class DisplayAis:
 
     def __init__(self, node: RunnableNode, server: DisplayServer, bad: Tally) -> None:
         self._server, self._bad = server, bad
-        self._places = np.zeros(0, np.int64), np.zeros((0, 2))
+        self._rows = np.zeros(0, ais_targets_cloud.SHIP_TYPE)
         node.subscription(PointCloud2, topics.AIS_TARGETS, self._on_ships, topics.latched())
 
     def _on_ships(self, message: PointCloud2) -> None:
@@ -42,14 +42,19 @@ class DisplayAis:
         except ConversionError as error:
             self._bad.add(BAD_SHIPS, time.monotonic(), detail=str(error))
             return
-        alone = rows[(rows['shown'] == ACTIVATED) & (rows['state'] != BOTH)]
-        self._places = -alone['id'].astype(int), np.stack([alone['x'], alone['y']], 1).astype(float)
+        self._rows = rows
         words = {'statuses': m1371.STATUSES, 'kinds': m1371.KINDS}
         self._server.publish('ships', {'at': time.monotonic(), 'columns': ships(rows), **words})
 
     def places(self) -> tuple[IntArray, Array]:
-        """Of the activated ships that are no radar target: ids below 0 [K], places [K, 2] m."""
-        return self._places
+        """For past positions, as `places`."""
+        return places(self._rows)
+
+
+def places(rows: np.ndarray) -> tuple[IntArray, Array]:
+    """Of the activated ships that are no radar target: ids below 0 [K], places [K, 2] m."""
+    alone = rows[(rows['shown'] == ACTIVATED) & (rows['state'] != BOTH)]
+    return -alone['id'].astype(int), np.stack([alone['x'], alone['y']], 1).astype(float)
 
 
 def ships(rows: np.ndarray) -> dict[str, list[Any]]:

@@ -7,9 +7,11 @@ import pytest
 
 pytest.importorskip('rclpy')
 from marine_tracker.ais import ships
+from marine_tracker.ais.join import AIS_ONLY, BOTH
 from marine_tracker.ais.reports import positions
 from marine_tracker.ais.ship_table import none
 from marine_tracker.arpa.cpa import OwnMotion
+from marine_tracker.display.trails import Trails
 from marine_tracker.geometry import KNOT, NAUTICAL_MILE
 from marine_tracker.nodes import (
     ais_cloud,
@@ -112,6 +114,16 @@ def test_the_page_gets_none_where_nothing_is_known(picture):
     page = (STATIC / 'ships.js').read_text() + (STATIC / 'ship_words.js').read_text()
     for name in re.findall(r'\bship\.([a-z_]+)', page):
         assert name in columns or name in ('wx', 'wy', 'what', 'alarm'), name
+
+
+def test_activated_ships_leave_past_positions(picture):
+    joined = picture.joined._replace(state=np.array([BOTH, AIS_ONLY], np.int8))
+    seen = ais_targets_cloud.points(picture._replace(joined=joined))
+    ids, places = display_ais.places(seen)
+    assert ids.tolist() == [-2] and places == pytest.approx(np.array([[0.0, 4000.0]]), abs=1)
+    trails = Trails()
+    assert trails.add(20.0, np.zeros(2), ids, places)
+    assert trails.plain()['targets'] == {'-2': [[0.0, 4000.0]]}
 
 
 def test_reports_go_out_as_numbers_and_come_back():
