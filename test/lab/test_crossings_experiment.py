@@ -32,7 +32,7 @@ def test_what_was_told_is_compared_with_what_happened_bin_by_bin():
     risk = np.array(10 * [0.3] + 5 * [0.0] + [0.4])
     what = np.array(3 * [crossings.SWAPPED] + 12 * [crossings.CLEAN] + [crossings.LOST])
     found = {figure.name: figure for figure in crossings.calibration(risk, what)}
-    assert found['swap risk 0.25 to 0.5: swapped'].value == pytest.approx(0.3)
+    assert found['swap risk 0.2 to 0.5: swapped'].value == pytest.approx(0.3)
     assert found['swap risk 0 to 0.02: swapped'].value == 0
     assert found['swap risk: told and happened differ by'].value == pytest.approx(0)
     wrong = crossings.calibration(risk, np.full(16, crossings.CLEAN))[-1]

@@ -44,7 +44,7 @@ WAYS: tuple[str, ...] = next(
 WITHIN = 250.0  # m; a track at most this far from a ship is its track
 BEFORE = 0.3  # of the duration: each ship has a track, and they are well apart
 CLEAN, SWAPPED, LOST, NOT_READY = range(4)
-BINS = 0.0, 0.02, 0.1, 0.25, 0.5  # of the told swap risk
+BINS = 0.0, 0.02, 0.1, 0.2, 0.5  # of the told swap risk
 CALIBRATED = 0.05  # mean distance of what was told from what happened
 MOST = 0.5  # swaps of `joint`, of those of `nearest`
 
