@@ -37,6 +37,9 @@ class Shared(NamedTuple):
     plot: IntArray
 
 
+NOBODY = Shared(*np.zeros((3, 0), np.int64))
+
+
 def shared(
     pairs: Pairs,
     evidence: Evidence,
