@@ -1,8 +1,8 @@
 """Tracks that meet: how probable it is that two of them have exchanged their targets.
 
-Two confirmed tracks meet from the scan in which they first contest a plot until KEPT seconds after
-the last one. Their swap risk is the probability that, of the two, a track now follows the target
-that the other one followed before they met.
+Two confirmed tracks meet from the scan in which they contest a plot for the first time until KEPT
+seconds after the last. Their swap risk is the probability that, of the two, a track now follows the
+target that the other one followed before they met.
 
 A scan can exchange them where two things hold. Its plots do not tell which is whose: that is the
 doubt b, the lesser of the probabilities of both tracks to own one plot, over all joint associations
@@ -21,6 +21,7 @@ import numpy as np
 
 from ..types import Array, Extrapolation, IntArray, Tracks, row_of, take
 
+LEAST = 1e-3  # probability of a pair below which there is no doubt
 KEPT = 120.0  # s after the last contested plot; then it is no news any more
 
 # Of the exchanges that one scan allows, so many are not undone by the next ones: from 1,300
@@ -76,9 +77,9 @@ def step(
     plot_of [N]: the plot that each track took, -1 for none; tracks; ahead: the first of them,
     expected
     """
-    if not len(contested.track):
-        return take(before, now - before.last <= KEPT) if len(before.one) else before
     one, two, doubt = _doubts(contested, plot_of)
+    if not len(one):
+        return take(before, now - before.last <= KEPT) if len(before.one) else before
     apart = ahead.velocity[one] - ahead.velocity[two]
     spread = (ahead.covariance[one] + ahead.covariance[two])[:, 2:, 2:]
     distance = (apart * np.linalg.solve(spread, apart[..., None])[..., 0]).sum(1)
@@ -119,12 +120,15 @@ def _doubts(contested: Contested, plot_of: IntArray) -> tuple[IntArray, IntArray
     """Pairs of tracks (one [E], two [E] rows, one < two) where one is in the gate of the plot that
     the other one took, and how much doubt [E] there is whose it is."""
     track, plot, chance = contested
-    taker = np.full(plot.max(initial=-1) + 1, -1)
+    rival = (chance > LEAST).nonzero()[0]
+    if len(rival) < 2:
+        return rival[:0], rival[:0], chance[:0]
+    taker = np.full(plot.max() + 1, -1)
     own = (plot_of[track] == plot).nonzero()[0]
     taker[plot[own]] = own  # row among the pairs
-    rival = (taker[plot] >= 0).nonzero()[0]
     owner = taker[plot[rival]]
-    rival, owner = rival[owner != rival], owner[owner != rival]
+    some = (owner >= 0) & (owner != rival)
+    rival, owner = rival[some], owner[some]
     ends = np.sort(np.stack([track[rival], track[owner]]), 0)
     pair, at = np.unique(ends, axis=1, return_inverse=True)
     doubt = np.zeros(pair.shape[1])

@@ -22,11 +22,13 @@ from scipy.special import ndtr
 
 from ..geometry import to_range_bearing, unit_vector
 from ..parameters import TrackerParameters
-from ..types import Array, Extrapolation, IntArray, Plots, Tracks, append, take
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, Tracks, append, take
 from .equivalent_plot import placed
 from .gate import Pairs
 from .lifecycle import TENTATIVE
 from .surroundings import Evidence
+
+FAR = 3.0  # deviations
 
 
 class Shared(NamedTuple):
@@ -66,6 +68,7 @@ def shared(
     look = (mate >= 0) & held[pairs.track] & held[pairs.track[mate]]
     look &= pairs.track[mate] != pairs.track
     near = look.nonzero()[0]
+    near = near[_near(pairs.track[near], pairs.track[mate[near]], ahead, origin, radar)]
     one, mate = pairs.track[near], mate[near]
     other, plot = pairs.track[mate], pairs.plot[near]
     if not len(one):
@@ -86,6 +89,18 @@ def shared(
     found = ((share > 0.5) & (share == best[one]) & (share == best[other])).nonzero()[0]
     found = found[np.unique(np.minimum(one, other)[found], return_index=True)[1]]
     return Shared(one[found], other[found], plot[found])
+
+
+def _near(
+    one: IntArray, other: IntArray, ahead: Extrapolation, origin: Array, radar: TrackerParameters
+) -> BoolArray:
+    """Mask [K] of the tracks that may be in one cell at all: the others are not looked at."""
+    apart = ahead.position[one] - ahead.position[other]
+    spread = ahead.covariance[one] + ahead.covariance[other]
+    range_ = np.hypot(*(ahead.position[one] - origin[one]).T)
+    cell = np.hypot(radar.range_resolution_m, range_ * np.radians(radar.beam_width_deg))
+    found: BoolArray = np.hypot(*apart.T) < cell + FAR * np.sqrt(spread[:, 0, 0] + spread[:, 1, 1])
+    return found
 
 
 def _in_one_cell(
