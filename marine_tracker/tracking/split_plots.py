@@ -12,9 +12,9 @@ from ..parameters import TrackerParameters
 from ..types import Array, BoolArray, IntArray, Plots
 from .equivalent_plot import placed
 from .gate import Pairs, window_pairs
+from .unresolved import cell
 
 HULL = 3.0  # times glint: so much farther apart than a cell may bow and stern of a ship be
-CELL = 4.0  # deviations of a plot: a radar that measures so finely has no larger cell
 FEW = 0.05  # false plots: where more are expected within reach, one may lie there by chance
 
 
@@ -53,8 +53,7 @@ def _reach(range_: Array, radar: TrackerParameters) -> tuple[float, Array]:
     """How far apart in range, m, and bearing [K], rad, at the ranges [K] m, plots of one target
     may be."""
     hull = HULL * radar.glint_sigma
-    depth = min(radar.range_resolution_m, CELL * radar.range_sigma_m)
-    width = np.radians(min(radar.beam_width_deg, CELL * radar.bearing_sigma_deg))
+    depth, width = cell(radar)
     return depth + hull, np.minimum(width + hull / np.maximum(range_, 1.0), np.pi)
 
 

@@ -29,6 +29,7 @@ from .lifecycle import TENTATIVE
 from .surroundings import Evidence
 
 FAR = 3.0  # deviations
+CELL = 4.0  # deviations of a plot: a radar that measures so finely has no larger cell
 
 
 class Shared(NamedTuple):
@@ -91,15 +92,25 @@ def shared(
     return Shared(one[found], other[found], plot[found])
 
 
+def cell(radar: TrackerParameters) -> tuple[float, float]:
+    """Depth m and width rad of a resolution cell.
+
+    Where depth and beam are left at their defaults the radar may be much finer than these: then its
+    noise tells so.
+    """
+    depth = min(radar.range_resolution_m, CELL * radar.range_sigma_m)
+    return depth, float(np.radians(min(radar.beam_width_deg, CELL * radar.bearing_sigma_deg)))
+
+
 def _near(
     one: IntArray, other: IntArray, ahead: Extrapolation, origin: Array, radar: TrackerParameters
 ) -> BoolArray:
     """Mask [K] of the tracks that may be in one cell at all: the others are not looked at."""
     apart = ahead.position[one] - ahead.position[other]
     spread = ahead.covariance[one] + ahead.covariance[other]
-    range_ = np.hypot(*(ahead.position[one] - origin[one]).T)
-    cell = np.hypot(radar.range_resolution_m, range_ * np.radians(radar.beam_width_deg))
-    found: BoolArray = np.hypot(*apart.T) < cell + FAR * np.sqrt(spread[:, 0, 0] + spread[:, 1, 1])
+    range_, (depth, width) = np.hypot(*(ahead.position[one] - origin[one]).T), cell(radar)
+    reach = np.hypot(depth, range_ * width)
+    found: BoolArray = np.hypot(*apart.T) < reach + FAR * np.sqrt(spread[:, 0, 0] + spread[:, 1, 1])
     return found
 
 
@@ -113,11 +124,9 @@ def _in_one_cell(
     apart = (axes @ (ahead.position[one] - ahead.position[other])[..., None])[..., 0]
     spread = ahead.covariance[one][:, :2, :2] + ahead.covariance[other][:, :2, :2]
     sigma = np.sqrt((axes @ spread * axes).sum(2))
-    cell = np.stack(
-        [np.full_like(range_, radar.range_resolution_m), range_ * np.radians(radar.beam_width_deg)],
-        1,
-    )
-    found: Array = (ndtr((cell - apart) / sigma) - ndtr((-cell - apart) / sigma)).prod(1)
+    depth, width = cell(radar)
+    edge = np.stack([np.full_like(range_, depth), range_ * width], 1)
+    found: Array = (ndtr((edge - apart) / sigma) - ndtr((-edge - apart) / sigma)).prod(1)
     return found
 
 
