@@ -6,9 +6,9 @@ target that the other one followed before they met.
 
 A scan can exchange them where two things hold. Its plots do not tell which is whose: that is the
 doubt b, the lesser of the probabilities of both tracks to own one plot, over all joint associations
-(0 to 0.5; marginals.py). And each track can go on as the other one: with d the distance of their
-expected velocities, in deviations of that difference, its density is exp(-d^2 / 2) of the greatest.
-So the scan's risk is LASTS b exp(-d^2 / 2): ships that cross at a wide angle are in one place, and
+(0 to 0.5; marginals.py). And each of the two can go on as the other one: with d the distance of
+their expected velocities, in deviations of that difference, its density is exp(-d^2 / 2) of the
+greatest. So the scan's risk is b exp(-d^2): ships that cross at a wide angle are in one place, and
 yet their motion tells them apart; ships in company have one motion, and yet their plots do. Scans
 in a row ask the same question again, so the risk of the meeting is the greatest of its scans'.
 
@@ -23,10 +23,6 @@ from ..types import Array, Extrapolation, IntArray, Tracks, row_of, take
 
 LEAST = 1e-3  # probability of a pair below which there is no doubt
 KEPT = 120.0  # s after the last contested plot; then it is no news any more
-
-# Of the exchanges that one scan allows, so many are not undone by the next ones: from 1,300
-# simulated meetings with imm and gwnn, at 2 to 40 degrees.
-LASTS = 0.7
 
 
 class Contested(NamedTuple):
@@ -83,7 +79,7 @@ def step(
     apart = ahead.velocity[one] - ahead.velocity[two]
     spread = (ahead.covariance[one] + ahead.covariance[two])[:, 2:, 2:]
     distance = (apart * np.linalg.solve(spread, apart[..., None])[..., 0]).sum(1)
-    risk = LASTS * doubt * np.exp(-0.5 * distance)
+    risk = doubt * np.exp(-distance)
     kept = take(before, now - before.last <= KEPT)
     ids = np.sort(np.stack([tracks.id[one], tracks.id[two]]), 0)
     known = row_of(_key(kept.one, kept.two), _key(*ids))
