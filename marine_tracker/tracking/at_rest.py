@@ -139,9 +139,7 @@ def follow(before: Anchors, row: IntArray, tracks: Tracks, seen: Standing) -> An
     whole = count == len(before.id)  # rows ascend, as ids do
     old = before if whole else take(before, row[:count])
     old = old._replace(
-        line=steady.follow(
-            old.line, seen.hit[:count], seen.position[:count], seen.time[:count]
-        )
+        line=steady.follow(old.line, seen.hit[:count], seen.position[:count], seen.time[:count])
     )
     if count < len(row):
         at, time, ids = seen.position[count:], seen.time[count:], tracks.id[count:]
