@@ -12,18 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import (
-    Array,
-    BoolArray,
-    Extrapolation,
-    IntArray,
-    Plots,
-    Tracks,
-    append,
-    row_of,
-    some,
-    take,
-)
+from ..types import Array, BoolArray, Extrapolation, IntArray, Tracks, append, some, take
 from . import steady
 from .lifecycle import COASTING, CONFIRMED, LOST, STATIONARY
 from .places import AT_REST, GATE, UNNAMED, WANDER, Places, empty, nearest
@@ -106,42 +95,38 @@ def step(
     Anchors of tracks that were not in this scan stay; those of lost ones go.
     """
     at = at_places(ground.places, seen)
-    row = row_of(ground.anchors.id, tracks.id)
-    others = _others(ground.anchors, row)
-    anchors = follow(ground.anchors, row, tracks, seen)
+    here, others = _apart(ground.anchors, tracks.id)
+    anchors = follow(here, tracks, seen)
     along = steady.under_way(anchors.line, seen.variance + WANDER**2)
     anchors = moving(anchors, at, seen, along, ground.revolutions >= LEARNT)
     rest = was | ~along  # what surely moves does not become a place
-    tracks, places = settle(tracks, was, rest, anchors, at, ground.places, others.number)
+    tracks, places = settle(tracks, was, rest, anchors, at, ground.places, others)
     target = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
     anchors = anchors._replace(number=tracks.number, target=target)
     every = some(anchors, tracks.status != LOST)
-    if len(others.id):
+    if others is not None:
         every = append(others, every)
         every = take(every, every.id.argsort(kind='stable'))
     ground = ground._replace(places=places, anchors=every)
     return ground, tracks, ~anchors.moved | (steady.speed(anchors.line) < AT_REST)
 
 
-def _others(before: Anchors, row: IntArray) -> Anchors:
-    """The anchors of tracks that are not in this scan: not in the rows [N], -1 for none."""
-    away = np.ones(len(before.id), bool)
-    away[row[row >= 0]] = False
-    return take(before, away)
+def _apart(anchors: Anchors, ids: IntArray) -> tuple[Anchors, Anchors | None]:
+    """The anchors of tracks in this scan, by their ids [N], and those of others, if any are."""
+    if np.array_equal(anchors.id, ids[: len(anchors.id)]):
+        return anchors, None
+    here = np.isin(anchors.id, ids)
+    return take(anchors, here), take(anchors, ~here)
 
 
-def follow(before: Anchors, row: IntArray, tracks: Tracks, seen: Standing) -> Anchors:
-    """The anchors of the N tracks, in their order; new ones, row [N] -1, begin where they are.
-
-    row  [N]  of the anchors before; new tracks come last
-    """
-    count = int(np.count_nonzero(row >= 0))
-    whole = count == len(before.id)  # rows ascend, as ids do
-    old = before if whole else take(before, row[:count])
-    old = old._replace(
-        line=steady.follow(old.line, seen.hit[:count], seen.position[:count], seen.time[:count])
+def follow(before: Anchors, tracks: Tracks, seen: Standing) -> Anchors:
+    """The anchors of the N tracks, of which the first ones have anchors before; new ones begin
+    where they are."""
+    count = len(before.id)
+    old = before._replace(
+        line=steady.follow(before.line, seen.hit[:count], seen.position[:count], seen.time[:count])
     )
-    if count < len(row):
+    if count < len(tracks.id):
         at, time, ids = seen.position[count:], seen.time[count:], tracks.id[count:]
         none = np.zeros(len(ids), np.int64)
         no, variance = none > 0, seen.variance[count:]
@@ -176,14 +161,14 @@ def settle(
     anchors: Anchors,
     at: IntArray,
     places: Places,
-    others: IntArray,
+    others: Anchors | None,
 ) -> tuple[Tracks, Places]:
     """The tracks with STATIONARY ones marked and numbered, and the places without those left.
 
     was     [N] it was stationary before this scan
     rest    [N] it may be stationary
     at      [N] its established place, -1 for none
-    others  numbers of tracks that were not in this scan
+    others  anchors of tracks that were not in this scan
     """
     named = places.number
     if not np.count_nonzero(named) and not np.count_nonzero(was):
@@ -202,7 +187,8 @@ def settle(
     borrow = (still & (number == 0) & (at >= 0)).nonzero()[0]
     borrow = borrow[named[at[borrow]] > 0]
     if len(borrow):
-        borrow = borrow[~np.isin(named[at[borrow]], np.append(number, others))]
+        taken = number if others is None else np.append(number, others.number)
+        borrow = borrow[~np.isin(named[at[borrow]], taken)]
         _, first = np.unique(named[at[borrow]], return_index=True)
         number[borrow[first]] = named[at[borrow[first]]]
     tracks = tracks._replace(
@@ -280,18 +266,26 @@ def at_places(places: Places, seen: Standing) -> IntArray:
 
 
 def standing(
-    hit: BoolArray, chosen: Plots, ahead: Extrapolation, expected: Array, time: Array
+    plot_of: IntArray,
+    plots: Array,
+    variances: Array,
+    ahead: Extrapolation,
+    expected: Array,
+    time: Array,
 ) -> Standing:
     """What is known of the N tracks of a scan.
 
-    hit       [N] they had a plot; chosen: those plots, in the order of the tracks; time [N] s
-    ahead     the tracks before the scan, with covariances `expected` [N0, 2, 2] m^2; those that are
-              missing are new, and had a plot
+    plot_of           [N]     the plot that each track took, -1 for none; time [N] s
+    plots, variances  [M, 2]  m, of the plots, and [M] m^2, their larger axes
+    ahead             the tracks before the scan, with covariances `expected` [N0, 2, 2] m^2; those
+                      that are missing are new, and had a plot
     """
-    count, before = len(hit), len(ahead.time)
-    position, variance = np.zeros((count, 2)), np.zeros(count)
+    count, before, hit = len(plot_of), len(ahead.time), plot_of >= 0
+    position, variance = np.empty((count, 2)), np.empty(count)
     position[:before], variance[:before] = ahead.position, larger(expected)
-    position[hit], variance[hit] = chosen.position, larger(chosen.covariance)
+    rows = hit.nonzero()[0]
+    took = plot_of[rows]
+    position[rows], variance[rows] = plots[took], variances[took]
     return Standing(position, variance, hit, time)
 
 

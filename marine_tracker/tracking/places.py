@@ -20,7 +20,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import rel_entr
 
-from ..types import Array, BoolArray, IntArray, append, some, take
+from ..types import Array, BoolArray, IntArray, append, put, some, take
 
 GATE = 9.0  # squared deviations within which a plot belongs to a place
 WANDER = 4.0  # m, each axis: a thing on the ground echoes here and there
@@ -77,6 +77,17 @@ class Places(NamedTuple):
         """Mask [P] of the places that are sure."""
         found: BoolArray = self.number != 0
         return found
+
+
+class _Means(NamedTuple):
+    """What of the places is a mean, or a sum, over their plots."""
+
+    position: Array
+    variance: Array
+    plots: Array
+    time: Array
+    spread: Array
+    slope: Array
 
 
 def empty() -> Places:
@@ -141,13 +152,11 @@ def learn(before: Places, position: Array, variance: Array, time: Array, view: V
     if len(after.share) > MOST:
         after = take(after, slice(0, MOST))
     sure = (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS) & (after.number == 0)
-    sure &= np.minimum(after.share, after.lately) >= BECOMES
+    sure &= (np.minimum(after.share, after.lately) >= BECOMES) & _at_rest(after)
     number, rows = after.number, sure.nonzero()[0]
     if len(rows):
-        those = take(after, rows)
-        rows = rows[_at_rest(those) & (surplus(those) > SURE)]
         number = number.copy()
-        number[rows] = UNNAMED
+        number[rows[surplus(take(after, rows)) > SURE]] = UNNAMED
     return after._replace(number=number, crowded=_crowded(after.position, number != 0))
 
 
@@ -226,22 +235,20 @@ def _looked(places: Places, hit: IntArray, visible: BoolArray) -> Places:
 def _with_plots(places: Places, row: IntArray, at: Array, variance: Array, time: Array) -> Places:
     """One more plot for each of the rows [K], by the recursion of means and sums of squares."""
     keeps = 1 - 1 / MEMORY  # what older plots count for
-    old = keeps * places.plots[row]
+    means = _Means(*(getattr(places, name) for name in _Means._fields))
+    before = take(means, row)
+    old = keeps * before.plots
     count = old + 1
-    late, off = time - places.time[row], at - places.position[row]
-    changed = {
-        'time': places.time[row] + late / count,
-        'position': places.position[row] + off / count[:, None],
-        'variance': places.variance[row] + (variance - places.variance[row]) / count,
-        'spread': keeps * places.spread[row] + late**2 * old / count,
-        'slope': keeps * places.slope[row] + (late * old / count)[:, None] * off,
-        'plots': count,
-    }
-    columns = {}
-    for name, values in changed.items():
-        columns[name] = getattr(places, name).copy()
-        columns[name][row] = values
-    return places._replace(**columns)
+    late, off = time - before.time, at - before.position
+    now = _Means(
+        before.position + off / count[:, None],
+        before.variance + (variance - before.variance) / count,
+        count,
+        before.time + late / count,
+        keeps * before.spread + late**2 * old / count,
+        keeps * before.slope + (late * old / count)[:, None] * off,
+    )
+    return places._replace(**put(means, row, now)._asdict())
 
 
 def _new(position: Array, variance: Array, time: Array) -> Places:
