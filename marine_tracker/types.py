@@ -268,6 +268,13 @@ def put(into: Rows, rows: IntArray, new: Rows) -> Rows:
     return _map(one, into, new)
 
 
+def among(values: IntArray, others: IntArray) -> BoolArray:
+    """Mask [N] of the values that are among the others [K]; at once where there are none."""
+    if not len(values) or not len(others):
+        return np.zeros(len(values), bool)
+    return np.isin(values, others)
+
+
 def row_of(ids: IntArray, wanted: IntArray) -> IntArray:
     """Row [K] in ids [N], all different, of each wanted id [K]; -1 where it is not there."""
     if not len(ids):
