@@ -179,7 +179,9 @@ class Ais:
         active &= ~rests
         order = np.lexsort((np.nan_to_num(miles, nan=np.inf), ~danger, ~by_hand))
         active = _first(active, order, p.ais_max_activated)
-        asleep = ~active & np.isin(known.kind, self.kinds) & ~(miles > p.ais_range_nm)
+        ahead = np.where(passes.approach.tcpa < 0, miles, passes.approach.cpa / NAUTICAL_MILE)
+        asleep = ~active & np.isin(known.kind, self.kinds)
+        asleep &= ~(miles > p.ais_range_nm) & ~(ahead > p.ais_cpa_nm)  # unknown ones stay
         asleep = _first(asleep, order, p.ais_max_sleeping)
         memory = memory._replace(active=known.id[active])
         return memory, np.select([active, asleep], [ACTIVATED, SLEEPING], LEFT_OUT).astype(np.int8)
