@@ -18,6 +18,7 @@ from ..types import (
     Scan,
     Tracks,
     append,
+    some,
     take,
 )
 from . import (
@@ -213,13 +214,15 @@ class Tracker:
         """The tracks with those at rest as such, and numbered; which plots tell places."""
         was = np.zeros(len(plot_of), bool)
         was[: len(memory.tracks.id)] = memory.tracks.status == STATIONARY
-        chosen = take(view.plots, plot_of[seen.hit])
-        still = at_rest.standing(seen.hit, chosen, view.ahead, view.spread, seen.time)
+        plots, variance = view.plots, at_rest.larger(view.plots.covariance)
+        still = at_rest.standing(
+            plot_of, plots.position, variance, view.ahead, view.spread, seen.time
+        )
         ground, tracks, learnable = at_rest.step(memory.ground, tracks, was, still)
         tracks, next_number = lifecycle.number(tracks, memory.next_number)
         fixed = afloat.copy()
         fixed[plot_of[seen.hit & ~learnable]] = False
-        return _Judged(tracks, ground, next_number, fixed)
+        return _Judged(tracks, ground, next_number, fixed, variance)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """Takes over the memory of another tracker for this one's estimator. No track is lost.
@@ -295,12 +298,14 @@ class _View(NamedTuple):
 
 
 class _Judged(NamedTuple):
-    """Tracks as the scan has judged them; the places; mask [M] of the plots that tell places."""
+    """Tracks as the scan has judged them; the places; mask [M] of the plots that tell places, and
+    the variances [M] m^2 of all plots, along their larger axes."""
 
     tracks: Tracks
     ground: at_rest.Ground
     next_number: int
     fixed: BoolArray
+    variance: Array
 
 
 def _remember(
@@ -320,15 +325,15 @@ def _remember(
     free [M]: the plots that are lone now
     """
     tracks, lone, leftover = judged.tracks, view.lone, memory.radars[scan.radar].leftover
-    nowhere = take(lone, np.delete(np.arange(len(lone.time)), first))
-    at = take(view.plots, judged.fixed)
+    nowhere = lone if not len(first) else take(lone, np.delete(np.arange(len(lone.time)), first))
+    at = some(view.plots, judged.fixed)
     sure = lifecycle.sure(tracks) & (tracks.status != STATIONARY)
     found = surroundings.found(sure, lifecycle.given_up(tracks, reason), seen, nowhere)
-    found = (*found, at.position, at_rest.larger(at.covariance), at.time)
+    found = (*found, at.position, judged.variance[judged.fixed], at.time)
     found = (*found, at.range, at.bearing, at.origin, offsets.rates(scan, at.time, view.radar))
     alive = tracks.status != LOST
     after = TrackerMemory(
-        tracks if alive.all() else take(tracks, alive),
+        some(tracks, alive),
         memory.radars,
         scan.own_ship.position[-1],
         memory.next_id + len(first),
