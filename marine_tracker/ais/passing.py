@@ -49,15 +49,7 @@ def look(
 ) -> Passing:
     """The ships at the time now, s; arguments as of Ais.step."""
     count, limits = len(ships.id), arpa.limits
-    motion = Motion(
-        moving.position,
-        moving.velocity - drift,
-        moving.covariance,
-        np.full(count, STEADY),
-        np.full(count, np.nan),
-        moving.told,
-        np.zeros(count, bool),
-    )
+    motion = motion_of(moving, drift)
     own, no_danger = arpa.anchored(samples, motion, own, now, sensors)
     passes = _rough(motion, moving.told, own)
     alone = (joined.state == AIS_ONLY) & ships.placed & ~ships.lost & moving.told
@@ -94,6 +86,20 @@ def look(
     return Passing(passes, danger.astype(np.int8), guarded, seen)
 
 
+def motion_of(moving: Moving, drift: Array) -> Motion:
+    """Their motion as that of radar targets; drift [2] m/s, what is subtracted from all."""
+    count = len(moving.told)
+    return Motion(
+        moving.position,
+        moving.velocity - drift,
+        moving.covariance,
+        np.full(count, STEADY),
+        np.full(count, np.nan),
+        moving.told,
+        np.zeros(count, bool),
+    )
+
+
 def _rough(motion: Motion, told: BoolArray, own: OwnMotion) -> Approach:
     """The approach without deviations and bow crossing; nan where place or motion is not told."""
     position, velocity = motion.position - own.position, motion.velocity - own.velocity
@@ -112,4 +118,4 @@ def _rough(motion: Motion, told: BoolArray, own: OwnMotion) -> Approach:
     return Approach(**values)
 
 
-__all__ = ['DANGEROUS', 'NEARLY', 'Passing', 'look']
+__all__ = ['DANGEROUS', 'NEARLY', 'Passing', 'look', 'motion_of']

@@ -8,10 +8,14 @@ from typing import Any
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
+from ..ais.ais import ACTIVATED, AisPicture
+from ..ais.join import BOTH
+from ..ais.passing import motion_of
 from ..arpa import alarm_text, alarms, alerts
 from ..arpa.alarms import PLOTS_MISSING
 from ..arpa.alerts import NORMAL, Alerts
 from ..arpa.arpa import Arpa, Picture
+from ..arpa.motion import Motion
 from ..arpa.own_path import TrialManoeuvre, countdown
 from ..arpa.situation import LIKELY
 from ..arpa.stabilisation import NONE
@@ -19,7 +23,7 @@ from ..arpa.targets import label
 from ..arpa.trial_manoeuvre import safe_courses, trial_approach
 from ..arpa.zones import Zones
 from ..geometry import KNOT, NAUTICAL_MILE
-from ..types import take
+from ..types import IntArray, append, take
 from . import diagnostics
 from .diagnostics import ERROR, OK, WARN
 from .targets_message import degrees, figure
@@ -116,13 +120,36 @@ def lacking(picture: Picture) -> str:
     return ''
 
 
+def all_targets(picture: Picture, ships: AisPicture | None) -> tuple[Motion, IntArray, IntArray]:
+    """Radar targets, then the activated ships that are none: motion (nan where it is not told), ids
+    (of ships below 0), numbers (of ships MMSI)."""
+    targets = picture.targets
+    if ships is None:
+        return picture.motion, targets.id, targets.number
+    rows = ((ships.shown == ACTIVATED) & (ships.joined.state != BOTH) & ~ships.ships.lost).nonzero()
+    known, moving = take(ships.ships, rows[0]), take(ships.moving, rows[0])
+    motion = motion_of(moving, picture.stabilised.drift)
+    place = np.where(moving.told[:, None], moving.position, np.nan)
+    return (
+        append(picture.motion, motion._replace(position=place)),
+        np.concatenate([targets.id, -known.id]),
+        np.concatenate([targets.number, known.mmsi]),
+    )
+
+
 def trial_message(
-    arpa: Arpa, picture: Picture, elapsed: float, time_ns: int, hardware_id: str
+    arpa: Arpa,
+    picture: Picture,
+    ships: AisPicture | None,
+    elapsed: float,
+    time_ns: int,
+    hardware_id: str,
 ) -> DiagnosticArray:
     """The effect of the trial manoeuvre that was begun `elapsed` s ago.
 
     The first entry, T, has the trial itself, its countdown and the safe courses. One entry for each
-    target follows. If own ship's course at the start of the turn is unknown, T says so.
+    target follows, and for each activated ship of AIS that is no radar target. If own ship's course
+    at the start of the turn is unknown, T says so.
     """
     p, limits, own = arpa.parameters, arpa.limits, picture.own
     why_not = lacking(picture)
@@ -140,8 +167,9 @@ def trial_message(
         ),
         elapsed,
     )
-    found = trial_approach(picture.motion, own, trial, limits.cpa, limits.tcpa)
-    safe = safe_courses(picture.motion, own, trial, limits.cpa, limits.tcpa)
+    motion, ids, numbers = all_targets(picture, ships)
+    found = trial_approach(motion, own, trial, limits.cpa, limits.tcpa)
+    safe = safe_courses(motion, own, trial, limits.cpa, limits.tcpa)
     sectors = ', '.join(
         f'{np.degrees(first):03.0f}-{np.degrees(last):03.0f}' for first, last in safe.sectors
     )
@@ -163,7 +191,7 @@ def trial_message(
     dangerous = (found.cpa < limits.cpa) & (found.tcpa >= 0) & (found.tcpa < limits.tcpa)
     dangerous |= found.danger_probability >= LIKELY
     for name, cpa, tcpa, probability, danger in zip(
-        label(picture.targets.id, picture.targets.number),
+        label(ids, numbers),
         (found.cpa / NAUTICAL_MILE).tolist(),
         (found.tcpa / 60).tolist(),
         found.danger_probability.tolist(),

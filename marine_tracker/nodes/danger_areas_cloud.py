@@ -10,11 +10,12 @@ point at all: own ship's course and speed are not known. See arpa/danger_areas.p
 import numpy as np
 from sensor_msgs.msg import PointCloud2
 
+from ..ais.ais import AisPicture
 from ..arpa.arpa import Arpa, Picture
 from ..arpa.danger_areas import dangers
 from ..geometry import unit_vector
 from . import convert
-from .arpa_messages import lacking
+from .arpa_messages import all_targets, lacking
 
 RING = 0  # of the field area
 AREA_TYPE = np.dtype(
@@ -25,12 +26,14 @@ AREA_TYPE = np.dtype(
 )
 
 
-def message(arpa: Arpa, picture: Picture, time_ns: int) -> PointCloud2:
-    """The areas and the ring of a picture, within the limits of the alarm."""
+def message(arpa: Arpa, picture: Picture, ships: AisPicture | None, time_ns: int) -> PointCloud2:
+    """The areas and the ring of a picture, within the limits of the alarm; of radar targets and of
+    activated ships of AIS, which have the id 0 and their MMSI for a number."""
     if lacking(picture):
         return convert.cloud_message(np.zeros(0, AREA_TYPE), time_ns)
     own, limits = picture.own, arpa.limits
-    found = dangers(picture.motion, own, limits.cpa, limits.tcpa)
+    motion, ids, numbers = all_targets(picture, ships)
+    found = dangers(motion, own, limits.cpa, limits.tcpa)
     ring = np.zeros(len(found.course), AREA_TYPE)
     ring['x'], ring['y'] = own.position
     ring['course'], ring['probability'] = found.course, found.probability
@@ -42,8 +45,8 @@ def message(arpa: Arpa, picture: Picture, time_ns: int) -> PointCloud2:
     place = own.position + middle[..., None] * unit_vector(areas.course)
     rows['x'], rows['y'] = place[..., 0], place[..., 1]
     rows['area'] = 1 + np.arange(len(areas.row))[:, None]
-    rows['number'] = picture.targets.number[areas.row][:, None]
-    rows['id'] = picture.targets.id[areas.row][:, None]
+    rows['number'] = numbers[areas.row][:, None]
+    rows['id'] = np.maximum(ids, 0)[areas.row][:, None]
     rows['course'] = areas.course
     rows['near'], rows['far'] = areas.near, areas.far
     rows['probability'] = areas.probability

@@ -31,7 +31,11 @@ MOUNTING = (
     'bearing_offset_deg',
     'bearings',
 )
-ASKED = (*LIMITS, *MOUNTING, ZONES)
+AIS = (
+    *('ais_symbol', 'ais_join', 'ais_kinds', 'ais_range_nm', 'ais_cpa_nm', 'ais_activation'),
+    *('ais_activation_range_nm', 'ais_lost_alarm', 'ais_lost_range_nm', 'ais_sleeping_danger'),
+)
+ASKED = (*LIMITS, *MOUNTING, ZONES, *AIS)
 
 
 class TrackerCommands:
@@ -52,6 +56,10 @@ class TrackerCommands:
                 ('acknowledge_alert', topics.ACKNOWLEDGE_ALERT),
             )
         }
+        self._awake = [
+            node.publisher(UInt32, topic, topics.reliable())
+            for topic in (topics.AIS_SLEEP, topics.AIS_ACTIVATE)
+        ]
         self._triggers = {
             name: node.create_client(Trigger, service)
             for name, service in (
@@ -99,6 +107,15 @@ class TrackerCommands:
             self._zones.run(command, answer)
         elif name == 'explain':
             self._asker.ask(values['x'], values['y'], partial(settle, answer))
+        elif name == 'ais_awake':
+            mmsi, awake = values['mmsi'], values['awake']
+            said = f'AIS {mmsi:09d} {"is activated" if awake else "goes to sleep"} at the next scan'
+            self._publish(self._awake[awake], UInt32(data=mmsi), answer, said)
+        elif name == 'ais':
+            flags = ('lost_alarm', 'sleeping_danger', 'join')
+            self._put(
+                {f'ais_{key}': bool(v) if key in flags else v for key, v in values.items()}, answer
+            )
         elif name == 'limits':
             self._put(
                 {'cpa_limit_nm': values['cpa_nm'], 'tcpa_limit_min': values['tcpa_min']}, answer
@@ -143,7 +160,7 @@ class TrackerCommands:
         publisher.publish(message)
         settle(answer, said)
 
-    def _put(self, values: dict[str, float], answer: Future[str]) -> None:
+    def _put(self, values: dict[str, Any], answer: Future[str]) -> None:
         request = SetParameters.Request(
             parameters=[
                 Parameter(name, value=value).to_parameter_msg() for name, value in values.items()

@@ -132,7 +132,12 @@ class Operator:
         if self._trial_since is not None:
             self._to_trial.publish(
                 trial_message(
-                    self.arpa, self.picture, scan.end - self._trial_since, end_ns, self._hardware_id
+                    self.arpa,
+                    self.picture,
+                    output.ais,
+                    scan.end - self._trial_since,
+                    end_ns,
+                    self._hardware_id,
                 )
             )
         return done, output

@@ -29,7 +29,7 @@ from .convert import ConversionError
 from .declare import declare
 from .diagnostics import FAILED, OK, WARN, Tally
 from .display_ais import BAD_SHIPS, DisplayAis
-from .display_commands import LIMITS, TrackerCommands
+from .display_commands import AIS, LIMITS, TrackerCommands
 from .display_danger_areas import DangerAreas
 from .display_demo import SHOW, DemoLink
 from .display_own import OwnShipHeard
@@ -73,7 +73,7 @@ class PpiDisplayNode(RunnableNode):
         self._way = OwnWay()
         self._areas = DangerAreas(self, self.server)
         DisplaySpokes(self, self.server, self._own, self._bad)
-        DisplayAis(self, self.server, self._bad)
+        self._ais = DisplayAis(self, self.server, self._bad)
         for kind, topic, callback, quality in (
             (Odometry, topics.ODOMETRY, self._on_odometry, topics.best_effort()),
             (NavSatFix, topics.FIX, self._on_fix, topics.best_effort(1)),
@@ -177,8 +177,10 @@ class PpiDisplayNode(RunnableNode):
         )
         rows = rows[rows['id'] > 0]
         own = self._own.position
-        position = np.stack([rows['x'], rows['y']], 1).astype(float)
-        if own is not None and self._trails.add(seconds, own, rows['id'], position):
+        ships, places = self._ais.places()
+        ids = np.concatenate([rows['id'].astype(int), ships])
+        position = np.concatenate([np.stack([rows['x'], rows['y']], 1).astype(float), places])
+        if own is not None and self._trails.add(seconds, own, ids, position):
             self.server.publish('trails', self._trails.plain())
 
     def _on_alarms(self, message: DiagnosticArray) -> None:
@@ -263,6 +265,7 @@ class PpiDisplayNode(RunnableNode):
         self._hear_radars([radar.topic for radar in radars])
         for kind, told in (
             ('limits', {name: values[name] for name in LIMITS}),
+            ('ais', {name: values[name] for name in AIS}),
             ('zones', zones_told(values)),
         ):
             if told != self._told.get(kind):

@@ -90,7 +90,7 @@ class TrackerOutput:
         end = output.scan.end
         self._tell_targets(self._targets.message(seen, name, end, end_ns, ships, symbol))
         if self._to_areas.get_subscription_count():
-            self._to_areas.publish(danger_areas_cloud.message(arpa, output.picture, end_ns))
+            self._to_areas.publish(danger_areas_cloud.message(arpa, output.picture, ships, end_ns))
         if self._to_markers.get_subscription_count():
             self._to_markers.publish(
                 self._markers.message(seen, output.picture, arpa.zones, arpa.parameters, end_ns)

@@ -37,6 +37,14 @@ class AisParameters:
         high=1000.0,
         live=True,
     )
+    ais_cpa_nm: float = parameter(
+        200.0,
+        'Sleeping ships that pass farther off than this are left out (filter).',
+        unit='NM',
+        low=0.1,
+        high=200.0,
+        live=True,
+    )
     ais_kinds: str = parameter(
         'a b aircraft aid sart',
         'Kinds of sleeping ships that are not left out (filter): a, b, aircraft, aid, sart.',

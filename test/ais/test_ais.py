@@ -209,6 +209,12 @@ def test_filters_leave_out_sleeping_ships_only_and_capacity_the_farthest():
     assert watch.shown(FAR) == LEFT_OUT  # beyond 5 NM
     assert watch.shown(FAR + 1) == LEFT_OUT  # class B
     assert watch.shown(DANGEROUS) == ACTIVATED  # dangerous: never left out
+    filtered = Watch(AisParameters(ais_cpa_nm=1.5, ais_activation='danger'))
+    filtered.ship(FAR, north=6, east=1.2).ship(FAR + 1, north=6, east=2.3)
+    filtered.ship(FAR + 2, north=-2, course=180).ship(FAR + 3, north=-1, course=180)
+    filtered.ship(FAR + 4, north=4, speed=np.nan).step(4)
+    left = [watch_of for watch_of in range(5) if filtered.shown(FAR + watch_of) == LEFT_OUT]
+    assert left == [1, 2]  # passes at 2.3 NM; goes away from 2 NM on. Unknown: never left out
     crowd = Watch(AisParameters(ais_activation='all', ais_max_activated=20, ais_max_sleeping=100))
     for k in range(25):
         crowd.ship(FAR + k, north=3 + k, east=6)

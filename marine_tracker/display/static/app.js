@@ -20,7 +20,7 @@
  *     of it is told as well
  * @property {(text: string, ms?: number) => void} tell   words over the picture, for some seconds
  * @property {(id: number|null) => void} choose        a target's track, or none
- * @property {() => import('./state.js').Target|undefined} chosen
+ * @property {() => ReturnType<typeof import('./ships.js').selection>} chosen
  * @property {(x: number, y: number) => void} selectAt  what lies at a pixel; the cursor goes there
  * @property {() => void} acquire                      at the cursor
  * @property {() => void} cancel                       the chosen target

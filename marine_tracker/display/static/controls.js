@@ -29,6 +29,7 @@ export function applySettings(/** @type {import('./app.js').App} */ app) {
     safeCourses: `Safe courses ${settings.safeCourses}`,
     ellipses: `Ellipses ${settings.ellipses}`,
     labels: `Numbers ${settings.labels}`,
+    ships: `AIS ${settings.ships}`,
     palette: settings.palette,
     sound: `Sound ${settings.sound}`,
   };

@@ -29,6 +29,7 @@ export function showCorners(state, settings, scope, marks, pointer, more, local)
     element('modes'),
     `vectors ${settings.vectors}, ${settings.vectorMinutes} min\ntrails ${settings.trails}${trails}\n` +
       stabilised(state.own) +
+      aisSays(state, settings) +
       more,
   );
   const place = pointer ? toMap(scope.view, ...pointer) : marks.cursor;
@@ -63,6 +64,11 @@ export function cursorLines(/** @type {number[]} */ [x, y], own) {
     `cursor ${bearingText(bearing, own)} ${format.miles(range)} NM`,
     found ? format.place(...found) : 'no position',
   ];
+}
+
+/** Which ships of AIS show; nothing where none was ever heard. */
+function aisSays(/** @type {import('./state.js').State} */ state, settings) {
+  return state.ships.length || settings.ships !== 'all' ? `\nAIS ${settings.ships}` : '';
 }
 
 /** What courses and speeds are measured against, and by what that is known. */

@@ -2,6 +2,7 @@
 
 import { toMap, toScreen } from './geometry.js';
 import { next } from './settings.js';
+import { shipsShown } from './ships.js';
 import { edit, moveHandle, nextHandle } from './zones_panel.js';
 
 const STEP_PX = 8; // of the cursor
@@ -26,6 +27,7 @@ const SETTINGS = {
   d: 'areas',
   w: 'safeCourses',
   u: 'ellipses',
+  f: 'ships',
 };
 
 /** Whether a key is meant for a field that somebody types in. */
@@ -45,7 +47,7 @@ export function listen(/** @type {import('./app.js').App} */ app) {
     e: app.mark,
     q: app.acquire,
     a: () => {
-      const target = app.chosen();
+      const { target } = app.chosen();
       return target?.alarm
         ? app.command('acknowledge', { number: target.number })
         : app.command('acknowledge_all');
@@ -101,7 +103,10 @@ function moveCursor(app, /** @type {number} */ right, /** @type {number} */ down
 }
 
 function chooseNext(app) {
-  const inOrder = [...app.state.targets].sort((a, b) => b.alarm - a.alarm || a.range - b.range);
-  const place = inOrder.findIndex((target) => target.id === app.marks.id);
+  const { state, settings } = app;
+  const all = [...state.targets, ...shipsShown(state, settings)];
+  const inOrder = all.sort((a, b) => b.alarm - a.alarm || a.range - b.range);
+  const { id } = app.chosen();
+  const place = inOrder.findIndex((target) => target.id === id);
   if (inOrder.length) app.choose(inOrder[(place + 1) % inOrder.length].id);
 }

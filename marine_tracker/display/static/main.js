@@ -2,6 +2,7 @@
 
 import { actions } from './actions.js';
 import { showAlerts } from './alerts.js';
+import * as aisPanel from './ais_panel.js';
 import { alive } from './alive.js';
 import { seconds } from './app.js';
 import * as controls from './controls.js';
@@ -20,6 +21,7 @@ import * as pointer from './pointer.js';
 import { keepInSight, newHeld, scopeOf } from './scope.js';
 import { Sound } from './sound.js';
 import { CHOICES, RANGES, keep, kept, load } from './settings.js';
+import { ACTIVATED, selection, shipsShown } from './ships.js';
 import { emptyState, receive, reconnected } from './state.js';
 import { makeHeads, showTargets } from './table.js';
 import { newTools, restoreLines } from './tools.js';
@@ -60,6 +62,7 @@ const link = new Link(
     // In a hidden tab timers hardly run: alarms go on by what comes each second.
     if (message.kind === 'alarms' || message.kind === 'pulse') showAlive();
     if (message.kind === 'limits') forms.fillLimits(message);
+    if (message.kind === 'ais') aisPanel.fillSettings(message);
     pace.news();
   },
   () => reconnected(state),
@@ -104,7 +107,7 @@ const app = {
     clearTimeout(saidUntil);
     if (ms < Infinity) saidUntil = setTimeout(() => app.tell('', Infinity), ms);
   },
-  chosen: () => state.targets.find((target) => target.id === marks.id),
+  chosen: () => selection(state, marks.id),
   choose(id) {
     marks.id = id;
     panelShown = -Infinity;
@@ -117,14 +120,14 @@ const app = {
     if (asking) {
       app.stopAsking();
       asking(marks.cursor);
-    } else app.choose(targetAt(state, view, x, y)?.id ?? null);
+    } else app.choose(targetAt(state, settings, view, x, y)?.id ?? null);
   },
   acquire() {
     if (marks.cursor) app.command('acquire', { x: marks.cursor[0], y: marks.cursor[1] });
     else app.tell('Click where to acquire first, or move the cursor there.');
   },
   cancel() {
-    const target = app.chosen();
+    const { target } = app.chosen();
     if (target?.number) app.command('cancel', { number: target.number });
   },
   /** For all viewers, by whoever may command; else on this device. */
@@ -155,8 +158,11 @@ function showPanel() {
   const mayCommand = state.role.commands;
   panel.showOwnShip(state);
   showAlerts(app);
-  panel.showSelected(app.chosen(), state.own);
-  showTargets(state.targets, sorted, marks.id, app.choose);
+  const chosen = app.chosen();
+  panel.showSelected(chosen, state);
+  aisPanel.showAis(app, chosen.ship);
+  const activated = shipsShown(state, settings).filter((ship) => ship.shown === ACTIVATED);
+  showTargets([...state.targets, ...activated], sorted, chosen.id, app.choose);
   panel.showState(state);
   showTrial(state, seconds());
   toolsPanel.show();
@@ -177,6 +183,7 @@ controls.listen(app);
 keys.listen(app);
 pointer.listen(app);
 forms.listen(app);
+aisPanel.listen(app);
 toolsPanel.listen(app);
 zonesPanel.listen(app);
 demo.listen(app);

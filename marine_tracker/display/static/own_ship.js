@@ -3,7 +3,7 @@
 import { edge, turned } from './geometry.js';
 import { bowOf } from './scope.js';
 import * as symbols from './symbols.js';
-import { vectorOf } from './targets.js';
+import { vectorOf } from './vectors.js';
 
 const OUTLINE_PX = 23; // 6 mm: least length of an outline to scale
 const ARROWS = { sea: 1, ground: 2 }; // heads of the vector, by what her way is measured against

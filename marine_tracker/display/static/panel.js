@@ -3,6 +3,7 @@
 import * as format from './format.js';
 import { rangeBearing } from './geometry.js';
 import { bowOf } from './scope.js';
+import { headOf, passingOf, wordsOf } from './ship_words.js';
 import { COASTING, LOST, ACQUIRING, nameOf } from './state.js';
 
 const STATUS = {
@@ -55,15 +56,27 @@ export function showOwnShip(/** @type {import('./state.js').State} */ state) {
   ]);
 }
 
-/** The data of the selected target, each with its standard deviation. */
-export function showSelected(/** @type {import('./state.js').Target|undefined} */ target, own) {
-  say(
-    element('selected-name'),
-    target
-      ? `${nameOf(target)}, ${STATUS[target.status]}, ${MOTION[target.motion]}`
-      : 'No target selected',
-  );
-  if (!target) return fill(element('selected'), []);
+/**
+ * The data of the selected target, each with its standard deviation; of a ship of AIS what she tells,
+ * first of all unless radar goes first.
+ * @param {ReturnType<typeof import('./ships.js').selection>} chosen
+ * @param {import('./state.js').State} state
+ */
+export function showSelected({ target, ship }, { own, ais }) {
+  element('data').classList.toggle('radar-first', ais?.ais_symbol === 'radar');
+  say(element('selected-name'), target ? headOfTarget(target, ship) : ship ? headOf(ship) : NOBODY);
+  fill(element('selected-ship'), ship ? wordsOf(ship, own) : []);
+  fill(element('selected'), target ? figuresOf(target, own) : ship ? passingOf(ship) : []);
+}
+
+const NOBODY = 'No target selected';
+
+function headOfTarget(target, ship) {
+  const source = ship ? ', radar and AIS' : '';
+  return `${nameOf(target)}, ${STATUS[target.status]}, ${MOTION[target.motion]}${source}`;
+}
+
+function figuresOf(/** @type {import('./state.js').Target} */ target, own) {
   const figures = [
     ['Range', `${format.miles(target.range)} NM`, format.miles(target.range_sd, 3)],
     ['Bearing', `${format.bearing(target.bearing)}°`, angleSd(target.bearing_sd)],
@@ -83,7 +96,7 @@ export function showSelected(/** @type {import('./state.js').Target|undefined} *
       ['Heading', `${format.bearing(target.heading)}°`, angleSd(target.heading_sd)],
     );
   }
-  fill(element('selected'), figures);
+  return figures;
 }
 
 /** From the bow, or from where it was when the heading was lost; null where nobody knows. */

@@ -8,6 +8,7 @@ import { Layer, Stamps } from './layers.js';
 import { farthestSeen } from './scope.js';
 import { RANGES } from './settings.js';
 import { drawOwnShip } from './own_ship.js';
+import { selection, shipsShown } from './ships.js';
 import { drawStationary } from './stationary.js';
 import { drawMarks, drawScale, drawSimulation, drawTrial } from './surround.js';
 import { LOST, serverNow } from './state.js';
@@ -79,9 +80,10 @@ export function draw(canvas, state, settings, scope, colors, marks, local) {
       drawAreas(canvas, state, settings, scope, colors, local);
       drawStationary(canvas, state.fixed, scope.view, colors.trail);
       drawOwnShip(canvas, state, settings, scope, colors, local >= marks.hidden.heading);
-      const ships = drawShips(canvas, state, settings, scope, colors, local);
+      const { id } = selection(state, marks.id);
+      const ships = drawShips(canvas, state, settings, scope, colors, id, local);
       const others = [...names, ...ships];
-      drawTargets(canvas, state, settings, scope, colors, marks.id, local, others);
+      drawTargets(canvas, state, settings, scope, colors, id, local, others);
     }
     drawTools(canvas, state, scope, colors, marks);
     drawMarks(canvas, scope, colors, marks);
@@ -113,7 +115,7 @@ function drawTrails(canvas, state, settings, { view }, colors) {
   const count = Math.round((60 * settings.trailMinutes) / trails.interval);
   const step = Math.max(1, Math.round(count / 12));
   const last = trails.own.length - 1;
-  for (const target of state.targets) {
+  for (const target of [...state.targets, ...shipsShown(state, settings)]) {
     const trail = trails.targets[target.id];
     if (!trail) continue;
     for (let back = 0; back <= Math.min(count, last); back++) {
@@ -132,11 +134,14 @@ function drawTrails(canvas, state, settings, { view }, colors) {
   }
 }
 
-/** The target under a pixel, or null. */
-export function targetAt(/** @type {State} */ state, /** @type {View} */ view, x, y, reach = 18) {
+/**
+ * The target or ship under a pixel, or null.
+ * @param {State} state @param {Settings} settings @param {View} view
+ */
+export function targetAt(state, settings, view, x, y, reach = 18) {
   let found = null;
-  for (const target of state.targets) {
-    if (target.x === null || target.status === LOST) continue;
+  for (const target of [...state.targets, ...shipsShown(state, settings)]) {
+    if (target.x === null || target.status === LOST) continue; // a ship has no status of a track
     const [tx, ty] = toScreen(view, target.x, target.y);
     const away = Math.hypot(tx - x, ty - y);
     if (away <= reach) {

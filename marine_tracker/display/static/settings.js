@@ -22,6 +22,7 @@ export const CHOICES = {
   trails: ['true', 'relative', 'off'],
   trailMinutes: [0.25, 0.5, 1, 3, 6, 15, 30],
   labels: ['on', 'off'],
+  ships: ['all', 'activated', 'off'],
   rings: ['on', 'off'],
   offCentre: ['off', 'ahead', 'place'],
   areas: ['off', 'on'],
@@ -42,6 +43,7 @@ const KEY = 'marine_tracker ppi';
  * @property {string} trails
  * @property {number} trailMinutes
  * @property {string} labels
+ * @property {string} ships      of AIS that have symbols
  * @property {string} rings
  * @property {string} offCentre
  * @property {string} areas        predicted areas of danger
@@ -65,6 +67,7 @@ export function load(/** @type {string} */ search) {
     trails: 'true',
     trailMinutes: 6,
     labels: 'on',
+    ships: 'all',
     rings: 'on',
     offCentre: 'off',
     areas: 'off',

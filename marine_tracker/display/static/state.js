@@ -3,6 +3,7 @@
 // Receiving does not draw. Ages come from the server's steady clock, which stands in every
 // message, and this browser's own steady clock: what time of day either has does not matter.
 
+import { readShips } from './ships.js';
 import { takeSpokes } from './spokes.js';
 
 export const SILENT_S = 3; // without fresh data for so long: the red cross
@@ -23,7 +24,8 @@ export const UNACKNOWLEDGED = 2;
  * @property {Message|null} own
  * @property {Target[]} targets
  * @property {[number, number, number][]} fixed  stationary objects: number, x, y
- * @property {Target[]} ships      of AIS (ais.js)
+ * @property {Target[]} ships      of AIS (ships.js)
+ * @property {Message|null} ais      the tracker's settings of AIS
  * @property {Message|null} scan     the message that the targets came with, without its columns
  * @property {Message[]} plots       of the last scans, newest last
  * @property {any} spokes           radar video of the last turn (spokes.js)
@@ -51,6 +53,7 @@ export function emptyState() {
     targets: [],
     fixed: [],
     ships: [],
+    ais: null,
     scan: null,
     plots: [],
     spokes: null,
@@ -95,7 +98,7 @@ export function receive(state, message, local) {
       };
       break;
     case 'ships':
-      state.ships = rows(message.columns);
+      state.ships = readShips(rows(message.columns), message);
       break;
     case 'plots':
       takePlots(state, message);
@@ -139,6 +142,7 @@ export function receive(state, message, local) {
     case 'limits':
     case 'ship':
     case 'areas':
+    case 'ais':
     case 'zones':
       state[message.kind] = message;
       break;

@@ -2,6 +2,7 @@
 
 import * as format from './format.js';
 import { element, say } from './panel.js';
+import { shipName } from './ships.js';
 import { LOST, nameOf } from './state.js';
 
 /** @typedef {import('./state.js').Target} Target */
@@ -9,10 +10,15 @@ import { LOST, nameOf } from './state.js';
 const NEVER = 1e12; // sorts behind all numbers
 const BEYOND = 10; // rows made above and below those that can be seen
 const ROW_PX = 33; // until one is measured
+/** TT07, or the name of a ship of AIS that is no radar target. @param {Target} target */
+function labelOf(target) {
+  return target.id < 0 ? shipName(target) : nameOf(target);
+}
+
 /** Columns of the table: head, what a cell shows, what it is sorted by. */
 /** @type {[string, (t: Target) => string, (t: Target) => number|null][]} */
 export const COLUMNS = [
-  ['No', nameOf, (t) => t.number || NEVER + t.id],
+  ['No', labelOf, (t) => t.number || NEVER + Math.abs(t.id)],
   ['NM', (t) => format.miles(t.range), (t) => t.range],
   ['Brg°', (t) => format.bearing(t.bearing), (t) => t.bearing],
   ['Crs°', (t) => format.bearing(t.course), (t) => t.course],

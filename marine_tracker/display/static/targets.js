@@ -1,9 +1,10 @@
 // The targets on the picture: symbols, vectors, hulls, ellipses, labels, where some were lost.
 
-import { byTrack, direction } from './ais.js';
+import { direction, drawOutline, flagOf } from './ais.js';
 import { canvasAngle, edge, ellipse, toScreen, turned } from './geometry.js';
 import { placed } from './labels.js';
 import { Stamps } from './layers.js';
+import { byTrack } from './ships.js';
 import {
   ACKNOWLEDGED,
   ACQUIRING,
@@ -16,25 +17,13 @@ import {
   waits,
 } from './state.js';
 import * as symbols from './symbols.js';
+import { vectorOf } from './vectors.js';
 
 const ELLIPSE_SIGMA = 2;
 const FLASH_S = 0.5;
 const LIKELY_STEPS = 20; // of the shade that tells how likely a danger is
 const HULL_PX = 20; // least length of a hull that is drawn: longer than the symbol
 const stamps = new Stamps();
-
-/**
- * The vector of a target, m; none where its motion, or own ship's, is not told.
- * @param {import('./settings.js').Settings} settings @param {Record<string, any>} own
- */
-export function vectorOf(settings, own, vx, vy) {
-  const seconds = 60 * settings.vectorMinutes;
-  if (settings.vectors === 'relative') {
-    const [wx, wy] = own.wx === null ? [own.vx, own.vy] : [own.wx, own.wy];
-    return [(vx - wx) * seconds, (vy - wy) * seconds];
-  }
-  return own.stabilised === 'none' ? [0, 0] : [vx * seconds, vy * seconds];
-}
 
 /**
  * @param {CanvasRenderingContext2D} canvas
@@ -74,13 +63,18 @@ export function drawTargets(canvas, state, settings, scope, colors, chosen, loca
       const { length, beam, heading } = target;
       symbols.hull(canvas, x, y, { length, beam, bow: length / 2, heading }, view, color);
     }
+    const ship = joined.get(target.id); // one symbol for both
+    if (ship && target.length === null) drawOutline(canvas, ship, view, x, y, color);
     if (!(target.alarm === UNACKNOWLEDGED || caught) || shown) {
       if (target.status !== ACQUIRING) symbols.vector(canvas, x, y, right, down, color, danger);
       const look = danger ? 'danger' : caught ? 'caught' : target.status;
-      const ship = joined.get(target.id); // one symbol for both, that of AIS
-      if (ship && target.status !== ACQUIRING && !caught) {
+      const byAis = ship && state.ais?.ais_symbol !== 'radar';
+      if (byAis && target.status !== ACQUIRING && !caught) {
         const angle = direction(ship, view.up) - view.up;
         symbols.triangle(canvas, x, y, angle, color, { sleeping: false, bold: danger });
+        if (ship.heading !== null) {
+          symbols.headingLine(canvas, x, y, angle, color, flagOf(ship));
+        }
       } else {
         drawSymbol(canvas, look, target.danger_probability ?? 0, x, y, color, colors.danger);
       }
@@ -88,7 +82,8 @@ export function drawTargets(canvas, state, settings, scope, colors, chosen, loca
     const reference = target.number !== 0 && target.number === state.own.reference;
     if (reference) labels.push({ x, y, text: 'R', needed: true });
     if (target.number && (settings.labels === 'on' || danger || target.id === chosen)) {
-      const text = String(target.number).padStart(2, '0');
+      const number = String(target.number).padStart(2, '0');
+      const text = ship?.name ? `${number} ${ship.name}` : number;
       labels.push({ x, y, text, needed: danger || target.id === chosen });
     }
   }

@@ -2,6 +2,7 @@
 
 import * as format from './format.js';
 import { element, say } from './panel.js';
+import { numberOf } from './ships.js';
 import { serverNow } from './state.js';
 
 /** A minute and seconds as 2:05. @param {number} seconds */
@@ -29,7 +30,7 @@ export function showTrial(
   table.hidden = !trial.on || !trial.safe_deg;
   say(element('trial-says'), words(state, local));
   if (table.hidden) return;
-  const now = new Map(state.targets.map((target) => [name(target), target]));
+  const now = new Map([...state.targets, ...state.ships].map((one) => [name(one), one]));
   const order = (t) =>
     (t.danger ? 0 : 1e9) + (t.tcpa_min !== null && t.tcpa_min >= 0 ? t.tcpa_min : 1e6);
   const targets = [...trial.targets].sort((a, b) => order(a) - order(b));
@@ -50,7 +51,11 @@ export function showTrial(
 }
 
 const name = (target) =>
-  target.number ? `TT${String(target.number).padStart(2, '0')}` : `Q${target.id}`;
+  target.id < 0
+    ? `AIS ${numberOf(target)}`
+    : target.number
+      ? `TT${String(target.number).padStart(2, '0')}`
+      : `Q${target.id}`;
 
 function newRow() {
   const row = document.createElement('tr');

@@ -129,6 +129,7 @@ test('the nearest target within reach is the one that is clicked', () => {
       { id: 7, x: null, y: null, status: 0 },
       { id: 8, x: 41234.5 + 505, y: -7020.25, status: 3 },
     ],
+    ships: [],
   };
   const { view } = scopeOf(
     state,
@@ -137,9 +138,18 @@ test('the nearest target within reach is the one that is clicked', () => {
     600,
     held(radians(200)),
   );
-  assert.equal(targetAt(state, view, ...toScreen(view, 41234.5 + 515, -7020.25)).id, 5);
-  assert.equal(targetAt(state, view, ...toScreen(view, 41234.5 + 552, -7020.25)).id, 6);
-  assert.equal(targetAt(state, view, ...toScreen(view, 41234.5 - 2000, -7020.25)), null);
+  assert.equal(
+    targetAt(state, settings({}), view, ...toScreen(view, 41234.5 + 515, -7020.25)).id,
+    5,
+  );
+  assert.equal(
+    targetAt(state, settings({}), view, ...toScreen(view, 41234.5 + 552, -7020.25)).id,
+    6,
+  );
+  assert.equal(
+    targetAt(state, settings({}), view, ...toScreen(view, 41234.5 - 2000, -7020.25)),
+    null,
+  );
 });
 
 test('the edge of the circle is met on its bearing, off-centre too', () => {
