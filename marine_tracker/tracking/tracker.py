@@ -27,10 +27,12 @@ from . import (
     land_mask,
     late_plots,
     lifecycle,
+    meetings,
     offsets,
     parts,
     places,
     sectors,
+    split_plots,
     surroundings,
 )
 from .associate import associate, gain
@@ -95,6 +97,7 @@ class Tracker:
             1,
             1,
             at_rest.begin(),
+            meetings.begin(),
         )
 
     def extrapolate(self, tracks: Tracks, time: float | Array) -> Extrapolation:
@@ -142,12 +145,16 @@ class Tracker:
         worth = gain(pairs, self.gate_size)
         plot_of = associate(pairs.track, pairs.plot, worth, count, len(plots.time))
 
+        plots = split_plots.fused(pairs, plot_of, plots, evidence.density, p)
+
         # initiate: from plots of this scan and the last one that belong to no track
         free = unexplained(plots, pairs, plot_of, tracks)
         afloat = ~on_land(self.land, plots.position)
         free &= afloat
         room, speed = max(0, p.max_tracks - count - others), p.max_target_speed_mps
         first, second = pair_up(lone, plots, starts.track, starts.plot, free, speed, room)
+        single = split_plots.alone(second, plot_of, plots, p)
+        first, second = first[single], second[single]
         free[second] = False
         new = take(lone, first)
         if len(first):
@@ -156,6 +163,9 @@ class Tracker:
 
         # update
         taken = take_plots(pairs, evidence, plot_of, tracks, ahead, expected, plots, p)
+        plot_of = taken.plot_of
+        met = memory.meetings, taken.contested, plot_of, tracks, ahead, scan.end
+        memory = memory._replace(meetings=meetings.step(*met))
         tracks = late_plots.update(self.estimator, tracks, taken.plots, taken.rows, scan.radar)
 
         # judge: record the scan for each track, and decide its status
@@ -329,8 +339,9 @@ def _remember(
         memory.next_id + len(first),
         judged.next_number,
         judged.ground,
+        memory.meetings,
     )
     told = seen.time, tracks, seen.predicted, plot_of, reason, take(leftover, first)
-    report = Report(*told, view.left_out, scan, at_rest.shown(judged.ground))
+    report = Report(*told, view.left_out, scan, at_rest.shown(judged.ground), memory.meetings)
     after = changed(after, scan.radar, leftover=take(view.measured, free))
     return after, report, Left(free, found)
