@@ -71,7 +71,8 @@ def take_plots(
     rows = (plot_of >= 0).nonzero()[0]
     some = take(pairs, contested)
     chance = _chances(some, evidence.likelihood[contested], evidence, tracks, plots, radar)
-    chosen = equivalents(some, chance, plot_of, rows, take(plots, plot_of[rows]), ahead, plots)
+    given = chance / np.maximum(np.bincount(some.track, chance, len(plot_of))[some.track], 1e-300)
+    chosen = equivalents(some, given, plot_of, rows, take(plots, plot_of[rows]), ahead, plots)
     if len(both.track):
         chosen = unresolved.split(both, rows, chosen, ahead, plots)
     rows, doubtful = np.append(rows, both.track), Contested(some.track, some.plot, chance)
@@ -86,14 +87,12 @@ def _chances(
     plots: Plots,
     radar: TrackerParameters,
 ) -> Array:
-    """Probability [P] that the plot of each pair is the track's, given that it has one of them."""
+    """Probability [P] that the plot of each pair is the track's."""
     count = len(evidence.detected)
     here = tracks.existence[:count] * evidence.detected
     odds = here / (1 - here * radar.gate_probability)
     weight = odds[pairs.track] * likelihood
-    chance = marginals(pairs.track, pairs.plot, weight, count, len(plots.time))
-    found: Array = chance / np.maximum(np.bincount(pairs.track, chance, count)[pairs.track], 1e-300)
-    return found
+    return marginals(pairs.track, pairs.plot, weight, count, len(plots.time))
 
 
 def _contested(pairs: Pairs, tracks: Tracks, plots: int) -> IntArray:

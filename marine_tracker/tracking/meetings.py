@@ -1,14 +1,14 @@
 """Tracks that meet: how probable it is that two of them have exchanged their targets.
 
-Two confirmed tracks meet from the scan in which they first contest a plot until KEPT seconds after
-the last one. Their swap risk is the probability that, of the two, a track now follows the target
-that the other one followed before they met.
+Two confirmed tracks meet from the scan in which they contest a plot for the first time until KEPT
+seconds after the last. Their swap risk is the probability that, of the two, a track now follows the
+target that the other one followed before they met.
 
 A scan can exchange them where two things hold. Its plots do not tell which is whose: that is the
 doubt b, the lesser of the probabilities of both tracks to own one plot, over all joint associations
-(0 to 0.5; marginals.py). And each track can go on as the other one: with d the distance of their
-expected velocities, in deviations of that difference, its density is exp(-d^2 / 2) of the greatest.
-So the scan's risk is LASTS b exp(-d^2 / 2): ships that cross at a wide angle are in one place, and
+(0 to 0.5; marginals.py). And each of the two can go on as the other one: with d the distance of
+their expected velocities, in deviations of that difference, its density is exp(-d^2 / 2) of the
+greatest. So the scan's risk is b exp(-d^2): ships that cross at a wide angle are in one place, and
 yet their motion tells them apart; ships in company have one motion, and yet their plots do. Scans
 in a row ask the same question again, so the risk of the meeting is the greatest of its scans'.
 
@@ -21,11 +21,8 @@ import numpy as np
 
 from ..types import Array, Extrapolation, IntArray, Tracks, row_of, take
 
+LEAST = 1e-3  # probability of a pair below which there is no doubt
 KEPT = 120.0  # s after the last contested plot; then it is no news any more
-
-# Of the exchanges that one scan allows, so many are not undone by the next ones: from 1,300
-# simulated meetings with imm and gwnn, at 2 to 40 degrees.
-LASTS = 0.7
 
 
 class Contested(NamedTuple):
@@ -76,13 +73,13 @@ def step(
     plot_of [N]: the plot that each track took, -1 for none; tracks; ahead: the first of them,
     expected
     """
-    if not len(contested.track):
-        return take(before, now - before.last <= KEPT) if len(before.one) else before
     one, two, doubt = _doubts(contested, plot_of)
+    if not len(one):
+        return take(before, now - before.last <= KEPT) if len(before.one) else before
     apart = ahead.velocity[one] - ahead.velocity[two]
     spread = (ahead.covariance[one] + ahead.covariance[two])[:, 2:, 2:]
     distance = (apart * np.linalg.solve(spread, apart[..., None])[..., 0]).sum(1)
-    risk = LASTS * doubt * np.exp(-0.5 * distance)
+    risk = doubt * np.exp(-distance)
     kept = take(before, now - before.last <= KEPT)
     ids = np.sort(np.stack([tracks.id[one], tracks.id[two]]), 0)
     known = row_of(_key(kept.one, kept.two), _key(*ids))
@@ -119,12 +116,15 @@ def _doubts(contested: Contested, plot_of: IntArray) -> tuple[IntArray, IntArray
     """Pairs of tracks (one [E], two [E] rows, one < two) where one is in the gate of the plot that
     the other one took, and how much doubt [E] there is whose it is."""
     track, plot, chance = contested
-    taker = np.full(plot.max(initial=-1) + 1, -1)
+    rival = (chance > LEAST).nonzero()[0]
+    if len(rival) < 2:
+        return rival[:0], rival[:0], chance[:0]
+    taker = np.full(plot.max() + 1, -1)
     own = (plot_of[track] == plot).nonzero()[0]
     taker[plot[own]] = own  # row among the pairs
-    rival = (taker[plot] >= 0).nonzero()[0]
     owner = taker[plot[rival]]
-    rival, owner = rival[owner != rival], owner[owner != rival]
+    some = (owner >= 0) & (owner != rival)
+    rival, owner = rival[some], owner[some]
     ends = np.sort(np.stack([track[rival], track[owner]]), 0)
     pair, at = np.unique(ends, axis=1, return_inverse=True)
     doubt = np.zeros(pair.shape[1])

@@ -32,6 +32,7 @@ TRIAL = 6  # revolutions without a plot after which a place that is not establis
 MOST = 20_000  # rows
 SURE = 16.0  # log-likelihood ratio against chance: exceeded once in some 100 million tries
 TRIED = 4  # plots of a place whose neighbours are counted, half of them in each revolution
+SOON = 20.0  # times AT_REST: with so uncertain a motion a place is not established before long
 APART = 2.2  # times the gate's radius, from a place to its neighbours
 _ANGLES = np.arange(8) * (np.pi / 4)
 _AROUND = APART * np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], 1).reshape(4, 2, 2).swapaxes(0, 1)
@@ -198,8 +199,11 @@ def _divergence(p: Array, q: Array) -> Array:
 
 
 def _by_chance(places: Places, visible: BoolArray, plots: Array, view: View) -> Places:
-    """The share of plots [K, 2] m in the neighbours of the places, counted for one revolution."""
-    rows = (visible & (places.plots >= TRIED)).nonzero()[0]
+    """The share of plots [K, 2] m in the neighbours of the places, counted for one revolution.
+
+    It is not counted where the place surely moves, or will not be known to rest before long.
+    """
+    rows = (visible & (places.plots >= TRIED) & _may_rest(places)).nonzero()[0]
     if not len(rows):
         return places
     reach = np.sqrt(GATE * (places.variance[rows] + WANDER**2))
@@ -284,10 +288,23 @@ def _crowded(position: Array, established: BoolArray) -> BoolArray:
     return found
 
 
-def _at_rest(places: Places) -> BoolArray:
-    """Mask [P] of those that surely move less than AT_REST: by three deviations of the slope."""
+def _motion(places: Places) -> tuple[Array, Array]:
+    """m/s [P], how fast they move, and three deviations of that, by the slope of their lines."""
     spread = np.maximum(places.spread, 1e-9)
     speed = np.hypot(*places.slope.T) / spread
     sigma = np.sqrt((places.variance + WANDER**2) / spread)
-    found: BoolArray = speed + 3 * sigma < AT_REST
+    return speed, 3 * sigma
+
+
+def _at_rest(places: Places) -> BoolArray:
+    """Mask [P] of those that surely move less than AT_REST."""
+    speed, unsure = _motion(places)
+    found: BoolArray = speed + unsure < AT_REST
+    return found
+
+
+def _may_rest(places: Places) -> BoolArray:
+    """Mask [P] of those that do not surely move, and of which it may be known before long."""
+    speed, unsure = _motion(places)
+    found: BoolArray = (speed - unsure < AT_REST) & (unsure < SOON * AT_REST)
     return found

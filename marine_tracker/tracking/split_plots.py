@@ -12,6 +12,7 @@ from ..parameters import TrackerParameters
 from ..types import Array, BoolArray, IntArray, Plots
 from .equivalent_plot import placed
 from .gate import Pairs, window_pairs
+from .unresolved import cell
 
 HULL = 3.0  # times glint: so much farther apart than a cell may bow and stern of a ship be
 FEW = 0.05  # false plots: where more are expected within reach, one may lie there by chance
@@ -52,8 +53,8 @@ def _reach(range_: Array, radar: TrackerParameters) -> tuple[float, Array]:
     """How far apart in range, m, and bearing [K], rad, at the ranges [K] m, plots of one target
     may be."""
     hull = HULL * radar.glint_sigma
-    width = np.radians(radar.beam_width_deg) + hull / np.maximum(range_, 1.0)
-    return radar.range_resolution_m + hull, np.minimum(width, np.pi)
+    depth, width = cell(radar)
+    return depth + hull, np.minimum(width + hull / np.maximum(range_, 1.0), np.pi)
 
 
 def alone(second: IntArray, plot_of: IntArray, plots: Plots, radar: TrackerParameters) -> BoolArray:

@@ -22,11 +22,14 @@ from scipy.special import ndtr
 
 from ..geometry import to_range_bearing, unit_vector
 from ..parameters import TrackerParameters
-from ..types import Array, Extrapolation, IntArray, Plots, Tracks, append, take
+from ..types import Array, BoolArray, Extrapolation, IntArray, Plots, Tracks, append, take
 from .equivalent_plot import placed
 from .gate import Pairs
 from .lifecycle import TENTATIVE
 from .surroundings import Evidence
+
+FAR = 3.0  # deviations
+CELL = 4.0  # deviations of a plot: a radar that measures so finely has no larger cell
 
 
 class Shared(NamedTuple):
@@ -66,6 +69,7 @@ def shared(
     look = (mate >= 0) & held[pairs.track] & held[pairs.track[mate]]
     look &= pairs.track[mate] != pairs.track
     near = look.nonzero()[0]
+    near = near[_near(pairs.track[near], pairs.track[mate[near]], ahead, origin, radar)]
     one, mate = pairs.track[near], mate[near]
     other, plot = pairs.track[mate], pairs.plot[near]
     if not len(one):
@@ -88,6 +92,28 @@ def shared(
     return Shared(one[found], other[found], plot[found])
 
 
+def cell(radar: TrackerParameters) -> tuple[float, float]:
+    """Depth m and width rad of a resolution cell.
+
+    Where depth and beam are left at their defaults the radar may be much finer than these: then its
+    noise tells so.
+    """
+    depth = min(radar.range_resolution_m, CELL * radar.range_sigma_m)
+    return depth, float(np.radians(min(radar.beam_width_deg, CELL * radar.bearing_sigma_deg)))
+
+
+def _near(
+    one: IntArray, other: IntArray, ahead: Extrapolation, origin: Array, radar: TrackerParameters
+) -> BoolArray:
+    """Mask [K] of the tracks that may be in one cell at all: the others are not looked at."""
+    apart = ahead.position[one] - ahead.position[other]
+    spread = ahead.covariance[one] + ahead.covariance[other]
+    range_, (depth, width) = np.hypot(*(ahead.position[one] - origin[one]).T), cell(radar)
+    reach = np.hypot(depth, range_ * width)
+    found: BoolArray = np.hypot(*apart.T) < reach + FAR * np.sqrt(spread[:, 0, 0] + spread[:, 1, 1])
+    return found
+
+
 def _in_one_cell(
     one: IntArray, other: IntArray, ahead: Extrapolation, origin: Array, radar: TrackerParameters
 ) -> Array:
@@ -98,11 +124,9 @@ def _in_one_cell(
     apart = (axes @ (ahead.position[one] - ahead.position[other])[..., None])[..., 0]
     spread = ahead.covariance[one][:, :2, :2] + ahead.covariance[other][:, :2, :2]
     sigma = np.sqrt((axes @ spread * axes).sum(2))
-    cell = np.stack(
-        [np.full_like(range_, radar.range_resolution_m), range_ * np.radians(radar.beam_width_deg)],
-        1,
-    )
-    found: Array = (ndtr((cell - apart) / sigma) - ndtr((-cell - apart) / sigma)).prod(1)
+    depth, width = cell(radar)
+    edge = np.stack([np.full_like(range_, depth), range_ * width], 1)
+    found: Array = (ndtr((edge - apart) / sigma) - ndtr((-edge - apart) / sigma)).prod(1)
     return found
 
 

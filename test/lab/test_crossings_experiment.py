@@ -41,7 +41,7 @@ def test_what_was_told_is_compared_with_what_happened_bin_by_bin():
 
 @pytest.mark.slow
 def test_told_swap_risk_is_what_happens():
-    found = crossings.run(60, 700, estimator='imm', angles=[4.0, 7.0, 13.0, 40.0])
+    found = crossings.run(30, 700, angles=[6.0, 12.0, 25.0, 60.0])
     assert found.figures[-1].ok, found.figures
 
 

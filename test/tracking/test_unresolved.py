@@ -144,3 +144,10 @@ def test_two_ships_that_cross_in_one_cell_stay_two():
             memory, _ = tracker.step(memory, scan)
         kept += sorted(memory.tracks.number[memory.tracks.number > 0]) == [1, 2]
     assert kept >= 7
+
+
+def test_a_radar_that_measures_finely_has_a_small_cell_whatever_the_defaults_say():
+    fine = TrackerParameters(range_sigma_m=3.0, bearing_sigma_deg=0.1)
+    assert unresolved.cell(fine) == pytest.approx((12.0, np.radians(0.4)))
+    coarse = TrackerParameters(range_sigma_m=20.0, range_resolution_m=35.0, beam_width_deg=1.5)
+    assert unresolved.cell(coarse) == pytest.approx((35.0, np.radians(1.5)))
