@@ -3,9 +3,17 @@
 import numpy as np
 import pytest
 
-from marine_tracker.estimators.gwnn import bank, gwnn, inputs
+from marine_tracker.estimators.gwnn import bank, gwnn, inputs, monitor
+from marine_tracker.gaussian import linear_modes
 from marine_tracker.networks import wavelet_network as net
-from marine_tracker.training import gwnn_checkpoint, gwnn_samples, gwnn_training, training_tracks
+from marine_tracker.training import (
+    gwnn_checkpoint,
+    gwnn_samples,
+    gwnn_spread,
+    gwnn_training,
+    track_trials,
+    training_tracks,
+)
 from marine_tracker.training import gwnn_fusion as fusion
 from marine_tracker.types import take
 
@@ -42,6 +50,30 @@ def test_gradients_of_fusing_are_those_of_differences(samples):
             (fusion.fuse(output + push, batch)[0] - fusion.fuse(output - push, batch)[0]) * pull
         ).sum(1) / 2e-2
         np.testing.assert_allclose(back[:, i], slope, rtol=0.02, atol=0.01)
+
+
+def test_the_variances_of_the_training_are_those_that_the_estimator_states():
+    rng = np.random.default_rng(12)
+    waters = training_tracks.WATERS['ship']
+    found = training_tracks.draw(waters, np.arange(44) % KINDS, 30, rng)
+    on = track_trials.trial(found.ships, found.radar, rng)
+    period, ship = float(found.radar.period[0]), bank.BANKS['ship']
+    network = gwnn.gwnn(gwnn.weights(), training_tracks.SPEED, period)
+    state = track_trials.run(network, on, False).state
+    rows = np.flatnonzero(state.monitor.status == monitor.GWNN)
+    state = take(state, rows)
+    time, frame = state.bank.time + 0.8 * inputs.SCAN, state.memory.frame
+    at = gwnn.look(state.bank, frame, bank.look(ship, state.bank, time - state.bank.time), time)
+    _, base = linear_modes.unpack(bank.base(ship, state.bank, time).T)
+    variance, _ = gwnn_spread.variances(
+        state.output[:, gwnn.OUTPUTS :],
+        at.scans[:, None],
+        np.log(inputs.variances(frame, base)).T,
+        gwnn.correct(state, at).T,
+    )
+    stated = inputs.variances(frame, network.extrapolate(state, time).covariance)
+    assert len(rows) > 20
+    np.testing.assert_allclose(variance.T, stated, rtol=1e-6)
 
 
 def test_stopped_and_gone_on_it_ends_where_it_would_have(samples, tmp_path):

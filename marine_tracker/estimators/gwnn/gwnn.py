@@ -36,6 +36,8 @@ MOST = 4.0  # largest correction by the network; when trained, it uses less than
 MISSED, SURE = 1.5, 1.0  # scans without a plot; sigma: limit of the correction after that
 OTHERS = -5.0  # log weight of all experts except the base's modes, for network output 0
 
+MOST_ROWS = 0.8  # share of the tracks from which on all are computed
+
 # The network's outputs: changes of the experts' log weights; corrections of the position now and
 # per scan ahead, and of the velocity; in the units of `inputs`.
 LOGITS = slice(0, filters.EXPERTS)
@@ -168,7 +170,9 @@ def gwnn(
         units = adaptation.begin(len(state.time), weights.fusion, learning).units
         warm = np.flatnonzero(memory.plots >= WARM)
         if len(warm):
-            seen = inputs.inputs(bank, _chosen(state, warm), _chosen(memory, warm), period)
+            some = _worth(warm, len(out))
+            seen = inputs.inputs(bank, _chosen(state, some), _chosen(memory, some), period)
+            seen = seen[some.searchsorted(warm)] if len(some) > len(warm) else seen
             out[warm, :OUTPUTS] = forward(weights.fusion, seen)
             out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
             if learning:
@@ -193,14 +197,12 @@ def gwnn(
         mean = mean.copy()
         heard = np.flatnonzero(state.monitor.status == GWNN)
         if len(heard):
-            rows = _chosen(state, heard)
-            at = look(
-                rows.bank,
-                frame[heard],
-                filters.look(bank, rows.bank, (near - begun)[heard]),
-                near[heard],
-            )
-            shift, ratio = correct(rows, at), rows.output[:, OUTPUTS:]
+            some = _worth(heard, len(near))
+            rows, steps = _chosen(state, some), (near - begun)[some]
+            at = look(rows.bank, frame[some], filters.look(bank, rows.bank, steps), near[some])
+            back = some.searchsorted(heard)
+            shift, scans = correct(rows, at)[:, back], at.scans[back]
+            ratio = state.output[heard, OUTPUTS:]
             # After a missed plot the base gives the uncertainty. If the network's was too small, no
             # plot would be near enough to correct it. If it was too large, wrong plots would be
             # taken.
@@ -212,7 +214,7 @@ def gwnn(
             # The position is never surer than the base's, and the correction counts as uncertain,
             # too. Otherwise the first plots of a sharp turn would be refused.
             ratio[:, OF_POSITION] = np.maximum(ratio[:, OF_POSITION], 0.0)
-            covariance[heard] = respread(covariance[heard], ratio, frame[heard], at.scans)
+            covariance[heard] = respread(covariance[heard], ratio, frame[heard], scans)
             covariance[heard, :2, :2] += shift[:, :2, None] * shift[:, None, :2]
             # Beyond the range of its training, the network's correction is continued in a straight
             # line.
@@ -262,6 +264,13 @@ def _chosen(state: Rows, rows: IntArray) -> Rows:
     """The rows (ascending) of a state; the state itself if these are all rows."""
     whole = len(rows) == len(state[0] if isinstance(state[0], np.ndarray) else state[0].time)
     return state if whole else take(state, rows)
+
+
+def _worth(rows: IntArray, count: int) -> IntArray:
+    """The rows of a state to compute where some (ascending) of `count` are wanted: all of them, if
+    that is cheaper than to copy out those wanted.
+    """
+    return np.arange(count) if len(rows) > MOST_ROWS * count else rows
 
 
 def respread(covariance: Array, ratio: Array, frame: Array, scans: Array) -> Array:
