@@ -52,6 +52,19 @@ def end_in_time() -> None:
     signal.set_wakeup_fd(write, warn_on_full_buffer=False)
 
 
+def leave(code: int) -> NoReturn:
+    """Ends the process at once, with this exit code. All must be closed by now.
+
+    What Python does at its end, above all to collect 90,000 objects, takes as long as all the
+    closing before it (.25 s of a processor). On a machine with ten times the work that it can do
+    that alone took longer than GRACE_S.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(AttributeError, OSError, ValueError):  # none, or nobody reads it
+            stream.flush()
+    os._exit(code)
+
+
 def stop_on_sigterm() -> None:
     """From now on SIGTERM raises SystemExit, so that everything is cleaned up."""
 

@@ -237,6 +237,12 @@ def take(rows_of: Rows, rows: IntArray | BoolArray | slice) -> Rows:
     return _like(rows_of, parts)
 
 
+def some(rows_of: Rows, mask: BoolArray) -> Rows:
+    """The rows of the mask; where it holds for all, the same arrays again."""
+    rows = mask.nonzero()[0]
+    return rows_of if len(rows) == len(mask) else take(rows_of, rows)
+
+
 def append(first: Rows, second: Rows) -> Rows:
     """The rows of `first`, then those of `second`."""
     return _map(lambda *pair: np.concatenate(pair), first, second)
@@ -260,6 +266,13 @@ def put(into: Rows, rows: IntArray, new: Rows) -> Rows:
         return a
 
     return _map(one, into, new)
+
+
+def among(values: IntArray, others: IntArray) -> BoolArray:
+    """Mask [N] of the values that are among the others [K]; at once where there are none."""
+    if not len(values) or not len(others):
+        return np.zeros(len(values), bool)
+    return np.isin(values, others)
 
 
 def row_of(ids: IntArray, wanted: IntArray) -> IntArray:

@@ -1,8 +1,6 @@
 import re
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -64,29 +62,6 @@ def test_a_process_with_wrong_input_ends_with_2_and_no_traceback(command):
         '',
         'marine_tracker: recording nowhere is not a folder\n',
     )
-
-
-def test_ctrl_c_ends_quietly_with_130(tmp_path):
-    out = tmp_path / 'tracks.csv'
-    process = subprocess.Popen(
-        [sys.executable, '-m', 'marine_tracker', 'replay', 'busy_strait', '--out', out],
-        cwd=PACKAGE.parent,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        # A shell in the background may hand SIGINT down as ignored.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
-    try:
-        deadline = time.monotonic() + 30
-        while not any(tmp_path.iterdir()) and time.monotonic() < deadline:
-            time.sleep(0.02)
-        process.send_signal(signal.SIGINT)
-        assert process.communicate(timeout=30) == ('', '')
-        assert process.returncode == 130
-        assert not any(tmp_path.iterdir())  # no half of a file
-    finally:
-        process.kill()
 
 
 @pytest.mark.parametrize('missing', ['numpy', 'ruamel'])

@@ -63,19 +63,23 @@ def run(*arguments, **how):
     )
 
 
+def sigint_ends():
+    """A shell's job in the background, and so what a test starts there, ignores SIGINT."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize(('asked', 'code'), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_replay_that_is_stopped_leaves_no_half_of_a_track_file(tmp_path, asked, code):
+def test_a_replay_that_is_stopped_is_quiet_and_leaves_no_half_of_a_file(tmp_path, asked, code):
     out = tmp_path / 'tracks.csv'
-    process = run('replay', 'busy_strait', '--out', str(out))
+    process = run('replay', 'busy_strait', '--out', str(out), preexec_fn=sigint_ends)
     until = time.monotonic() + 60
     while not (parts := list(tmp_path.iterdir())) or not parts[0].stat().st_size:
         assert time.monotonic() < until and process.poll() is None, process.communicate()
         time.sleep(0.05)
     assert not out.exists()
     process.send_signal(asked)
-    _, said = process.communicate(timeout=60)
-    assert process.returncode == code and 'Traceback' not in said
-    assert not list(tmp_path.iterdir())
+    assert process.communicate(timeout=60) == ('', '')
+    assert process.returncode == code and not list(tmp_path.iterdir())
 
 
 def full_disk():

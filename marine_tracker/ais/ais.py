@@ -17,7 +17,7 @@ from ..arpa.cpa import Approach, OwnMotion
 from ..arpa.stabilisation import OwnSensors
 from ..geometry import NAUTICAL_MILE
 from ..parameters import AisParameters
-from ..types import Array, BoolArray, CodeArray, IntArray, OwnShip
+from ..types import Array, BoolArray, CodeArray, IntArray, OwnShip, among
 from . import ais_alarms, join, pairs, passing, registration, ships
 from .join import Joined, Seen
 from .pairs import Pairs
@@ -168,10 +168,10 @@ class Ais:
         """Which ships are activated, sleeping, left out; the nearest first where room ends."""
         p, known = self.parameters, memory.ships
         memory = memory._replace(
-            awake=np.intersect1d(memory.awake, known.id),
-            asleep=np.intersect1d(memory.asleep, known.id),
+            awake=memory.awake[among(memory.awake, known.id)],
+            asleep=memory.asleep[among(memory.asleep, known.id)],
         )
-        by_hand, rests = np.isin(known.id, memory.awake), np.isin(known.id, memory.asleep)
+        by_hand, rests = among(known.id, memory.awake), among(known.id, memory.asleep)
         danger = passes.danger == passing.DANGEROUS
         miles = passes.approach.range / NAUTICAL_MILE
         active = by_hand | (known.kind == m1371.SART) | (joined.state != join.AIS_ONLY)
@@ -183,7 +183,7 @@ class Ais:
         ):
             if rule in self.rules:
                 active |= holds
-        active |= known.lost & np.isin(known.id, memory.active)
+        active |= known.lost & among(known.id, memory.active)
         active &= ~rests
         order = np.lexsort((np.nan_to_num(miles, nan=np.inf), ~danger, ~by_hand))
         active = _first(active, order, p.ais_max_activated)
@@ -192,7 +192,8 @@ class Ais:
         asleep &= ~(miles > p.ais_range_nm) & ~(ahead > p.ais_cpa_nm)  # unknown ones stay
         asleep = _first(asleep, order, p.ais_max_sleeping)
         memory = memory._replace(active=known.id[active])
-        return memory, np.select([active, asleep], [ACTIVATED, SLEEPING], LEFT_OUT).astype(np.int8)
+        shown = np.where(active, ACTIVATED, np.where(asleep, SLEEPING, LEFT_OUT))
+        return memory, shown.astype(np.int8)
 
 
 def _first(chosen: BoolArray, order: IntArray, most: int) -> BoolArray:

@@ -15,7 +15,7 @@ from ..arpa.arpa import Arpa
 from ..geometry import NAUTICAL_MILE
 from ..parameters import AisParameters
 from ..tracking.lifecycle import LOST
-from ..types import Array, BoolArray, CodeArray, IntArray, Tracks, row_of, take
+from ..types import Array, BoolArray, CodeArray, IntArray, Tracks, among, row_of, take
 from .join import APART_STATE, BOTH, Joined, Seen
 from .pairs import JOINED, Pairs
 from .passing import Passing
@@ -46,7 +46,7 @@ def step(
     danger = encounters.level(passing.danger, alerts, alerts.kind == of, situation, limits, now)
     asked = active if not p.ais_sleeping_danger else np.ones(len(active), bool)
     # Of who is probably a radar target already the danger is told as of that.
-    told_of = np.isin(-ships.id, alerts.id[alerts.kind == of])
+    told_of = among(-ships.id, alerts.id[alerts.kind == of])
     alone = (joined.state != BOTH) & (told_of | (joined.probability < LIKELY))
     alone &= ships.placed & ~ships.lost & asked
     near = situation.range < p.ais_lost_range_nm * NAUTICAL_MILE
@@ -63,7 +63,7 @@ def step(
 
     def of_ships(kind: int, level: CodeArray | IntArray, *values: Array) -> Named:
         """Of the ships that have a cause, or an alert that may end."""
-        rows = (level != OFF) | np.isin(situation.id, alerts.id[alerts.kind == kind])
+        rows = (level != OFF) | among(situation.id, alerts.id[alerts.kind == kind])
         return kind, 0, of_tracks(situation, rows.nonzero()[0], level, *values)
 
     danger = np.where(alone, danger, OFF)

@@ -174,21 +174,15 @@ def _candidates(
     ship, track = known_ship[known], known_track[known]
     if len(placed) and len(sure):
         corrected = own + registration.corrected(errors, seen.position[sure] - own)
-        reach = NEAR + WIDE * np.sqrt(
-            np.einsum(
-                'nij,jk,nik->n',
-                registration.jacobian(corrected - own),
-                errors.covariance,
-                registration.jacobian(corrected - own),
-            )
-        )
+        h = registration.jacobian(corrected - own)
+        reach = NEAR + WIDE * np.sqrt(np.einsum('nij,jk,nik->n', h, errors.covariance, h))
         reach = np.minimum(reach, FARTHEST)
-        tree = cKDTree(moving.position[placed])
-        found = tree.query_ball_point(corrected, reach)
-        count = np.array([len(one) for one in found])
-        near = np.concatenate([np.asarray(one, np.int64) for one in found])
-        ship = np.append(ship, placed[near])
-        track = np.append(track, np.repeat(sure, count))
+        near = cKDTree(corrected).sparse_distance_matrix(
+            cKDTree(moving.position[placed]), float(reach.max()), output_type='ndarray'
+        )
+        near = near[near['v'] <= reach[near['i']]]
+        ship = np.append(ship, placed[near['j']])
+        track = np.append(track, sure[near['i']])
     key = np.unique(ship * max(len(seen.id), 1) + track)
     return np.divmod(key, max(len(seen.id), 1))
 

@@ -113,16 +113,14 @@ def judged(
     elapsed: float,
 ) -> Pairs:
     """The pairs with their new states: chosen [P] are joined; differs [P] say two places."""
-    taken = np.isin(ship, ship[chosen]) | np.isin(track, track[chosen])
+    taken = _of_chosen(ship, chosen) | _of_chosen(track, chosen)
     was = pairs.state
     parted = (was == JOINED) & (pairs.sure >= SURELY)
     parted |= (was == PARTED) & (now - pairs.since < PARTED_FOR)
     goes_on = (was == MISMATCH) & (now - pairs.since < KEPT)
-    state = np.select(
-        [chosen, ~taken & (goes_on | (parted & differs)), ~taken & parted],
-        [JOINED, MISMATCH, PARTED],
-        CANDIDATE,
-    ).astype(np.int8)
+    state = np.where(~taken & parted, PARTED, CANDIDATE)
+    state = np.where(~taken & (goes_on | (parted & differs)), MISMATCH, state)
+    state = np.where(chosen, JOINED, state).astype(np.int8)
     again = chosen & (was != JOINED)
     return pairs._replace(
         state=state,
@@ -132,3 +130,11 @@ def judged(
         ),
         beside=np.where((again | (state == CANDIDATE))[:, None], np.nan, pairs.beside),
     )
+
+
+def _of_chosen(rows: IntArray, chosen: BoolArray) -> BoolArray:
+    """Mask [P] of the pairs whose row [P] is that of a chosen pair, too."""
+    held = np.zeros(rows.max(initial=-1) + 1, bool)
+    held[rows[chosen]] = True
+    found: BoolArray = held[rows]
+    return found

@@ -16,7 +16,8 @@ alerts.py has the states of an alert. These are the kinds and their causes:
     heading, position, plots, log missing    not received for too long; plots of each radar;
                      the log if it is to be used
     fallback         at least a share of the confirmed targets have fallen back from their filter
-    swap risk        the gate of a target overlaps that of another track
+    swap risk        the gate of a target overlaps that of another track, or the two have probably
+                     exchanged their targets when they met
     own speed        what is told of own ship's velocity is not the way that her positions make
     stationary danger    own ship will pass stationary objects (stationary.py) within the limits;
                      one alert for all of them
@@ -34,7 +35,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..tracking.lifecycle import CONFIRMED, LOST, STATIONARY
-from ..types import Array, IntArray, row_of, take
+from ..types import Array, CodeArray, IntArray, row_of, take
 from . import alerts as machine
 from . import encounters, sounding
 from .acquisition import Acquisition, how_acquired
@@ -122,6 +123,7 @@ CATEGORY = tuple('A' if kind in BY_PICTURE else 'B' for kind in range(len(NAMES)
 IDENTIFIER = tuple(10001 + kind for kind in range(len(NAMES)))  # makers' own begin at 10000
 NEARLY_FULL = 0.9  # share of the capacity
 APART = 1.44  # overlap of gates (see swap_risk) that ends a swap risk
+SWAPPED = 0.05  # probability that two tracks have exchanged their targets, from which it is told
 
 
 Named = tuple[int, int, Causes]  # the kind of alert, its zone or radar, and its causes
@@ -153,6 +155,8 @@ class Tracking(NamedTuple):
     fallen    confirmed targets that have fallen back from their filter
     overlap   [N]  of the gates and
     other     [N]  row of the track they overlap with, as swap_risk gives them
+    swapped   [N]  probability that they have exchanged their target with another track and
+    rival     [N]  row of that track, as tracking.meetings tells them
     in_the_way  of stationary objects, as Stationary.way tells it
     nearly    stationary objects are nearly dangerous
     """
@@ -161,6 +165,8 @@ class Tracking(NamedTuple):
     fallen: int
     overlap: Array
     other: IntArray
+    swapped: Array
+    rival: IntArray
     in_the_way: tuple[float, ...] = (0.0, np.nan, np.nan, np.nan, np.nan)
     nearly: bool = False
 
@@ -206,8 +212,7 @@ def step(
     )
     lost = row_of(situation.id, events.id[events.kind == LOST_FROM_SIGHT])
     count, capacity, fallen = len(acquisition.targets.id), tracking.capacity, tracking.fallen
-    swap = np.where(tracking.overlap < 1, ON, np.where(tracking.overlap < APART, KEEP, OFF))
-    partner = np.append(situation.number, 0)[tracking.other]
+    swap, partner = _swaps(situation, tracking)
     causes = [
         (
             DANGER,
@@ -224,7 +229,7 @@ def step(
             0,
             single(fallen, max(settings.fallback_share * confirmed, 1), fallen, confirmed),
         ),
-        (SWAP_RISK, 0, of_tracks(situation, numbered, swap, partner)),
+        (SWAP_RISK, 0, of_tracks(situation, numbered, swap, partner.astype(float))),
         (
             STATIONARY_DANGER,
             0,
@@ -233,6 +238,14 @@ def step(
         *_in_guard_zones(alerts, situation, acquisition, zones),
     ]
     return advance(alerts, causes, settings, now)
+
+
+def _swaps(situation: Situation, tracking: Tracking) -> tuple[CodeArray, IntArray]:
+    """Whether each track [N] may be swapped, and the number [N] of the other one, 0 for none."""
+    meet, doubted = tracking.overlap < 1, tracking.swapped >= SWAPPED
+    level = np.where(meet | doubted, ON, np.where(tracking.overlap < APART, KEEP, OFF))
+    other = np.where(doubted & ~meet, tracking.rival, tracking.other)
+    return level.astype(np.int8), np.append(situation.number, 0)[other]
 
 
 def watch(

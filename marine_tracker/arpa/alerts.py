@@ -42,6 +42,7 @@ STATES = (
 )
 ACTIVE = (ACTIVE_UNACKNOWLEDGED, ACTIVE_ACKNOWLEDGED, ACTIVE_SILENCED)
 WAITING = (ACTIVE_UNACKNOWLEDGED, ACTIVE_SILENCED)  # active, for somebody to acknowledge
+IS_ACTIVE, IS_WAITING = (np.isin(np.arange(len(STATES)), some) for some in (ACTIVE, WAITING))
 VALUES = 5  # numbers that an alert has for its text
 # Levels of a cause: clearly gone, gone, not enough to raise, there, worse than acknowledged.
 CLEAR, OFF, KEEP, ON, WORSE = range(-1, 4)
@@ -161,7 +162,7 @@ def advance(
     row = row_of(causes.id, alerts.id)
     level = np.append(causes.level, OFF)[row]  # -1, gone away: the last
     gone = row < 0
-    active = np.isin(alerts.state, ACTIVE)
+    active = IS_ACTIVE[alerts.state]
     known = ~np.isnan(alerts.until)  # acknowledged
     worse = known & (level == WORSE)
     calls = np.where(
@@ -171,26 +172,19 @@ def advance(
     )
     holds = calls | (~active & (level == KEEP))
     turn = np.where(calls & np.isnan(alerts.turn), now, np.where(holds, alerts.turn, np.nan))
-    wait = np.select(
-        [worse, active, level >= ON],
-        [rule.worse_after, rule.end_after, rule.raise_after],
-        rule.forget_after,
-    )
+    wait = np.where(level >= ON, rule.raise_after, rule.forget_after)
+    wait = np.where(worse, rule.worse_after, np.where(active, rule.end_after, wait))
     due = calls & (now - turn >= np.where(gone, 0.0, wait))
     over = known & (now >= alerts.until)
     raised = ACTIVE_ACKNOWLEDGED if rule.caution else ACTIVE_UNACKNOWLEDGED
     again = np.where(known & ~worse, ACTIVE_ACKNOWLEDGED, raised)
-    ended = np.where(np.isin(alerts.state, WAITING), RECTIFIED_UNACKNOWLEDGED, NORMAL)
+    ended = np.where(IS_WAITING[alerts.state], RECTIFIED_UNACKNOWLEDGED, NORMAL)
     idle = (alerts.state == RECTIFIED_UNACKNOWLEDGED) | (active & rule.momentary)
-    state = np.select(
-        [
-            due & active & ~worse,
-            (due & (level >= ON)) | (over & active & (level >= KEEP)),
-            idle & (now - alerts.since > rule.lapse_after),
-        ],
-        [ended, np.where(over, raised, again), NORMAL],
-        alerts.state,
-    ).astype(np.int8)
+    lapsed = idle & (now - alerts.since > rule.lapse_after)
+    calls_again = (due & (level >= ON)) | (over & active & (level >= KEEP))
+    state = np.where(lapsed, NORMAL, alerts.state)
+    state = np.where(calls_again, np.where(over, raised, again), state)
+    state = np.where(due & active & ~worse, ended, state).astype(np.int8)
     changed = state != alerts.state
     forgotten = (not rule.remembered) | gone | over | (due & ~active & (level == CLEAR))
     told = in_state(alerts, state, now)._replace(

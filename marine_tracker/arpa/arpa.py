@@ -6,6 +6,7 @@ import numpy as np
 
 from ..geometry import NAUTICAL_MILE, polar_to_position
 from ..parameters import ArpaParameters, TrackerParameters
+from ..tracking import meetings
 from ..tracking.gate import gate_size
 from ..tracking.lifecycle import CONFIRMED, LOST
 from ..tracking.noise import noise_of
@@ -65,7 +66,8 @@ class Picture(NamedTuple):
     past      past positions of all tracks
     harmless  [T]  own ship is at anchor and the target does not certainly come nearer
     danger    [T]  one of situation.SAFE, NEARLY, DANGEROUS
-    overlap   [T]  of the gate with that of another track: below 1 the two may be swapped
+    swapped   [T]  probability that the track has exchanged its target with another one since they
+                   met (tracking.meetings)
     events    what happened to targets in this scan
     alerts    those that are not normal
     changed   the alerts that changed in this scan, also those that became normal
@@ -82,7 +84,7 @@ class Picture(NamedTuple):
     past: PastPositions
     harmless: BoolArray
     danger: CodeArray
-    overlap: Array
+    swapped: Array
     events: Events
     alerts: Alerts
     changed: Alerts
@@ -166,7 +168,7 @@ class Arpa:
         targets, row = _shown(acquired, memory.acquisition, tracks)
 
         # alarms: those after the scan, and those that changed
-        swap = self._swap_risk(tracks, remembered, passing, own, now, radar)
+        swap = self._swap_risk(report, remembered, passing, own, now, radar)
         tracking = alarms.Tracking(p.max_targets, _fell(fallen, acquired, tracks), *swap, *rest.way)
         alarm = alarms.step(
             memory.alerts, self.alarms, seen, acquired, events, self.zones, tracking, now
@@ -174,7 +176,7 @@ class Arpa:
 
         # the picture: the rows of the targets
         moving, passing = take(moving, row), take(passing, row)
-        told = no_danger[row], seen.danger[row], swap[0][row], events, *alarm, against
+        told = no_danger[row], seen.danger[row], swap[2][row], events, *alarm, against
         known = ArpaMemory(samples, remembered, acquired, alarm[0], past)
         return known, Picture(now, own, row, targets, moving, passing, past, *told, rest)
 
@@ -211,14 +213,16 @@ class Arpa:
 
     def _swap_risk(
         self,
-        tracks: Tracks,
+        report: Report,
         remembered: motion.MotionMemory,
         passing: Approach,
         own: OwnMotion,
         now: float,
         radar: TrackerParameters,
-    ) -> tuple[Array, IntArray]:
-        """Overlap [N] of the gates in the radar's next scan, and rows [N] of the other tracks."""
+    ) -> tuple[Array, IntArray, Array, IntArray]:
+        """Overlap [N] of the gates in the radar's next scan, and rows [N] of the other tracks; the
+        probability [N] of a swap, and with which row [N]."""
+        tracks = report.tracks
         overlap, other = np.full(len(tracks.id), np.inf), np.full(len(tracks.id), -1)
         rows = ((tracks.number > 0) & (tracks.status != LOST)).nonzero()[0]
         ahead = motion.at(take(remembered, rows), now + radar.scan_period_s)
@@ -232,7 +236,7 @@ class Arpa:
             ahead.position, ahead.covariance[:, :2, :2] + noise, own.position, self.gate_size
         )
         other[rows] = np.where(found >= 0, np.append(rows, -1)[found], -1)
-        return overlap, other
+        return overlap, other, *meetings.told(report.meetings, tracks.id)
 
 
 def _shown(acquired: Acquisition, before: Acquisition, tracks: Tracks) -> tuple[Targets, IntArray]:

@@ -45,7 +45,7 @@ class View(NamedTuple):
     stabilised  the reference of courses and speeds: ground, sea or none
     harmless    [N]  own ship is at anchor and the target does not certainly come nearer
     dangerous   [N]  a danger alarm is active
-    swap_risk   [N]  the gate overlaps that of another track
+    swap_risk   [N]  probability that the track has exchanged its target with another one
     hits        [N]  plots in the last 10 scans
     misses      [N]  scans since the last plot
     age         [N]  s since the first plot
@@ -67,7 +67,7 @@ class View(NamedTuple):
     stabilised: str
     harmless: BoolArray
     dangerous: BoolArray
-    swap_risk: BoolArray
+    swap_risk: Array
     hits: IntArray
     misses: IntArray
     age: Array
@@ -100,7 +100,7 @@ def view(
         picture.stabilised.reference,
         picture.harmless,
         np.isin(targets.id, alerts.id[active]),
-        picture.overlap < 1,
+        picture.swapped,
         history.hits(tracks.history, lifecycle.TEN),
         history.misses_in_a_row(tracks.history),
         picture.time - tracks.first_time,

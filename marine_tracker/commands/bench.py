@@ -64,7 +64,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         '--sectors', action='store_true', help='instead: from the beam to the track, over DDS'
     )
-    parser.add_argument('--display', action='store_true', help='the picture, and nothing else')
+    parser.add_argument(
+        '--display', action='store_true', help='instead: the picture; takes two minutes'
+    )
     parser.add_argument('--seed', type=int, default=1, metavar='N', help='random seed (default 1)')
     report.add_arguments(parser)
 

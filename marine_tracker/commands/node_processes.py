@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
@@ -32,10 +32,12 @@ class Children(list[Child]):
         super().__init__()
         self._logs = logs
 
-    def start(self, nodes: dict[str, dict[str, Any]]) -> None:
-        """Nodes by name with their parameters."""
+    def start(
+        self, nodes: dict[str, dict[str, Any]], renamed: Mapping[str, str] | None = None
+    ) -> None:
+        """Nodes by name with their parameters; renamed: new names of their topics."""
         for name, parameters in nodes.items():
-            self.append(_start(name, parameters, self._logs))
+            self.append(_start(name, parameters, self._logs, renamed or {}))
 
     def end(self, *names: str) -> None:
         """The nodes of these names."""
@@ -62,7 +64,7 @@ def children_of(nodes: dict[str, dict[str, Any]]) -> Iterator[Children]:
 def child_of(name: str, parameters: dict[str, Any]) -> Iterator[Child]:
     """One node as a process, which ends with the context; this process goes on."""
     with contextlib.ExitStack() as logs:
-        child = _start(name, parameters, logs)
+        child = _start(name, parameters, logs, {})
         try:
             yield child
         finally:
@@ -81,11 +83,15 @@ def _end(children: list[Child]) -> None:
                 child.process.wait(max(until - time.monotonic(), 0.0))
 
 
-def _start(name: str, parameters: dict[str, Any], logs: contextlib.ExitStack) -> Child:
+def _start(
+    name: str, parameters: dict[str, Any], logs: contextlib.ExitStack, renamed: Mapping[str, str]
+) -> Child:
     log = logs.enter_context(tempfile.TemporaryFile())
     arguments = [sys.executable, '-P', '-m', 'marine_tracker.nodes.run', name, '--ros-args']
     for key, value in parameters.items():
         arguments += ['-p', f'{key}:={json.dumps(value)}']
+    for topic, other in renamed.items():
+        arguments += ['-r', f'{topic}:={other}']
     package_home = os.fspath(Path(__file__).resolve().parents[2])
     search = os.pathsep.join(filter(None, [package_home, os.environ.get('PYTHONPATH')]))
     # A session of its own: Ctrl-C reaches only this command, which then ends its children.

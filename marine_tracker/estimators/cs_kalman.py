@@ -27,6 +27,7 @@ SERIES_TERMS = 16  # the rest at y = 0.5 is below 1e-15
 POSITION = (0, 3)
 VELOCITY = (1, 4)
 POSITION_VELOCITY = np.array([0, 3, 1, 4])
+_SHOWN_BLOCK = POSITION_VELOCITY[:, None] + 6 * POSITION_VELOCITY  # of a flat covariance
 
 
 class Manoeuvre(NamedTuple):
@@ -241,9 +242,16 @@ def cs_kalman(manoeuvre: Manoeuvre, max_speed: float) -> Estimator:
         return CsState(plots.time.copy(), mean, covariance)
 
     def extrapolate(state: CsState, time: Array) -> Extrapolation:
-        mean, covariance = predict(
-            state.mean, state.covariance, time - state.time, manoeuvre, SHOWN
-        )
+        step = time - state.time
+        late = step.nonzero()[0]
+        if 2 * len(late) > len(step):
+            mean, covariance = predict(state.mean, state.covariance, step, manoeuvre, SHOWN)
+        else:  # the others are there already, as tracks are that have just been updated
+            mean = state.mean.take(POSITION_VELOCITY, 1)
+            covariance = state.covariance.reshape(-1, 36).take(_SHOWN_BLOCK, 1)
+            mean[late], covariance[late] = predict(
+                state.mean[late], state.covariance[late], step[late], manoeuvre, SHOWN
+            )
         return Extrapolation(time, mean[:, :2], mean[:, 2:], covariance)
 
     def update(state: CsState, plots: Plots, rows: IntArray) -> CsState:

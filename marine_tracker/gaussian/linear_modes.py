@@ -8,7 +8,7 @@ products of stacked 4 x 4 matrices.
 Modes may belong to several chains (IMM filters). `Chain` says which modes, and how they change.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -27,11 +27,11 @@ class Chain(NamedTuple):
     """Modes that a target changes between.
 
     modes  a slice of the bank's modes
-    over   function of steps [N] s to the transition matrices [N, J, J]
+    over   the transition matrices, by the step
     """
 
     modes: slice
-    over: Callable[[Array], Array]
+    over: 'Transition'
 
 
 class Bank(NamedTuple):
@@ -65,10 +65,35 @@ def straight(noise: Array) -> Bank:
     return Bank(noise, np.zeros((count, 1)), (), np.zeros((1, 1)), np.zeros(count, int))
 
 
-def transition_power(
-    stay: Numbers, period: float, entered: Numbers | None = None
-) -> Callable[[Array], Array]:
-    """A mode chain in continuous time: function of steps [N] s to transition matrices [N, J, J].
+class Transition(NamedTuple):
+    """A mode chain in continuous time: its eigenvectors as columns, their inverse [J, J] each, and
+    the rates [J] 1/s of decay.
+    """
+
+    vectors: Array
+    inverse: Array
+    decay: Array
+
+    def __call__(self, step: Array) -> Array:
+        """The transition matrices [N, J, J] over steps [N] s."""
+        count = len(self.decay)
+        outer = (self.vectors.T[:, :, None] * self.inverse[:, None, :]).reshape(count, -1)
+        powers = np.exp(np.abs(step)[:, None] * self.decay)
+        found = (powers @ outer).reshape(-1, count, count)
+        value: Array = np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
+        return value
+
+    def carry(self, values: Array, step: Array) -> Array:
+        """The sums [..., J, N] over the modes from which each is entered, of the values [..., J, N]
+        of these. step [N] s, or [1] for all. No matrix for each track: a third of the time.
+        """
+        powers = np.exp(self.decay[:, None] * np.abs(step))
+        found: Array = self.inverse.T @ ((self.vectors.T @ values) * powers)
+        return found
+
+
+def transition_power(stay: Numbers, period: float, entered: Numbers | None = None) -> Transition:
+    """A mode chain in continuous time.
 
     stay     [J]  probability to be in the same mode `period` s later
     entered  [J]  relative probability of each mode when another one is left; equal by default
@@ -89,16 +114,7 @@ def transition_power(
         )
     scale = np.sqrt(rate / share)[:, None]
     vectors, inverse = scale * vectors, vectors.T / scale.T
-    decay = np.log(values) / period
-    outer = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(count, -1)
-
-    def over(step: Array) -> Array:
-        powers = np.exp(np.abs(step)[:, None] * decay)
-        found = (powers @ outer).reshape(-1, count, count)
-        value: Array = np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
-        return value
-
-    return over
+    return Transition(vectors, inverse, np.log(values) / period)
 
 
 def stationary(chain: Chain) -> Array:
@@ -149,12 +165,11 @@ def mix(bank: Bank, rows: Array, weight: Array, step: Array) -> tuple[Array, Arr
     centre = columns[:4, :1].copy()  # keeps the squares small
     columns[:4] -= centre
     _add_squares(columns, np.add)
-    moments = rows_of(columns)
-    mixed, weight = moments.copy(), weight.copy()
+    moments, weight = rows_of(columns), weight.copy()
     for chain in bank.chains:
         weight[:, chain.modes], share = _shares(chain, weight[:, chain.modes], step)
-        np.matmul(share, moments[:, chain.modes], out=mixed[:, chain.modes])
-    columns = columns_of(mixed)
+        moments[:, chain.modes] = np.matmul(share, moments[:, chain.modes])
+    columns = columns_of(moments)
     _add_squares(columns, np.subtract)
     columns[:4] += centre
     return columns, weight
@@ -166,13 +181,22 @@ def _add_squares(columns: Array, add: np.ufunc) -> None:
         add(columns[k], columns[i] * columns[j], out=columns[k])
 
 
-def mix_means(bank: Bank, mean: Array, weight: Array, step: Array) -> tuple[Array, Array]:
-    """As `mix`, for the means only: [N, J, 4] before and after. step [N] s, or [1] for all."""
-    mean, weight = mean.copy(), weight.copy()
+def mix_means(bank: Bank, columns: Array, weight: Array, step: Array) -> tuple[Array, Array]:
+    """As `mix`, for the means only: columns [4, J, N] and weights [J, N], before and after.
+
+    step [N] s, or [1] for all.
+    """
+    columns, weight = columns.copy(), weight.copy()
+    centre = columns[:, :1].copy()  # keeps the products small
+    columns -= centre
     for chain in bank.chains:
-        weight[:, chain.modes], share = _shares(chain, weight[:, chain.modes], step)
-        mean[:, chain.modes] = np.matmul(share, mean[:, chain.modes])
-    return mean, weight
+        own = columns[:, chain.modes]
+        own *= weight[chain.modes]
+        columns[:, chain.modes] = chain.over.carry(own, step)
+        weight[chain.modes] = chain.over.carry(weight[chain.modes], step)
+        columns[:, chain.modes] /= weight[chain.modes]
+    columns += centre
+    return columns, weight
 
 
 def _turn(bank: Bank, step: Array) -> tuple[Array, Array, Array, Array]:

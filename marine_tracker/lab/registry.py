@@ -11,7 +11,7 @@ from . import marine_table
 from .ais import ais
 from .alarms import alarms
 from .alpha_beta import alpha_beta
-from .clutter import clutter
+from .clutter import ablation, clutter
 from .compare import compare
 from .crossings import crossings
 from .danger_areas import danger_areas
@@ -44,6 +44,7 @@ EXPERIMENTS: dict[str, ModuleType] = {
     'video': video,
     'danger_areas': danger_areas,
     'clutter': clutter,
+    'ablation': ablation,
     'crossings': crossings,
     'ais': ais,
 }

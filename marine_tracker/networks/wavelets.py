@@ -129,9 +129,10 @@ def hidden(form: Units, net: Array) -> tuple[Array, Array]:
     square = tanh * tanh
     value = form.odd * tanh
     value += form.even
-    value *= 1 - square
+    rest = 1 - square
+    value *= rest
     square *= form.pole
-    value /= 1 - square
+    value /= np.subtract(1, square, out=rest)
     return value, tanh
 
 

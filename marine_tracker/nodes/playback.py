@@ -40,6 +40,7 @@ AT_ONCE_S = 0.05  # longest work before the executor gets its turn
 LAG_S = 0.5  # further behind than this, time runs slower
 LISTENER_S = 3.0  # longest wait for the first listener ...
 SETTLE_S = 0.5  # ... and for it to know us, too, on every topic
+CLOSE_S = 0.5  # longest wait for the last messages to arrive
 OWN_SHIP_PERIOD_S = 0.1  # of simulated time, and at most
 NO_PLOTS = PolarPlots(np.empty(0), np.empty(0), np.empty(0), np.empty(0))
 OWN_SHIP_PER_S = 25.0  # samples in a second of the wall
@@ -125,8 +126,9 @@ class Playback:
     def close(self) -> None:
         """Stop, and see that what was published arrives."""
         self._timer.cancel()
+        until = self._wall() + CLOSE_S
         for publisher in (self._plots, self._odometry, self._truth):
-            publisher.wait_for_all_acked(Duration(seconds=0.5))
+            publisher.wait_for_all_acked(Duration(seconds=max(until - self._wall(), 0.0)))
 
     def _tick(self) -> None:
         if self._start_ns is None and not self._begin():

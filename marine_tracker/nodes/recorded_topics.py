@@ -11,7 +11,7 @@ from rcl_interfaces.msg import Log, ParameterEvent
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import NavSatFix, PointCloud, PointCloud2
+from sensor_msgs.msg import Image, NavSatFix, PointCloud, PointCloud2
 from std_msgs.msg import String, UInt32
 from visualization_msgs.msg import MarkerArray
 
@@ -43,12 +43,17 @@ def of_this_package(plots: list[str], without: list[str]) -> list[Wanted]:
     found = [
         *(Wanted(name, PointCloud2, deep, True) for name in plots),
         Wanted(topics.SPOKES, PointCloud2, deep),
+        Wanted(topics.IMAGE, Image, deep),
         Wanted(topics.PLOTS_READABLE, PointCloud, deep),
         Wanted(topics.ODOMETRY, Odometry, deep, True),
         Wanted(topics.FIX, NavSatFix, deep),
         Wanted(topics.LOG, TwistStamped, deep),
         Wanted(topics.OWN_SHIP_STATE, DiagnosticArray, latched(DEPTH)),
         Wanted(topics.TRUTH, Odometry, burst),
+        Wanted(topics.AIS_SIMULATED, String, burst),
+        Wanted(topics.AIS_SENTENCES, String, burst),
+        Wanted(topics.AIS_REPORTS, PointCloud2, deep),
+        Wanted(topics.AIS_TARGETS, PointCloud2, latched(DEPTH)),
         Wanted(topics.TRACKS, Odometry, burst),
         Wanted(topics.EXTRAPOLATIONS, Odometry, burst),
         Wanted(topics.TRACKS_CLOUD, PointCloud2, deep, True),
@@ -56,11 +61,15 @@ def of_this_package(plots: list[str], without: list[str]) -> list[Wanted]:
         Wanted(topics.TARGETS_CLOUD, PointCloud2, latched(DEPTH), True),
         Wanted(topics.MARKERS, MarkerArray, deep),
         Wanted(topics.ALARMS, DiagnosticArray, latched(DEPTH)),
+        Wanted(topics.ALARMS_PAST, DiagnosticArray, latched(DEPTH)),
         Wanted(topics.TRIAL, DiagnosticArray, latched(DEPTH)),
+        Wanted(topics.DANGER_AREAS, PointCloud2, latched(DEPTH)),
         Wanted(topics.ACQUIRE, PointStamped, deep),
         Wanted(topics.CLICKED_POINT, PointStamped, deep),
-        Wanted(topics.CANCEL, UInt32, deep),
-        Wanted(topics.ACKNOWLEDGE_TARGET, UInt32, deep),
+        *(Wanted(name, UInt32, deep) for name in topics.NUMBERS),
+        Wanted(topics.EXPLAIN, PointStamped, deep),
+        Wanted(topics.EXPLANATION, DiagnosticArray, deep),
+        Wanted(topics.VIDEO_EXPLANATION, DiagnosticArray, deep),
         Wanted(topics.NMEA, String, burst),
         Wanted(topics.DIAGNOSTICS, DiagnosticArray, deep),
         Wanted('/rosout', Log, reliable(1000)),

@@ -23,7 +23,7 @@ from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
-from ..processes import closing, end_in_time, keep_freed_memory
+from ..processes import closing, end_in_time, keep_freed_memory, leave
 from . import arguments, log_folder
 
 NODES = {
@@ -51,7 +51,7 @@ def run(name: str) -> int:
 
     The node is the class that NODES names, in the module `NAME_node`.
 
-    Returns the exit code, 0 or 1; see the module.
+    Returns the exit code where it does not start; else the process ends here. See the module.
     """
     code = arguments.answer(name, sys.argv[1:])
     if code is not None:
@@ -105,7 +105,7 @@ def run(name: str) -> int:
         node.destroy_node()
         rclpy.try_shutdown()
     on_signals(signal.SIG_IGN)  # from here on no signal changes the exit code
-    return 1 if node.done and node.failures.counts else 0
+    leave(1 if node.done and node.failures.counts else 0)
 
 
 # The executables. `python -m marine_tracker.nodes.run NAME --ros-args ...` runs the same.

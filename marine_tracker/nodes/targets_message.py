@@ -160,7 +160,7 @@ def table(seen: View, estimator: str, time: float) -> list[tuple[str, ...]]:
         [words[which] for which in rest],
         [figure(number, 1) for number in ((time - motion.since) / 60).tolist()],
         [LETTERS[how] for how in seen.acquired.tolist()],
-        ['yes' if risk else '' for risk in seen.swap_risk.tolist()],
+        [figure(risk, 2) if risk >= 0.005 else '' for risk in seen.swap_risk.tolist()],
         [seen.stabilised] * len(rest),
         ['R' if fixed else '' for fixed in seen.reference.tolist()],
         [figure(number, 0) for number in position_sd.tolist()],

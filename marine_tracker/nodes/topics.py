@@ -45,6 +45,8 @@ ACKNOWLEDGE_ALERT = 'acknowledge_alert'
 DIAGNOSTICS = '/diagnostics'
 CLOCK = '/clock'
 
+NUMBERS = CANCEL, ACKNOWLEDGE_TARGET, ACKNOWLEDGE_ALERT, AIS_ACTIVATE, AIS_SLEEP  # UInt32
+
 CANCEL_ALL = 'cancel_all'  # services
 ACKNOWLEDGE = 'acknowledge'
 SILENCE = 'silence'

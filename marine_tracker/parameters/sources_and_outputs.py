@@ -82,7 +82,7 @@ class RecorderParameters:
         'those of this package.',
     )
     without: str = parameter(
-        'radar/plots_readable extrapolations',
+        'radar/plots_readable radar/image extrapolations danger_areas',
         'Topics of this package that are not recorded, separated by blanks.',
     )
     tracker: str = parameter(

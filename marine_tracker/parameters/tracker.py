@@ -203,7 +203,7 @@ class TrackerParameters:
         5, 'N of M-of-N confirmation: ... within this many scans.', low=2, high=20, live=True
     )
     confirm_existence: float = parameter(
-        0.95,
+        0.98,
         'Probability that there is a target, which confirmation needs as well.',
         low=0.1,
         high=0.999999,

@@ -8,6 +8,7 @@ from .gate import Pairs
 from .sparse_assignment import best_pairs
 
 FEW = 32  # tracks; so small a matrix is solved faster than it is split
+WIDE = 6  # the other side of a component of two tracks, or two plots, that is solved with the rest
 # Tracks times plots of a component beyond which it is solved as a graph; and, should that take more
 # than so many looks at a pair, as a matrix after all, unless it had more than so many places.
 LARGE, PATIENCE, HUGE = 250_000, 10, 25_000_000
@@ -73,14 +74,41 @@ def _solve(track: IntArray, plot: IntArray, gain: Array) -> IntArray:
     height, row_place = places(track_part, len(tracks))
     width, column_place = places(plot_part, len(tracks))
     row, column, part = row_place[row], column_place[column], track_part[row]
+    two_rows, two_columns = (height == 2) & (width <= WIDE), (width == 2) & (height <= WIDE)
+    of_two, of_two_columns = two_rows[part], (two_columns & ~two_rows)[part]
     order = part.argsort(kind='stable')
-    parts = height.nonzero()[0]
+    order = order[~(of_two | of_two_columns)[order]]
+    parts = (height.astype(bool) & ~two_rows & ~two_columns).nonzero()[0]
     return np.concatenate(
         [
-            _assign(row[pairs], column[pairs], gain[pairs], pairs, height[c], width[c])
-            for c, pairs in zip(parts, np.split(order, part[order].searchsorted(parts[1:])))
+            _of_two(row, column, gain, part, of_two.nonzero()[0]),
+            _of_two(column, row, gain, part, of_two_columns.nonzero()[0]),
+            *(
+                _assign(row[pairs], column[pairs], gain[pairs], pairs, height[c], width[c])
+                for c, pairs in zip(parts, np.split(order, part[order].searchsorted(parts[1:])))
+            ),
         ]
     )
+
+
+def _of_two(
+    row: IntArray, column: IntArray, gain: Array, part: IntArray, pairs: IntArray
+) -> IntArray:
+    """Of the given pairs of components with two rows each, and at least two columns, those of the
+    optimal assignments: the best of all choices of two columns, for all components at once."""
+    if not len(pairs):
+        return pairs
+    parts, part = np.unique(part[pairs], return_inverse=True)
+    row, column, columns = row[pairs], column[pairs], int(column[pairs].max()) + 1
+    worth = np.zeros((2, len(parts), columns))
+    which = np.full((2, len(parts), columns), -1)
+    worth[row, part, column], which[row, part, column] = gain[pairs], pairs
+    total = worth[0][:, :, None] + worth[1][:, None, :]
+    total[:, np.arange(columns), np.arange(columns)] = -1.0  # one column for both
+    first, second = np.divmod(total.reshape(len(parts), -1).argmax(1), columns)
+    every = np.arange(len(parts))
+    taken = np.append(which[0, every, first], which[1, every, second])
+    return taken[taken >= 0]
 
 
 def _assign(

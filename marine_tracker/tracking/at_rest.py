@@ -12,18 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import (
-    Array,
-    BoolArray,
-    Extrapolation,
-    IntArray,
-    Plots,
-    Tracks,
-    append,
-    row_of,
-    take,
-    where,
-)
+from ..types import Array, BoolArray, Extrapolation, IntArray, Tracks, append, some, take
 from . import steady
 from .lifecycle import COASTING, CONFIRMED, LOST, STATIONARY
 from .places import AT_REST, GATE, UNNAMED, WANDER, Places, empty, nearest
@@ -106,54 +95,61 @@ def step(
     Anchors of tracks that were not in this scan stay; those of lost ones go.
     """
     at = at_places(ground.places, seen)
-    learnt = ground.revolutions >= LEARNT
-    anchors = moving(follow(ground.anchors, tracks, seen), at, seen, learnt)
-    others = take(ground.anchors, ~np.isin(ground.anchors.id, tracks.id))
+    here, others = _apart(ground.anchors, tracks.id)
+    anchors = follow(here, tracks, seen)
     along = steady.under_way(anchors.line, seen.variance + WANDER**2)
+    anchors = moving(anchors, at, seen, along, ground.revolutions >= LEARNT)
     rest = was | ~along  # what surely moves does not become a place
-    tracks, places = settle(tracks, was, rest, anchors, at, ground.places, others.number)
+    tracks, places = settle(tracks, was, rest, anchors, at, ground.places, others)
     target = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
     anchors = anchors._replace(number=tracks.number, target=target)
-    every = append(others, take(anchors, tracks.status != LOST))
-    every = take(every, every.id.argsort(kind='stable'))
+    every = some(anchors, tracks.status != LOST)
+    if others is not None:
+        every = append(others, every)
+        every = take(every, every.id.argsort(kind='stable'))
     ground = ground._replace(places=places, anchors=every)
     return ground, tracks, ~anchors.moved | (steady.speed(anchors.line) < AT_REST)
 
 
+def _apart(anchors: Anchors, ids: IntArray) -> tuple[Anchors, Anchors | None]:
+    """The anchors of tracks in this scan, by their ids [N], and those of others, if any are."""
+    if np.array_equal(anchors.id, ids[: len(anchors.id)]):
+        return anchors, None
+    here = np.isin(anchors.id, ids)
+    return take(anchors, here), take(anchors, ~here)
+
+
 def follow(before: Anchors, tracks: Tracks, seen: Standing) -> Anchors:
-    """The anchors of the N tracks, in their order; new ones begin where they are."""
-    row = row_of(before.id, tracks.id)
-    new = row < 0
-    old = take(before, np.maximum(row, 0)) if len(before.id) else None
-    line = steady.begin(seen.position, seen.time)
-    if old is None:
-        none = np.zeros(len(new), np.int64)
-        still = np.zeros(len(new), bool)
-        return Anchors(
-            tracks.id, seen.position, seen.variance, none, still, tracks.number, still, line
-        )
-    return Anchors(
-        tracks.id,
-        np.where(new[:, None], seen.position, old.position),
-        np.where(new, seen.variance, old.variance),
-        np.where(new, 0, old.away),
-        ~new & old.moved,
-        tracks.number,
-        ~new & old.target,
-        where(new, line, steady.follow(old.line, seen.hit, seen.position, seen.time)),
+    """The anchors of the N tracks, of which the first ones have anchors before; new ones begin
+    where they are."""
+    count = len(before.id)
+    old = before._replace(
+        line=steady.follow(before.line, seen.hit[:count], seen.position[:count], seen.time[:count])
     )
+    if count < len(tracks.id):
+        at, time, ids = seen.position[count:], seen.time[count:], tracks.id[count:]
+        none = np.zeros(len(ids), np.int64)
+        no, variance = none > 0, seen.variance[count:]
+        new = Anchors(ids, at, variance, none, no, none, no, steady.begin(at, time))
+        old = append(old, new)
+    return old._replace(id=tracks.id, number=tracks.number)
 
 
-def moving(anchors: Anchors, at: IntArray, seen: Standing, learnt: bool) -> Anchors:
+def moving(
+    anchors: Anchors, at: IntArray, seen: Standing, under_way: BoolArray, learnt: bool
+) -> Anchors:
     """The anchors after a scan in which the tracks were at the places `at` [N], -1 for none.
 
     Before the map is learnt, a track that goes from plot to plot along a quay is off every place,
-    too; then only a line through its plots tells that a track moves.
+    too; then only a line through its plots tells that a track moves, `under_way` [N].
     """
-    apart = ((seen.position - anchors.position) ** 2).sum(1)
+    east, north = (seen.position - anchors.position).T
+    apart = east**2 + north**2
     clear = apart > GATE * (seen.variance + anchors.variance + 2 * WANDER**2)
-    under_way = steady.under_way(anchors.line, seen.variance + WANDER**2)
-    step = np.where((at < 0) & learnt, OFF, np.where(under_way, ALONG, 0)) * clear
+    step = under_way * ALONG
+    if learnt:
+        step[at < 0] = OFF
+    step *= clear
     away = np.where(seen.hit, np.where(step > 0, anchors.away + step, 0), anchors.away)
     return anchors._replace(away=away, moved=anchors.moved | (away >= AWAY))
 
@@ -165,35 +161,44 @@ def settle(
     anchors: Anchors,
     at: IntArray,
     places: Places,
-    others: IntArray,
+    others: Anchors | None,
 ) -> tuple[Tracks, Places]:
     """The tracks with STATIONARY ones marked and numbered, and the places without those left.
 
     was     [N] it was stationary before this scan
     rest    [N] it may be stationary
     at      [N] its established place, -1 for none
-    others  numbers of tracks that were not in this scan
+    others  anchors of tracks that were not in this scan
     """
+    named = places.number
+    if not np.count_nonzero(named) and not np.count_nonzero(was):
+        return tracks, places
     live = (tracks.status == CONFIRMED) | (tracks.status == COASTING)
     still = live & rest & ~anchors.moved & ((at >= 0) | was)
     crowd = np.append(places.crowded, False)[at] | (was & (at < 0))
-    leaves = live & (anchors.away >= AWAY)
-    number, named = tracks.number.copy(), places.number
+    number = tracks.number.copy()
     # A track on a place that has no name lends it its number; a place lends its own to a track.
     lend = (live & (at >= 0) & (number > 0)).nonzero()[0]
-    lend = lend[(named[at[lend]] == UNNAMED) & ~np.isin(number[lend], named)]
-    named = named.copy()
-    named[at[lend]] = number[lend]
+    lend = lend[named[at[lend]] == UNNAMED]
+    if len(lend):
+        lend = lend[~np.isin(number[lend], named)]
+        named = named.copy()
+        named[at[lend]] = number[lend]
     borrow = (still & (number == 0) & (at >= 0)).nonzero()[0]
-    taken = np.append(number, others)
-    borrow = borrow[(named[at[borrow]] > 0) & ~np.isin(named[at[borrow]], taken)]
-    _, first = np.unique(named[at[borrow]], return_index=True)
-    number[borrow[first]] = named[at[borrow[first]]]
-    gone = np.isin(named, number[leaves]) & (named > 0)
+    borrow = borrow[named[at[borrow]] > 0]
+    if len(borrow):
+        taken = number if others is None else np.append(number, others.number)
+        borrow = borrow[~np.isin(named[at[borrow]], taken)]
+        _, first = np.unique(named[at[borrow]], return_index=True)
+        number[borrow[first]] = named[at[borrow[first]]]
     tracks = tracks._replace(
         status=np.where(still & crowd, STATIONARY, tracks.status).astype(np.int8), number=number
     )
-    return tracks, take(places._replace(number=named), ~gone)
+    leaves = number[live & (anchors.away >= AWAY)]
+    places = places._replace(number=named)
+    if len(leaves):
+        places = some(places, ~np.isin(named, leaves) | (named <= 0))
+    return tracks, places
 
 
 def name(places: Places, next_number: int) -> tuple[Places, int]:
@@ -202,7 +207,10 @@ def name(places: Places, next_number: int) -> tuple[Places, int]:
     The plots of one thing may scatter over two places: one that is within reach of a place with a
     number is the same thing, and is dropped.
     """
-    named, rows = take(places, places.number > 0), (places.number == UNNAMED).nonzero()[0]
+    rows = (places.number == UNNAMED).nonzero()[0]
+    if not len(rows):
+        return places, next_number
+    named = places.position[places.number > 0]
     same = nearest(named, places.position[rows], places.variance[rows]) >= 0
     number = places.number.copy()
     number[rows[~same]] = next_number + np.arange((~same).sum())
@@ -235,8 +243,11 @@ NOTHING_SHOWN = Shown(
 
 def shown(ground: Ground) -> Shown:
     """The established places, without those for which a target stands."""
-    places, targets = ground.places, ground.anchors.number[ground.anchors.target]
-    chosen = (places.number > 0) & ~np.isin(places.number, targets)
+    places = ground.places
+    chosen = places.number > 0
+    if not np.count_nonzero(chosen):
+        return NOTHING_SHOWN
+    chosen &= ~np.isin(places.number, ground.anchors.number[ground.anchors.target])
     there = take(places, chosen.nonzero()[0][places.number[chosen].argsort()])
     return Shown(
         there.number,
@@ -250,23 +261,31 @@ def shown(ground: Ground) -> Shown:
 def at_places(places: Places, seen: Standing) -> IntArray:
     """Row [N] of the established place at which each track is, -1 for none."""
     rows = places.established.nonzero()[0]
-    found = nearest(take(places, rows), seen.position, seen.variance)
+    found = nearest(places.position[rows], seen.position, seen.variance)
     return np.where(found >= 0, np.append(rows, -1)[found], -1)
 
 
 def standing(
-    hit: BoolArray, chosen: Plots, ahead: Extrapolation, expected: Array, time: Array
+    plot_of: IntArray,
+    plots: Array,
+    variances: Array,
+    ahead: Extrapolation,
+    expected: Array,
+    time: Array,
 ) -> Standing:
     """What is known of the N tracks of a scan.
 
-    hit       [N] they had a plot; chosen: those plots, in the order of the tracks; time [N] s
-    ahead     the tracks before the scan, with covariances `expected` [N0, 2, 2] m^2; those that are
-              missing are new, and had a plot
+    plot_of           [N]     the plot that each track took, -1 for none; time [N] s
+    plots, variances  [M, 2]  m, of the plots, and [M] m^2, their larger axes
+    ahead             the tracks before the scan, with covariances `expected` [N0, 2, 2] m^2; those
+                      that are missing are new, and had a plot
     """
-    count, before = len(hit), len(ahead.time)
-    position, variance = np.zeros((count, 2)), np.zeros(count)
+    count, before, hit = len(plot_of), len(ahead.time), plot_of >= 0
+    position, variance = np.empty((count, 2)), np.empty(count)
     position[:before], variance[:before] = ahead.position, larger(expected)
-    position[hit], variance[hit] = chosen.position, larger(chosen.covariance)
+    rows = hit.nonzero()[0]
+    took = plot_of[rows]
+    position[rows], variance[rows] = plots[took], variances[took]
     return Standing(position, variance, hit, time)
 
 

@@ -76,13 +76,15 @@ def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
     crowd in one place, such as a rain cell, says nothing of the other side of the ring.
     """
     scans = min(max(clutter.scans - 1, 1), MEMORY)
-    shape = RINGS // LARGE_RINGS, LARGE_RINGS, _AROUND, LARGE_SECTORS
-    count = clutter.plots.reshape(shape).sum((1, 3))
+    a, b, c, d = clutter.plots.reshape(-1, LARGE_SECTORS).T
+    first, second = (a + b + c + d).reshape(-1, LARGE_RINGS, _AROUND).swapaxes(0, 1)
+    count = first + second  # plots in the large cells
     area = _LARGE_AREA[:, None]
     ring = np.maximum(np.minimum(count, CROWD).sum(1), LEAST_IN_RING)[:, None] / (_AROUND * area)
     large = (scans * count + 1.0) / (scans * area + 1.0 / ring)
     cell = _cell(range_, bearing)
-    row, sector = np.divmod(cell, SECTORS)
+    row = cell // SECTORS
+    sector = cell - row * SECTORS
     found: Array = large[row // LARGE_RINGS, sector // LARGE_SECTORS]
     if clutter.scans < 2:  # a target's own first plot would make its small cell one of clutter
         return found
@@ -95,13 +97,14 @@ def density(clutter: ClutterMap, range_: Array, bearing: Array) -> Array:
 def _block(plots: Array) -> Array:
     """Sum [RINGS * SECTORS] of the plots in each small cell and the eight around it."""
     grid = plots.reshape(RINGS, SECTORS)
-    three = np.zeros((RINGS + 2, SECTORS))
-    three[1:-1] = grid
-    three[1:-1, 1:] += grid[:, :-1]
-    three[1:-1, :-1] += grid[:, 1:]
-    three[1:-1, 0] += grid[:, -1]
-    three[1:-1, -1] += grid[:, 0]
-    found: Array = (three[:-2] + three[1:-1] + three[2:]).ravel()
+    ringed = np.zeros((RINGS + 2) * SECTORS)
+    three = ringed[SECTORS:-SECTORS]
+    three[1:] = plots[1:] + plots[:-1]
+    three[:-1] += plots[1:]
+    of_ring = three.reshape(RINGS, SECTORS)  # its first and last sector are neighbours
+    of_ring[:, 0] = grid[:, 0] + grid[:, 1] + grid[:, -1]
+    of_ring[:, -1] = grid[:, -1] + grid[:, -2] + grid[:, 0]
+    found: Array = ringed[: -2 * SECTORS] + three + ringed[2 * SECTORS :]
     return found
 
 

@@ -27,7 +27,7 @@ def detection(tracks: Tracks, prior: Array) -> Array:
     old = tracks.age >= RECENT
     found = hits(tracks.history, RECENT) + PRIOR_SCANS * prior
     found = np.where(old, found / (RECENT + PRIOR_SCANS), prior)
-    clipped: Array = np.clip(found, LEAST_DETECTION, MOST_DETECTION)
+    clipped: Array = np.minimum(np.maximum(found, LEAST_DETECTION), MOST_DETECTION)
     return clipped
 
 

@@ -101,7 +101,7 @@ def judge(
     )
     # Give up when even plots in all remaining scans of the window would be too few.
     remaining = np.maximum(window - tracks.age, 0)
-    ten = hits(tracks.history, TEN)
+    ten = recent if window == TEN else hits(tracks.history, TEN)
     held = sure(tracks) & (ten >= SHOWS)
     gone = np.where(
         tentative,

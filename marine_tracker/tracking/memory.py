@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from ..types import Array, BoolArray, CodeArray, IntArray, Plots, Scan, Tracks
-from . import at_rest, offsets, sectors, surroundings
+from . import at_rest, meetings, offsets, sectors, surroundings
 
 
 class OfRadar(NamedTuple):
@@ -30,6 +30,7 @@ class TrackerMemory(NamedTuple):
     next_id      the next track's id
     next_number  the next confirmed track's target number
     ground       places where plots always are
+    meetings   tracks that have met
     """
 
     tracks: Tracks
@@ -38,6 +39,7 @@ class TrackerMemory(NamedTuple):
     next_id: int
     next_number: int
     ground: at_rest.Ground
+    meetings: meetings.Meetings
 
 
 class Report(NamedTuple):
@@ -53,6 +55,7 @@ class Report(NamedTuple):
     begun      [B]     the first plots, of the last scan, of the new tracks: the last B
     scan       whose plots `plot` refers to: of a sector those that were decided in it
     places     where plots always are, as they are to be shown
+    meetings tracks that have met, by id
     """
 
     time: Array
@@ -64,6 +67,7 @@ class Report(NamedTuple):
     left_out: int
     scan: Scan
     places: at_rest.Shown
+    meetings: meetings.Meetings
 
 
 class Left(NamedTuple):

@@ -34,6 +34,8 @@ def duplicates(pairs: Pairs, plot_of: IntArray, ahead: Extrapolation, tracks: Tr
     has = ((plot_of >= 0) & (plot_of < len(owner))).nonzero()[0]
     owner[plot_of[has]] = has
     look = (starved[track] & (owner[plot] >= 0)).nonzero()[0]
+    if not len(look):
+        return double
     one, other = track[look], owner[plot[look]]
     mine, others = tracks.history[one], tracks.history[other]
     old = sure(tracks)[one] & sure(tracks)[other]

@@ -191,20 +191,21 @@ def learn(
     told      of those: range m, bearing rad, origin [M, 2] m, `rates` [M, 3]; after `applied`
     marks     [Q, 2] m, east and north, known positions: the place nearest to each lies there
     """
-    there = take(there, there.number > 0)
-    sure = np.full(len(there.number), -1)
+    named = (there.number > 0).nonzero()[0]
+    numbers, places = there.number[named], there.position[named]
+    sure = np.full(len(named), -1)
     if len(marks) and len(sure):
-        apart, place = cKDTree(there.position).query(marks)
+        apart, place = cKDTree(places).query(marks)
         near = (apart < NEAR).nonzero()[0]
         sure[place[near]] = near
-    row = nearest(there, position, variance)
+    row = nearest(places, position, variance)
     at = (row >= 0).nonzero()[0]
     row = row[at]
     if len(at):
         columns = tuple(column[at] for column in told)
-        number, fitted = there.number[row], before.marks
+        number, fitted = numbers[row], before.marks
         known, mark = row_of(fitted.number, number), sure[row]
-        place = there.position[row]
+        place = places[row]
         place = _instead(_instead(place, fitted.position, known), marks, mark)
         plots = _compared(before.applied, place, columns, radar)
         before = refer(before, take(plots, mark >= 0))
@@ -212,8 +213,8 @@ def learn(
         before = refer_to_places(
             before, take(plots, others), place[others], origin[others], number[others]
         )
-        there = take(there, sure < 0)
-    return _later(before, there.number, radar.correct_plots)
+        numbers = numbers[sure < 0]
+    return _later(before, numbers, radar.correct_plots)
 
 
 def _instead(position: Array, others: Array, row: IntArray) -> Array:
@@ -248,10 +249,11 @@ def _later(before: Offsets, numbers: IntArray, apply: bool) -> Offsets:
     apply  whether what is known is to be taken off the plots. It changes in steps, when it differs
            by more than its deviation.
     """
-    marks = before.marks
-    gone = ~np.isin(marks.number, numbers)
-    normal, right, squares, values = _without_marks(before._replace(marks=take(marks, gone)))
-    marks = take(marks, ~gone)
+    marks, (normal, right, squares, values) = before.marks, before[:4]
+    if len(marks.number):
+        gone = ~np.isin(marks.number, numbers)
+        normal, right, squares, values = _without_marks(before._replace(marks=take(marks, gone)))
+        marks = take(marks, ~gone)
     keeps = 1 - 1 / MEMORY
     after = Offsets(
         keeps * normal,

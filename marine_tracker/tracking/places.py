@@ -20,7 +20,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import rel_entr
 
-from ..types import Array, BoolArray, IntArray, append, take
+from ..types import Array, BoolArray, IntArray, append, put, some, take
 
 GATE = 9.0  # squared deviations within which a plot belongs to a place
 WANDER = 4.0  # m, each axis: a thing on the ground echoes here and there
@@ -32,6 +32,7 @@ TRIAL = 6  # revolutions without a plot after which a place that is not establis
 MOST = 20_000  # rows
 SURE = 16.0  # log-likelihood ratio against chance: exceeded once in some 100 million tries
 TRIED = 4  # plots of a place whose neighbours are counted, half of them in each revolution
+SOON = 20.0  # times AT_REST: with so uncertain a motion a place is not established before long
 APART = 2.2  # times the gate's radius, from a place to its neighbours
 _ANGLES = np.arange(8) * (np.pi / 4)
 _AROUND = APART * np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], 1).reshape(4, 2, 2).swapaxes(0, 1)
@@ -79,6 +80,17 @@ class Places(NamedTuple):
         return found
 
 
+class _Means(NamedTuple):
+    """What of the places is a mean, or a sum, over their plots."""
+
+    position: Array
+    variance: Array
+    plots: Array
+    time: Array
+    spread: Array
+    slope: Array
+
+
 def empty() -> Places:
     """Nothing is known."""
     none, count = np.zeros(0), np.zeros(0, np.int64)
@@ -89,14 +101,14 @@ def empty() -> Places:
     )
 
 
-def nearest(places: Places, position: Array, variance: Array) -> IntArray:
-    """Row [M] of the nearest place of each position [M, 2] m, of variance [M] m^2 each axis; -1
-    where none is near enough."""
-    if not len(places.share) or not len(position):
+def nearest(places: Array, position: Array, variance: Array) -> IntArray:
+    """Row [M] of the nearest of the places [P, 2] m of each position [M, 2] m, of variance [M] m^2
+    each axis; -1 where none is near enough."""
+    if not len(places) or not len(position):
         return np.full(len(position), -1)
     reach = np.sqrt(GATE * (variance + WANDER**2))
     # A tree that is quickly made: it is asked once.
-    tree = cKDTree(places.position, compact_nodes=False, balanced_tree=False)
+    tree = cKDTree(places, compact_nodes=False, balanced_tree=False)
     distance, row = tree.query(position, distance_upper_bound=float(reach.max()) + 1.0)
     return np.where(distance <= reach, row, -1)
 
@@ -123,28 +135,42 @@ def learn(before: Places, position: Array, variance: Array, time: Array, view: V
 
     A place takes the nearest of the plots in its gate; the others there are of no other place.
     """
-    row = nearest(before, position, variance)
-    known, apart = row >= 0, np.full(len(row), np.inf)
-    apart[known] = np.linalg.norm(position[known] - before.position[row[known]], axis=1)
-    order = np.lexsort((apart, row))
-    first = order[np.append(True, np.diff(row[order]) > 0)[: len(order)] & known[order]]
+    row = nearest(before.position, position, variance)
+    first = _nearest_of_each(before.position, row, position)
+    hit, established = row[first], before.established
     visible = view.of(before.position)
-    after = _looked(before, row[first], visible)
-    after = _with_plots(after, row[first], position[first], variance[first], time[first])
-    after = _by_chance(after, visible, position[~np.append(before.established, False)[row]], view)
-    keep = (after.idle < TRIAL) | after.established | ((after.plots >= 3) & (after.share >= ENDS))
-    no_more = after.share < np.maximum(ENDS, after.chance)
-    keep &= ~(after.established & no_more & (after.looks > LEAST_LOOKS))
-    after = append(take(after, keep), _new(position[~known], variance[~known], time[~known]))
+    after = _looked(before, hit, visible)
+    after = _with_plots(after, hit, position[first], variance[first], time[first])
+    after = _by_chance(after, visible, position[~np.append(established, False)[row]], view)
+    keep = (after.idle < TRIAL) | established | ((after.plots >= 3) & (after.share >= ENDS))
+    if np.count_nonzero(established):
+        no_more = after.share < np.maximum(ENDS, after.chance)
+        keep &= ~(established & no_more & (after.looks > LEAST_LOOKS))
+    new = (row < 0).nonzero()[0]
+    after = some(after, keep)
+    if len(new):
+        after = append(after, _new(position[new], variance[new], time[new]))
     if len(after.share) > MOST:
         after = take(after, slice(0, MOST))
-    sure = (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS) & ~after.established
-    sure &= np.minimum(after.share, after.lately) >= BECOMES
-    if sure.any():
-        those = take(after, sure)
-        sure[sure] = _at_rest(those) & (surplus(those) > SURE)
-    number = np.where(sure, UNNAMED, after.number)
+    sure = (after.looks >= LEAST_LOOKS) & (after.plots >= LEAST_PLOTS) & (after.number == 0)
+    sure &= (np.minimum(after.share, after.lately) >= BECOMES) & _at_rest(after)
+    number, rows = after.number, sure.nonzero()[0]
+    if len(rows):
+        number = number.copy()
+        number[rows[surplus(take(after, rows)) > SURE]] = UNNAMED
     return after._replace(number=number, crowded=_crowded(after.position, number != 0))
+
+
+def _nearest_of_each(places: Array, row: IntArray, position: Array) -> IntArray:
+    """Of the plots at position [M, 2] m the nearest one of each place, in the order of the places
+    [P, 2] m; row [M] of the place of each plot, -1 for none."""
+    known = (row >= 0).nonzero()[0]
+    east, north = (position[known] - places[row[known]]).T
+    known = known[(east * east + north * north).argsort(kind='stable')[::-1]]
+    plot = np.full(len(places), -1)
+    plot[row[known]] = known  # of several the last, which is the nearest
+    found: IntArray = plot[plot >= 0]
+    return found
 
 
 def surplus(places: Places) -> Array:
@@ -173,8 +199,11 @@ def _divergence(p: Array, q: Array) -> Array:
 
 
 def _by_chance(places: Places, visible: BoolArray, plots: Array, view: View) -> Places:
-    """The share of plots [K, 2] m in the neighbours of the places, counted for one revolution."""
-    rows = (visible & (places.plots >= TRIED)).nonzero()[0]
+    """The share of plots [K, 2] m in the neighbours of the places, counted for one revolution.
+
+    It is not counted where the place surely moves, or will not be known to rest before long.
+    """
+    rows = (visible & (places.plots >= TRIED) & _may_rest(places)).nonzero()[0]
     if not len(rows):
         return places
     reach = np.sqrt(GATE * (places.variance[rows] + WANDER**2))
@@ -210,17 +239,20 @@ def _looked(places: Places, hit: IntArray, visible: BoolArray) -> Places:
 def _with_plots(places: Places, row: IntArray, at: Array, variance: Array, time: Array) -> Places:
     """One more plot for each of the rows [K], by the recursion of means and sums of squares."""
     keeps = 1 - 1 / MEMORY  # what older plots count for
-    old = keeps * places.plots[row]
+    means = _Means(*(getattr(places, name) for name in _Means._fields))
+    before = take(means, row)
+    old = keeps * before.plots
     count = old + 1
-    late, off = time - places.time[row], at - places.position[row]
-    columns = {name: getattr(places, name).copy() for name in Places._fields}
-    columns['time'][row] += late / count
-    columns['position'][row] += off / count[:, None]
-    columns['variance'][row] += (variance - places.variance[row]) / count
-    columns['spread'][row] = keeps * places.spread[row] + late**2 * old / count
-    columns['slope'][row] = keeps * places.slope[row] + (late * old / count)[:, None] * off
-    columns['plots'][row] = count
-    return Places(**columns)
+    late, off = time - before.time, at - before.position
+    now = _Means(
+        before.position + off / count[:, None],
+        before.variance + (variance - before.variance) / count,
+        count,
+        before.time + late / count,
+        keeps * before.spread + late**2 * old / count,
+        keeps * before.slope + (late * old / count)[:, None] * off,
+    )
+    return places._replace(**put(means, row, now)._asdict())
 
 
 def _new(position: Array, variance: Array, time: Array) -> Places:
@@ -256,10 +288,23 @@ def _crowded(position: Array, established: BoolArray) -> BoolArray:
     return found
 
 
-def _at_rest(places: Places) -> BoolArray:
-    """Mask [P] of those that surely move less than AT_REST: by three deviations of the slope."""
+def _motion(places: Places) -> tuple[Array, Array]:
+    """m/s [P], how fast they move, and three deviations of that, by the slope of their lines."""
     spread = np.maximum(places.spread, 1e-9)
     speed = np.hypot(*places.slope.T) / spread
     sigma = np.sqrt((places.variance + WANDER**2) / spread)
-    found: BoolArray = speed + 3 * sigma < AT_REST
+    return speed, 3 * sigma
+
+
+def _at_rest(places: Places) -> BoolArray:
+    """Mask [P] of those that surely move less than AT_REST."""
+    speed, unsure = _motion(places)
+    found: BoolArray = speed + unsure < AT_REST
+    return found
+
+
+def _may_rest(places: Places) -> BoolArray:
+    """Mask [P] of those that do not surely move, and of which it may be known before long."""
+    speed, unsure = _motion(places)
+    found: BoolArray = (speed - unsure < AT_REST) & (unsure < SOON * AT_REST)
     return found

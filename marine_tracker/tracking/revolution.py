@@ -129,4 +129,5 @@ def _joined(reports: Sequence[Report], scan: Scan) -> Report:
         sum(one.left_out for one in reports),
         scan._replace(plots=plots),
         reports[-1].places,
+        reports[-1].meetings,
     )

@@ -52,7 +52,7 @@ def follow(before: Line, hit: BoolArray, position: Array, time: Array) -> Line:
         before.time + late / count,
         keeps * before.spread + weight * late**2,
         before.position + off / count[:, None],
-        keeps * before.scatter + weight * (off**2).sum(1),
+        keeps * before.scatter + weight * _squares(off),
         keeps * before.slope + (weight * late)[:, None] * off,
     )
     return Line(
@@ -72,7 +72,7 @@ def speed(line: Line) -> Array:
 def under_way(line: Line, variance: Array) -> BoolArray:
     """Mask [A] of the tracks that surely move along a line; variance [A] m^2 of their plots."""
     spread = np.maximum(line.spread, 1e-9)
-    explained = (line.slope**2).sum(1) / spread
+    explained = _squares(line.slope) / spread
     rest = (line.scatter - explained) / np.maximum(2 * (line.plots - 2), 1e-9)
     found: BoolArray = (
         (line.plots >= LEAST - 1)  # older ones count less
@@ -80,4 +80,11 @@ def under_way(line: Line, variance: Array) -> BoolArray:
         & (rest < SCATTER * variance)
         & (speed(line) > SLOWEST)
     )
+    return found
+
+
+def _squares(vector: Array) -> Array:
+    """Squared length [A] of vectors [A, 2]."""
+    east, north = vector.T
+    found: Array = east * east + north * north
     return found

@@ -104,6 +104,8 @@ def ratio(
         radar.gate_probability,
         len(plots.time),
     )
+    if seam == len(plot_of):
+        return of_old
     second = plot_of[seam:]
     now, density = take(plots, second), evidence.share * evidence.density[second]
     of_new = existence.ratio_of_two(

@@ -18,6 +18,7 @@ from ..types import (
     Scan,
     Tracks,
     append,
+    some,
     take,
 )
 from . import (
@@ -26,10 +27,12 @@ from . import (
     land_mask,
     late_plots,
     lifecycle,
+    meetings,
     offsets,
     parts,
     places,
     sectors,
+    split_plots,
     surroundings,
 )
 from .associate import associate, gain
@@ -94,6 +97,7 @@ class Tracker:
             1,
             1,
             at_rest.begin(),
+            meetings.begin(),
         )
 
     def extrapolate(self, tracks: Tracks, time: float | Array) -> Extrapolation:
@@ -141,12 +145,16 @@ class Tracker:
         worth = gain(pairs, self.gate_size)
         plot_of = associate(pairs.track, pairs.plot, worth, count, len(plots.time))
 
+        plots = split_plots.fused(pairs, plot_of, plots, evidence.density, p)
+
         # initiate: from plots of this scan and the last one that belong to no track
         free = unexplained(plots, pairs, plot_of, tracks)
         afloat = ~on_land(self.land, plots.position)
         free &= afloat
         room, speed = max(0, p.max_tracks - count - others), p.max_target_speed_mps
         first, second = pair_up(lone, plots, starts.track, starts.plot, free, speed, room)
+        single = split_plots.alone(second, plot_of, plots, p)
+        first, second = first[single], second[single]
         free[second] = False
         new = take(lone, first)
         if len(first):
@@ -155,6 +163,9 @@ class Tracker:
 
         # update
         taken = take_plots(pairs, evidence, plot_of, tracks, ahead, expected, plots, p)
+        plot_of = taken.plot_of
+        met = memory.meetings, taken.contested, plot_of, tracks, ahead, scan.end
+        memory = memory._replace(meetings=meetings.step(*met))
         tracks = late_plots.update(self.estimator, tracks, taken.plots, taken.rows, scan.radar)
 
         # judge: record the scan for each track, and decide its status
@@ -203,13 +214,15 @@ class Tracker:
         """The tracks with those at rest as such, and numbered; which plots tell places."""
         was = np.zeros(len(plot_of), bool)
         was[: len(memory.tracks.id)] = memory.tracks.status == STATIONARY
-        chosen = take(view.plots, plot_of[seen.hit])
-        still = at_rest.standing(seen.hit, chosen, view.ahead, view.spread, seen.time)
+        plots, variance = view.plots, at_rest.larger(view.plots.covariance)
+        still = at_rest.standing(
+            plot_of, plots.position, variance, view.ahead, view.spread, seen.time
+        )
         ground, tracks, learnable = at_rest.step(memory.ground, tracks, was, still)
         tracks, next_number = lifecycle.number(tracks, memory.next_number)
         fixed = afloat.copy()
         fixed[plot_of[seen.hit & ~learnable]] = False
-        return _Judged(tracks, ground, next_number, fixed)
+        return _Judged(tracks, ground, next_number, fixed, variance)
 
     def adopt(self, memory: TrackerMemory, previous: 'Tracker') -> TrackerMemory:
         """Takes over the memory of another tracker for this one's estimator. No track is lost.
@@ -285,12 +298,14 @@ class _View(NamedTuple):
 
 
 class _Judged(NamedTuple):
-    """Tracks as the scan has judged them; the places; mask [M] of the plots that tell places."""
+    """Tracks as the scan has judged them; the places; mask [M] of the plots that tell places, and
+    the variances [M] m^2 of all plots, along their larger axes."""
 
     tracks: Tracks
     ground: at_rest.Ground
     next_number: int
     fixed: BoolArray
+    variance: Array
 
 
 def _remember(
@@ -310,22 +325,23 @@ def _remember(
     free [M]: the plots that are lone now
     """
     tracks, lone, leftover = judged.tracks, view.lone, memory.radars[scan.radar].leftover
-    nowhere = take(lone, np.delete(np.arange(len(lone.time)), first))
-    at = take(view.plots, judged.fixed)
+    nowhere = lone if not len(first) else take(lone, np.delete(np.arange(len(lone.time)), first))
+    at = some(view.plots, judged.fixed)
     sure = lifecycle.sure(tracks) & (tracks.status != STATIONARY)
     found = surroundings.found(sure, lifecycle.given_up(tracks, reason), seen, nowhere)
-    found = (*found, at.position, at_rest.larger(at.covariance), at.time)
+    found = (*found, at.position, judged.variance[judged.fixed], at.time)
     found = (*found, at.range, at.bearing, at.origin, offsets.rates(scan, at.time, view.radar))
     alive = tracks.status != LOST
     after = TrackerMemory(
-        tracks if alive.all() else take(tracks, alive),
+        some(tracks, alive),
         memory.radars,
         scan.own_ship.position[-1],
         memory.next_id + len(first),
         judged.next_number,
         judged.ground,
+        memory.meetings,
     )
     told = seen.time, tracks, seen.predicted, plot_of, reason, take(leftover, first)
-    report = Report(*told, view.left_out, scan, at_rest.shown(judged.ground))
+    report = Report(*told, view.left_out, scan, at_rest.shown(judged.ground), memory.meetings)
     after = changed(after, scan.radar, leftover=take(view.measured, free))
     return after, report, Left(free, found)

@@ -22,7 +22,7 @@ def decide(
     held, known, limits = over_threshold(held, end, known, full, rate, blind)
     if held.lobe.shape[0] < LEAST_SPOKES:
         return held, known, limits, 0
-    return held, known, limits, _leave_out_lone(held, first, limits.slope)
+    return held, known, limits, _leave_out_lone(held, first, limits)
 
 
 def over_threshold(
@@ -32,28 +32,32 @@ def over_threshold(
     ring = level.GUARD_BLOCKS + level.RING_BLOCKS
     begin, rows, samples = len(held.noise), held.grid.rows, held.strength.shape[1]
     around = max(begin - ring, 0)
-    zone = tail.zone_of(np.arange(samples))
-    if len(known.cells) <= zone[-1]:
-        known = tail.start(int(zone[-1]) + 1)
     columns = tail.zone_of(held.grid.centre)
-    noise, occupied, spread = level.levels(
-        held.grid, held.mean[around:], level.scale(full), known.texture[columns].astype(np.float32)
+    if len(known.texture) <= columns[-1]:
+        known = tail.start(int(columns[-1]) + 1)
+    noise, scatter, occupied, spread = level.levels(
+        held.grid,
+        held.mean[around:],
+        held.square[around:],
+        level.scale(full),
+        known.texture[columns].astype(np.float32),
     )
     known = tail.varied(known, spread, columns, end - begin)
     decided = slice(begin - around, end - around)
-    noise, occupied = noise[decided], occupied[decided]
+    noise, occupied, kind = noise[decided], occupied[decided], tail.class_of(scatter[decided])
     level_ = level.at_samples(held.grid, noise)
     strength = held.strength[begin * rows : end * rows]
 
     # One spoke of each block is enough to tell the noise by.
     blocks = np.arange(end - begin)
     drawn = strength[blocks * rows + (begin + blocks) % rows]
-    busy = np.repeat(_near(occupied), np.diff(held.grid.edge), axis=1)
-    busy[:, :blind] = True
-    known = tail.count(known, drawn - level_, ~busy, zone, full)
+    free = ~_near(occupied)
+    free[:, held.grid.edge[:-1] < blind] = False
+    known = tail.count(known, drawn - level_, free, kind, held.grid, full)
 
     limits = tail.thresholds(known, rate, full, samples)
-    threshold = np.ceil(level_ + limits.over.astype(np.float32))
+    over = limits.over[kind, held.grid.centre.astype(np.int64)].astype(np.float32)
+    threshold = np.ceil(level_ + level.at_samples(held.grid, over))
     threshold[:, :blind] = full + 1
     beyond = threshold > full
     limit = np.clip(threshold, 1, full).astype(strength.dtype)
@@ -61,7 +65,10 @@ def over_threshold(
     hits &= ~beyond[:, None]
     hits = hits.reshape(-1, samples)
     held.hits[begin * rows : end * rows] = hits[: len(held.hits) - begin * rows]
-    return held._replace(noise=np.concatenate([held.noise, noise])), known, limits
+    held = held._replace(
+        noise=np.concatenate([held.noise, noise]), kind=np.concatenate([held.kind, kind])
+    )
+    return held, known, limits
 
 
 def _near(occupied: BoolArray) -> BoolArray:
@@ -75,7 +82,7 @@ def _near(occupied: BoolArray) -> BoolArray:
     return near
 
 
-def _leave_out_lone(held: Stack, first: int, slope: Array) -> int:
+def _leave_out_lone(held: Stack, first: int, limits: tail.Thresholds) -> int:
     """Takes hits from row `first` on back that are alone in their spoke; how many.
 
     Another radar's pulse is there in one spoke only. An echo is as wide as the beam. Its strength
@@ -89,7 +96,8 @@ def _leave_out_lone(held: Stack, first: int, slope: Array) -> int:
     beside = np.maximum(
         strength[np.maximum(row - 1, 0), sample], strength[np.minimum(row + 1, last), sample]
     )
-    lone = (value - beside > LONE * slope[sample]) & (row > 0) & (row < last)
+    slope = limits.slope[kind_at(held, row, sample), sample]
+    lone = (value - beside > LONE * slope) & (row > 0) & (row < last)
     row, sample = row[lone], sample[lone]
     held.hits[row, sample] = False
     strength[row, sample] = beside[lone]
@@ -104,10 +112,17 @@ def noise_at(held: Stack, row: IntArray, sample: IntArray) -> Array:
     return low + of.share[sample] * (high - low)
 
 
+def kind_at(held: Stack, row: IntArray, sample: IntArray) -> IntArray:
+    """[n] class of the noise about cells."""
+    block = np.minimum(row // held.grid.rows, len(held.kind) - 1)
+    return held.kind[block, held.grid.column[sample]]
+
+
 def power_at(
     held: Stack, row: IntArray, sample: IntArray, limits: tail.Thresholds
-) -> tuple[Array, StrengthArray]:
-    """ln of power over noise, and strength, of cells."""
-    value = held.strength[row, sample]
-    noise = noise_at(held, row, sample) + limits.origin[sample]
-    return (value + 0.5 - noise) / limits.slope[sample], value
+) -> tuple[Array, StrengthArray, Array]:
+    """ln of power over noise, strength, and steps in a factor e of power, of cells."""
+    value, kind = held.strength[row, sample], kind_at(held, row, sample)
+    slope = limits.slope[kind, sample]
+    noise = noise_at(held, row, sample) + limits.origin[kind, sample]
+    return (value + 0.5 - noise) / slope, value, slope

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..geometry import wrap_angle, wrap_bearing
 from ..types import OwnShip, Spokes
-from .detection import noise_at, over_threshold
+from .detection import kind_at, noise_at, over_threshold
 from .extraction import Extraction, Memory
 from .found import LAND
 from .level import GUARD_BLOCKS, RING_BLOCKS
@@ -80,7 +80,8 @@ def _at_place(
     at = _strongest(held, middle, sample)
     value = int(held.strength[at])
     level = float(noise_at(held, np.array([at[0]]), np.array([at[1]]))[0])
-    needed = math.ceil(level + limits.over[at[1]])
+    kind = kind_at(held, np.array([at[0]]), np.array([at[1]]))[0]
+    needed = math.ceil(level + limits.over[kind, at[1]])
     words = (
         f'the strongest sample there is {value} of {memory.full}; the level around it asks for '
         f'{min(needed, memory.full + 1)}'

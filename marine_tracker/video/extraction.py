@@ -52,7 +52,7 @@ class Extraction:
         missing = int(np.isnan(spokes.bearing).sum())
         full = stack.full_scale(spokes.strength, memory.full)
         if full != memory.full:
-            memory = memory._replace(full=full, tail=tail.start(len(memory.tail.cells)))
+            memory = memory._replace(full=full, tail=tail.start(len(memory.tail.texture)))
         for run in stack.runs(self.seen(spokes)):
             if memory.stack is not None and not stack.follows(memory.stack, run):
                 memory, found = self.end(memory)
@@ -117,9 +117,10 @@ class Extraction:
         np.minimum.at(first, component, row)
         np.maximum.at(last, component, row)
         limit = max(round(LONGEST_OPEN / held.spacing), 4 * rows)
+        # Side lobes are looked for in spokes that have come, decided or not.
+        beside = round(plots.LOBES / held.spacing)
+        over = (last < decided - held.lobe.gap - 1) & (last < len(held.time) - beside)
         # A ship near by may fill a wide angle, but not more than its size allows.
-        hold = max(held.lobe.gap + 1, round(plots.LOBES / held.spacing))
-        over = last < decided - hold
         over |= first < decided - limit
         over |= final
         going = ~over
@@ -138,4 +139,4 @@ class Extraction:
                 until=(float(held.time[passed]), float(wrap_bearing(held.bearing[passed])))
             )
         margin = math.ceil(measure.AROUND[0] * held.lobe.shape[0]) + 1
-        return stack.trimmed(held, until - max(margin, hold)), found
+        return stack.trimmed(held, until - max(margin, beside)), found

@@ -37,6 +37,7 @@ class Grid(NamedTuple):
     centre    [C]      samples, the middle of each column
     left, right, share  [B]  of each sample, the columns on both sides of its middle, and how far it
                              is on the way
+    column    [B]      of each sample, the column that it lies in
     close     [C]      a ship may be wider than what is looked at beside a block
     """
 
@@ -46,6 +47,7 @@ class Grid(NamedTuple):
     left: IntArray
     right: IntArray
     share: Array
+    column: IntArray
     close: BoolArray
 
     @property
@@ -80,18 +82,24 @@ def of_edges(rows: int, edge: IntArray, wide: float = 0.0) -> Grid:
     left = np.maximum(right - 1, 0)
     apart = np.maximum(centre[right] - centre[left], 1e-9)
     share = np.clip((sample + 0.5 - centre[left]) / apart, 0.0, 1.0)
-    return Grid(rows, edge, centre, left, right, share, centre < wide)
+    column = np.repeat(np.arange(last + 1), np.diff(edge))
+    return Grid(rows, edge, centre, left, right, share, column, centre < wide)
 
 
-def block_means(of: Grid, strength: StrengthArray) -> FloatArray:
-    """[blocks, C] mean strength; a strength v stands for the values from v to v + 1."""
+def block_means(of: Grid, strength: StrengthArray) -> tuple[FloatArray, Array]:
+    """Means [blocks, C] of the strength and of its square; a strength v stands for the values from
+    v to v + 1."""
     spokes = strength.reshape(-1, of.rows, strength.shape[1])
-    kind = np.uint16 if strength.dtype == np.uint8 else np.uint32
+    kind, wide = (np.uint16, np.uint32) if strength.dtype == np.uint8 else (np.uint32, np.uint64)
     total = spokes.sum(1, dtype=kind)
+    square = np.multiply(spokes, spokes, dtype=kind).sum(1, dtype=wide)
     # A strength v above 0 lies half a step above v, and 0 is one step below the first.
     above = np.add(spokes > 0, 0, dtype=np.uint8).sum(1, dtype=np.uint8)
     value = total - np.float32(0.5) * above
-    return np.add.reduceat(value, of.edge[:-1], axis=1) / of.cells
+    mean = np.add.reduceat(value, of.edge[:-1], axis=1) / of.cells
+    as_told = np.add.reduceat(total, of.edge[:-1], axis=1, dtype=np.float64) / of.cells
+    within = np.add.reduceat(square, of.edge[:-1], axis=1) / of.cells - as_told**2
+    return mean, within + np.square(mean, dtype=np.float64)
 
 
 def scale(full: int) -> float:
@@ -100,13 +108,14 @@ def scale(full: int) -> float:
 
 
 def levels(
-    of: Grid, mean: FloatArray, step: float, texture: FloatArray
-) -> tuple[FloatArray, BoolArray, FloatArray]:
-    """Location [blocks, C] of the noise around each block, which blocks hold an echo, and by how
-    much [C] the means of blocks differ, over what noise alone would give.
+    of: Grid, mean: FloatArray, square: Array, step: float, texture: FloatArray
+) -> tuple[FloatArray, FloatArray, BoolArray, FloatArray]:
+    """Location [blocks, C] of the noise around each block, how far [blocks, C] its cells scatter,
+    over what noise of exponential power would, which blocks hold an echo, and by how much [C] the
+    means of blocks differ, over what noise alone would give.
 
-    mean     [blocks, C]  from block_means; step: steps in a factor e of power
-    texture  [C]          how much they usually differ, at least 1
+    mean, square  [blocks, C]  from block_means; step: steps in a factor e of power
+    texture       [C]          how much they usually differ, at least 1
     """
     reach = GUARD_BLOCKS + RING_BLOCKS
     cells = np.broadcast_to(of.cells, mean.shape)
@@ -118,18 +127,24 @@ def levels(
     noise = np.float32(1.28 * step) / np.sqrt(of.cells)
     occupied = residual > OCCUPIED * texture * noise
     free = np.where(occupied, np.float32(0), cells)
-    left = _integral(free)
-    level = _around(_integral(mean * free), left, np.ones(len(of.cells), bool))
+    left, sums = _integral(free), _integral(mean * free)
+    level = _around(sums, left, np.ones(len(of.cells), bool))
     # Where hardly anything is free, as on land, its own level counts.
-    in_box = [_columns(_rows(a, reach), -reach, reach) for a in (left, every)]
-    few = in_box[0] < 0.25 * in_box[1]
+    box, all_, total, squares = (
+        _columns(_rows(a, reach), -reach, reach)
+        for a in (left, every, sums, _integral(square * free))
+    )
+    few = box < 0.25 * all_
+    box = np.maximum(box, 1.0)
+    variance = squares / box - (total / box) ** 2
+    scatter = np.sqrt(np.maximum(variance, 0.0), dtype=np.float32) / np.float32(1.28 * step)
     level = np.where(few, np.maximum(level, first), level)
     # From the lower half alone: echoes lie in the upper one.
     some = np.ascontiguousarray(residual[:: 2 if count > 8 else 1].T)
     count = some.shape[1]
     ranked = np.partition(some, (count // 4, count // 2), axis=1)
     spread = 1.48 * (ranked[:, count // 2] - ranked[:, count // 4]) / noise
-    return location(level / step) * np.float32(step), occupied, spread
+    return location(level / step) * np.float32(step), scatter, occupied, spread
 
 
 def _around(total: Array, cells: Array, with_sides: BoolArray) -> FloatArray:

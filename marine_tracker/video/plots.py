@@ -39,7 +39,8 @@ def measured(
     # The slope of the tail is the display's scale in noise only: clutter has a longer tail.
     usual = level.scale(full)
     slope = np.full(count, usual)
-    np.minimum.at(slope, component, limits.slope[sample])
+    power, value, its = detection.power_at(held, row, sample, limits)
+    np.minimum.at(slope, component, its)
     height = held.strength[row, sample] / usual  # nepers
     land_height, deep = _land(held, row, sample, component, height, parameters.max_size_m)
     top = np.full(count, -np.inf)
@@ -47,8 +48,7 @@ def measured(
     whole = (top < land_height) & deep
     found = pieces.split(row, sample, component, whole, held.strength, lobe, slope)
     few = ~deep & (np.bincount(found.origin, minlength=count) <= FEW)
-    row, sample, piece, count = found.row, found.sample, found.piece, found.number
-    power, value = detection.power_at(held, row, sample, limits)
+    piece, count = found.piece, found.number
     top = np.full(count, -np.inf)
     np.maximum.at(top, piece, power)
     core = power >= top[piece] - CORE
@@ -157,7 +157,7 @@ def _fitted(
     """The chosen pieces as points (measure.points)."""
     peak = found.peak[chosen]
     rows, samples, usable = measure.patches(peak, held.strength, held.lobe)
-    power, value = detection.power_at(held, rows, samples, limits)
+    power, value, slope = detection.power_at(held, rows, samples, limits)
     usable &= value < full
     # Cells of another piece are not this one's echo.
     width = held.strength.shape[1]
@@ -165,8 +165,8 @@ def _fitted(
     owner[found.row * width + found.sample] = found.piece
     owners = owner[rows * width + samples]
     usable &= (owners < 0) | (owners == chosen[:, None, None])
-    step = 1.0 / limits.slope[peak[:, 1]]
-    return measure.points(peak, power, usable, held.lobe, step)
+    middle = slope[:, slope.shape[1] // 2, slope.shape[2] // 2]
+    return measure.points(peak, power, usable, held.lobe, 1.0 / middle)
 
 
 def _polar(held: Stack, place: Array, covariance: Array, snr: Array, offset: float) -> PolarPlots:

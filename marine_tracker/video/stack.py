@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import wrap_angle
-from ..types import Array, BoolArray, FloatArray, Spokes, StrengthArray, take
+from ..types import Array, BoolArray, FloatArray, IntArray, Spokes, StrengthArray, take
 from . import level
 from .lobes import Lobe, lobe
 
@@ -23,8 +23,8 @@ class Stack(NamedTuple):
     time, bearing  [R]        s; rad, without jumps at north
     strength       [R, B]
     hits           [R, B]     cells over their threshold, not yet part of a plot
-    mean           [M, C]     of the whole blocks among the spokes (level.block_means)
-    noise          [D, C]     location of the noise in the decided ones
+    mean, square   [M, C]     of the whole blocks among the spokes (level.block_means)
+    noise, kind    [D, C]     location and class of the noise in the decided ones
     range_step     m; spacing rad, nan until there are FIRST spokes
     """
 
@@ -33,7 +33,9 @@ class Stack(NamedTuple):
     strength: StrengthArray
     hits: BoolArray
     mean: FloatArray
+    square: Array
     noise: FloatArray
+    kind: IntArray
     range_step: float
     spacing: float
     grid: level.Grid
@@ -98,7 +100,9 @@ def begun(run: Spokes) -> Stack:
         run.strength,
         np.zeros(run.strength.shape, bool),
         none,
+        none.astype(np.float64),
         none,
+        none.astype(np.int64),
         float(run.range_step[0]),
         np.nan,
         NO_GRID,
@@ -134,6 +138,7 @@ def measured(stack: Stack, beam: float, pulse: float, final: bool) -> Stack:
         blocks = level.grid(samples, stack.range_step, spacing, beam, pulse)
         none = np.zeros((0, len(blocks.centre)), np.float32)
         stack = stack._replace(spacing=spacing, grid=blocks, lobe=of, mean=none, noise=none)
+        stack = stack._replace(square=none.astype(np.float64), kind=none.astype(np.int64))
     rows, count = stack.grid.rows, len(stack.time)
     odd = -count % rows
     if final and odd:
@@ -145,8 +150,10 @@ def measured(stack: Stack, beam: float, pulse: float, final: bool) -> Stack:
         count += odd
     known, whole = len(stack.mean), count // rows
     if whole > known:
-        new = level.block_means(stack.grid, stack.strength[known * rows : whole * rows])
-        stack = stack._replace(mean=np.concatenate([stack.mean, new]))
+        mean, square = level.block_means(stack.grid, stack.strength[known * rows : whole * rows])
+        stack = stack._replace(
+            mean=np.concatenate([stack.mean, mean]), square=np.concatenate([stack.square, square])
+        )
     return stack
 
 
@@ -165,7 +172,9 @@ def trimmed(stack: Stack, first: int) -> Stack:
         strength=stack.strength[cut:],
         hits=stack.hits[cut:],
         mean=stack.mean[blocks:],
+        square=stack.square[blocks:],
         noise=stack.noise[blocks:],
+        kind=stack.kind[blocks:],
     )
 
 

@@ -37,7 +37,17 @@ class Bridge:
         self.settings = AlarmSettings(**alarm_settings)
         self.acquisition, self.alerts = acquisition.begin(), alerts.begin()
 
-    def scan(self, position, velocity=None, fallen=0, overlap=None, other=None, **about):
+    def scan(
+        self,
+        position,
+        velocity=None,
+        fallen=0,
+        overlap=None,
+        other=None,
+        swapped=0.0,
+        rival=None,
+        **about,
+    ):
         """What changed in one scan: [(kind, target number, state)], sorted."""
         self.now += PERIOD
         scene = self.situate(position, velocity, zones=self.zones, limits=LIMITS, **about)
@@ -50,6 +60,8 @@ class Bridge:
             fallen,
             np.full(count, np.inf) if overlap is None else np.asarray(overlap, float),
             np.full(count, -1) if other is None else np.asarray(other),
+            np.broadcast_to(np.asarray(swapped, float), count),
+            np.full(count, -1) if rival is None else np.asarray(rival),
         )
         self.alerts, changed = alarms.step(
             self.alerts,
@@ -401,6 +413,17 @@ def test_swap_risk_names_both_targets(bridge):
     for _ in range(10):
         assert one.scan(pair, overlap=[1.2, 1.2], other=[1, 0]) == []
     assert len(sum([one.scan(pair, overlap=[2, 2], other=[1, 0]) for _ in range(7)], [])) == 2
+
+
+def test_a_probable_swap_is_told_after_the_gates_have_parted(bridge):
+    one, far = bridge(), [[5000.0, 0.0], [5000.0, 900.0], [2000.0, 100.0]]
+    assert one.scan(far, swapped=[0.04, 0.04, 0.0], rival=[1, 0, -1]) == []
+    assert one.scan(far, swapped=[0.3, 0.3, 0.0], rival=[1, 0, -1]) == [
+        ('swap risk', 1, ACKNOWLEDGED),
+        ('swap risk', 2, ACKNOWLEDGED),
+    ]
+    assert one.text[1].startswith('TT02 may be swapped with TT01')
+    assert len(sum([one.scan(far) for _ in range(7)], [])) == 2
 
 
 def test_a_lost_heading_says_that_bearings_are_relative(bridge):

@@ -97,7 +97,7 @@ def test_what_is_told_of_the_targets_is_true(sea):
     assert approach.relative_speed[rows[BESIDE]] < 0.3
     assert picture.motion.stationary[rows[ANCHORED]] and not picture.harmless.any()
     assert not picture.motion.velocity[rows[ANCHORED]].any()
-    assert (picture.overlap > 1).all()
+    assert not picture.swapped.any()
 
 
 def test_a_step_leaves_its_inputs_as_they_are_and_repeats_to_the_byte(sea):

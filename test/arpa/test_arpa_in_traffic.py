@@ -11,6 +11,7 @@ from marine_tracker.arpa.targets import EVENTS
 from marine_tracker.geometry import NAUTICAL_MILE, locate, unit_vector
 from marine_tracker.parameters import TrackerParameters
 from marine_tracker.simulation import radar, scenario
+from marine_tracker.tracking import meetings
 from marine_tracker.tracking.tracker import Tracker
 from marine_tracker.types import take
 
@@ -109,7 +110,7 @@ def watch():
             targets,
             events,
             zone,
-            alarms.Tracking(200, 0, *gates),
+            alarms.Tracking(200, 0, *gates, *meetings.told(report.meetings, report.tracks.id)),
             now,
         )
         past = past_positions.step(

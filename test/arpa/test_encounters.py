@@ -49,7 +49,7 @@ class Encounter:
                 self.acquisition,
                 events,
                 NOWHERE,
-                Tracking(50, 0, np.full(count, np.inf), np.full(count, -1)),
+                Tracking(50, 0, *(np.full(count, value) for value in (np.inf, -1, 0.0, -1))),
                 self.now,
             )
             self.states += changed.state[changed.kind == alarms.DANGER].tolist()

@@ -284,6 +284,34 @@ class TestFusion:
         assert 1.6 < own.nis[on.counts & ~on.phase].mean() < 2.4
         assert 1.6 < own.nis[on.counts].mean() < 2.8
 
+    def test_in_sharp_turns_a_gate_by_its_covariance_holds_as_many_plots_as_one_by_the_imms(self):
+        """One plot in a thousand is outside in theory; boats that turn hard and often."""
+        rng, count = np.random.default_rng(31), 100
+        distance, steps = np.exp(rng.uniform(6, 8, count)), np.full((count, 90), 2.0)
+        boats = ship_tracks.sail(
+            ['sharp'] * count, distance, steps, rng, kinds=ship_tracks.SMALL_CRAFT
+        )
+        seen = radar(count, range_sigma=6.0, bearing_sigma=np.radians(0.7), period=2.0)
+        on = track_trials.trial(boats, seen, rng)
+        network = gwnn.gwnn(gwnn.weights('', 'small_craft'), SPEED, 2.0, vessel_class='small_craft')
+        own = track_trials.run(network, on, False)
+        base = track_trials.run(imm.imm(imm.PRESETS['small_craft'], SPEED), on, True)
+        turning = on.counts & on.phase
+        outside = [(one.nis[turning] > 13.8).mean() for one in (own, base)]
+        assert outside[0] <= outside[1] < 0.02
+
+    def test_it_is_never_surer_of_the_position_than_its_own_imm(self, weights):
+        on = make_trial('frequent', seed=6)
+        network = gwnn.gwnn(weights, SPEED, PERIOD)
+        state = drive(network, on)
+        time = state.bank.time + PERIOD
+        _, base = linear_modes.unpack(bank.base(SHIP, state.bank, time).T)
+        ours = network.extrapolate(state, time).covariance
+        assert (gwnn.account(state).state == monitor.GWNN).all()
+        own, least = (inputs.variances(state.memory.frame, one)[:2] for one in (ours, base))
+        assert (own >= least * (1 - 1e-9)).all() and (own > 1.01 * least).any()
+        assert (np.linalg.eigvalsh(ours) > 0).all()
+
     def test_far_ahead_its_correction_is_carried_on_straight(self, weights):
         on = make_trial('weave')
         network = gwnn.gwnn(weights, SPEED, PERIOD)

@@ -18,6 +18,7 @@ def test_every_figure_is_measured_with_its_limit(command):
     done = command('bench', '--display', '--json', '-', timeout=380)
     figures = {one['name']: one for one in json.loads(done.stdout)['figures']}
     assert figures['targets shown']['value'] >= 180
+    assert figures['to a viewer']['value'] > 60  # kB/s: radar video is among it
     assert 850 < figures['plots in a scan']['value'] < 1200
     limits = {name: one['limit'] for name, one in figures.items() if one['limit']}
     assert limits.pop('frames, all drawn anew') in ('>= 25', '>= 50')

@@ -159,6 +159,9 @@ def test_two_hundred_targets_at_the_usual_depth(graph, node_helpers, scans, paus
     time.sleep(PERIOD)
     reader.terminate()
     heard = int(reader.communicate(timeout=30)[0])
+    print(
+        f'{len(clouds)} and {len(numbers)} clouds of {scans}; tracks: {heard} of {shown} messages'
+    )
     assert heard <= shown
     if pause == PERIOD:  # faster than the antenna they cannot be spread
         # All on a machine that is not busy; a program that has to wait for 50 ms loses some.

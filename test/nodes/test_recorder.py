@@ -1,5 +1,6 @@
 """The recorder over DDS: what is published is in the file, whatever happens to disk and process."""
 
+import itertools
 import json
 import os
 import random
@@ -24,7 +25,7 @@ from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import String, UInt32
 
 from marine_tracker import cli
-from marine_tracker.nodes import topics
+from marine_tracker.nodes import convert, topics
 from marine_tracker.nodes.convert import TRACK_TYPE
 from marine_tracker.recording import track_file
 from marine_tracker.recording.mcap_read import McapFiles
@@ -92,7 +93,7 @@ def test_every_message_is_in_the_file_as_it_was_published(launch, sender, tmp_pa
     assert times == sorted(times) and abs(times[0] * 1e-9 - time.time()) < 60
 
 
-def killed(launch, sender, folder, seconds):
+def killed(launch, sender, folder, seconds, every=0.02):
     """Messages of a recorder that was killed, beside those sent more than a second before."""
     recorder = launch(RECORDER, *p(folder=folder))
     assert recorder.says('records into')
@@ -104,7 +105,7 @@ def killed(launch, sender, folder, seconds):
         sender.send(k)
         sent_at.append(time.monotonic())
         k += 1
-        time.sleep(0.02)
+        time.sleep(every)
     recorder.send(signal.SIGKILL)
     at = time.monotonic()
     recorder.ends()
@@ -115,7 +116,7 @@ def killed(launch, sender, folder, seconds):
 
 
 def test_a_killed_recorder_leaves_all_but_the_last_second(launch, sender, tmp_path):
-    killed(launch, sender, tmp_path / 'k', 3.2)
+    killed(launch, sender, tmp_path / 'k', 3.2, every=0.9)  # a topic that is nearly silent
     files = McapFiles(tmp_path / 'k')
     assert len(files.remarks) == 1 and 'lost' in files.remarks[0]
 
@@ -125,7 +126,8 @@ def test_a_killed_recorder_leaves_all_but_the_last_second(launch, sender, tmp_pa
 def test_twenty_recorders_killed_at_any_moment(launch, sender, tmp_path):
     rng = random.Random(20)
     for k in range(20):
-        killed(launch, sender, tmp_path / f'k{k}', rng.uniform(2.5, 10.0))
+        seconds, every = rng.uniform(2.5, 10.0), rng.choice([0.02, 0.3, 1.0])
+        killed(launch, sender, tmp_path / f'k{k}', seconds, every)
         sender.wait(lambda: not sender.publishers['cancel'].get_subscription_count())
 
 
@@ -385,6 +387,37 @@ def test_a_replay_tells_the_tracks_of_the_live_run_twice_the_same(
     assert 'truth_targets' in capsys.readouterr().out
     assert cli.main(['incident', str(folder), '--at', '90']) == 0
     assert 'own ship: course' in capsys.readouterr().out
+
+
+def test_a_player_has_no_topic_on_which_it_could_tell_old_alarms_targets_or_commands(
+    graph, tmp_path
+):
+    """And on /rosout and /diagnostics, where each node has its own word, nothing recorded."""
+    from marine_tracker.nodes.message_definitions import definition
+    from marine_tracker.nodes.recording_player_node import RecordingPlayerNode
+    from marine_tracker.recording.mcap_write import McapLog, Message, Topic
+    from marine_tracker.simulation import radar, scenario
+
+    log, second = McapLog(tmp_path / 'old', 1 << 30, 0), 1_000_000_000
+    scans = radar.simulate(scenario.load('clean'), 4)
+    for scan, _ in itertools.islice(scans, 3):
+        at = 50 * second + round(scan.end * 1e9)
+        for name, kind, message in (
+            ('/radar/plots', 'sensor_msgs/msg/PointCloud2', convert.plots_to_cloud(scan, at)),
+            ('/rosout', 'rcl_interfaces/msg/Log', Log(msg='an old trouble')),
+            ('/alarms', 'diagnostic_msgs/msg/DiagnosticArray', DiagnosticArray()),
+            ('/cancel', 'std_msgs/msg/UInt32', UInt32(data=4)),
+        ):
+            topic = Topic(name, kind, definition(kind), '', False)
+            log.write([Message(topic, at, at, serialize_message(message))])
+        log.flush()
+    log.close()
+    player = graph.make(RecordingPlayerNode, folder=str(tmp_path / 'old'), rate=2.0)
+    of_player = player.get_publisher_names_and_types_by_node(player.get_name(), '/')
+    assert {name for name, _ in of_player} == {
+        *('/radar/plots', '/radar/plots_readable', '/own_ship/odometry', '/truth', '/clock'),
+        *('/diagnostics', '/rosout', '/parameter_events'),
+    }
 
 
 @pytest.mark.slow

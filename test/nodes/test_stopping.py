@@ -129,7 +129,7 @@ def stopped(process, number, again=()):
 @pytest.mark.slow
 def test_a_node_that_holds_the_interpreter_for_ever_ends_in_time(domain):
     """In each of the ways, all side by side, for each takes the whole time of grace."""
-    whens = ('callback', 'close', 'asleep', 'destroy', 'exit')
+    whens = ('callback', 'close', 'asleep', 'destroy')
     processes = {when: start('-c', HOLDING, when) for when in whens}
     for process in processes.values():
         assert process.stdout.readline() == 'up\n'
@@ -146,7 +146,14 @@ def test_a_node_that_holds_the_interpreter_for_ever_ends_in_time(domain):
         assert stop.code == LATE and stop.seconds < IN_TIME_S, (when, stop)
         assert stop.seconds > GRACE_S - 1.5, (when, stop)  # alarm() counts whole seconds
         assert 'most recent call first' in stop.said, (when, stop)
-        assert when == 'exit' or f'in {"sleep" if when == "asleep" else "hold"}\n' in stop.said
+        assert f'in {"sleep" if when == "asleep" else "hold"}\n' in stop.said
+
+
+def test_what_waits_at_the_end_of_python_itself_holds_up_no_node_that_is_closed(domain):
+    process = start('-c', HOLDING, 'exit')
+    assert process.stdout.readline() == 'up\n'
+    stop = stopped(process, signal.SIGINT)
+    assert stop.code == 0 and stop.seconds < GRACE_S - 1.5, stop
 
 
 def test_a_node_that_cannot_close_says_so_and_its_exit_code_is_1(domain):

@@ -70,7 +70,7 @@ export function passingOf(/** @type {import('./ships.js').Ship} */ ship) {
   ];
 }
 
-/** "SKAGEN, class A, activated": a ship alone. @param {import('./ships.js').Ship} ship */
+/** "AIS SKAGEN, activated": a ship alone. @param {import('./ships.js').Ship} ship */
 export function headOf(ship) {
   const state = ship.lost ? 'lost' : ship.shown === ACTIVATED ? 'activated' : 'sleeping';
   return `AIS ${ship.name || numberOf(ship)}, ${state}`;

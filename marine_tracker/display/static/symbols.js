@@ -12,6 +12,15 @@ function circle(/** @type {Canvas} */ canvas, x, y, radius) {
   canvas.stroke();
 }
 
+function diagonals(/** @type {Canvas} */ canvas, x, y, arm) {
+  canvas.beginPath();
+  canvas.moveTo(x - arm, y - arm);
+  canvas.lineTo(x + arm, y + arm);
+  canvas.moveTo(x - arm, y + arm);
+  canvas.lineTo(x + arm, y - arm);
+  canvas.stroke();
+}
+
 /** Tracked: a circle. Its inside shows how likely the danger is. */
 export function tracked(/** @type {Canvas} */ canvas, x, y, color, likely, dangerColor) {
   canvas.lineWidth = THIN;
@@ -71,13 +80,7 @@ export function lost(/** @type {Canvas} */ canvas, x, y, color) {
   canvas.strokeStyle = color;
   circle(canvas, x, y, RADIUS);
   canvas.lineWidth = BOLD;
-  const arm = RADIUS + 3;
-  canvas.beginPath();
-  canvas.moveTo(x - arm, y - arm);
-  canvas.lineTo(x + arm, y + arm);
-  canvas.moveTo(x - arm, y + arm);
-  canvas.lineTo(x + arm, y - arm);
-  canvas.stroke();
+  diagonals(canvas, x, y, RADIUS + 3);
 }
 
 /** Selected: the corners of a square around the target. */
@@ -228,15 +231,9 @@ export function headingLine(/** @type {Canvas} */ canvas, x, y, angle, color, fl
 
 /** Lost: a bold cross over the triangle. */
 export function across(/** @type {Canvas} */ canvas, x, y, color) {
-  const arm = HALF_HEIGHT;
   canvas.lineWidth = BOLD;
   canvas.strokeStyle = color;
-  canvas.beginPath();
-  canvas.moveTo(x - arm, y - arm);
-  canvas.lineTo(x + arm, y + arm);
-  canvas.moveTo(x - arm, y + arm);
-  canvas.lineTo(x + arm, y - arm);
-  canvas.stroke();
+  diagonals(canvas, x, y, HALF_HEIGHT);
 }
 
 /** An AIS-SART: a circle with a cross in it. */
@@ -244,13 +241,7 @@ export function beacon(/** @type {Canvas} */ canvas, x, y, color) {
   canvas.lineWidth = THIN;
   canvas.strokeStyle = color;
   circle(canvas, x, y, RADIUS + 1);
-  const arm = (RADIUS + 1) * Math.SQRT1_2;
-  canvas.beginPath();
-  canvas.moveTo(x - arm, y - arm);
-  canvas.lineTo(x + arm, y + arm);
-  canvas.moveTo(x - arm, y + arm);
-  canvas.lineTo(x + arm, y - arm);
-  canvas.stroke();
+  diagonals(canvas, x, y, (RADIUS + 1) * Math.SQRT1_2);
 }
 
 /** An aid to navigation: a diamond with a crosshair. */

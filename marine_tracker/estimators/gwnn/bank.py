@@ -164,10 +164,11 @@ def begin(
 
 def look(bank: Filters, state: BankState, step: Array) -> Ahead:
     """What the filters expect after steps [N] s, or [1] for all; means only, which is cheap."""
-    mean, weight = linear_modes.mix_means(bank.modes, state.rows[..., :4], state.weight, step)
-    columns = linear_modes.move_means(bank.modes, linear_modes.columns_of(mean), step)
+    columns = linear_modes.columns_of(state.rows[..., :4])
+    columns, weight = linear_modes.mix_means(bank.modes, columns, state.weight.T, step)
+    columns = linear_modes.move_means(bank.modes, columns, step)
     cs = cs_kalman.predict_mean(state.cs_mean, step, bank.settings.manoeuvre)
-    return _ahead(bank, state, columns, np.ascontiguousarray(weight.T), cs, step)
+    return _ahead(bank, state, columns, weight, cs, step)
 
 
 def base(bank: Filters, state: BankState, time: Array) -> Array:

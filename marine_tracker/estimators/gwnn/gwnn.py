@@ -43,6 +43,7 @@ AT_ONCE, PER_SCAN, OF_VELOCITY = slice(13, 15), slice(15, 17), slice(17, 19)
 POSITION = slice(13, 17)
 OUTPUTS = 19
 SPREADS = 8  # log ratio of the variances to the base's: now, a scan ahead
+OF_POSITION = [0, 1, 4, 5]  # of these
 
 
 class GwnnState(NamedTuple):
@@ -167,9 +168,7 @@ def gwnn(
         units = adaptation.begin(len(state.time), weights.fusion, learning).units
         warm = np.flatnonzero(memory.plots >= WARM)
         if len(warm):
-            seen = inputs.inputs(bank, _chosen(state, warm), _chosen(memory, warm), period).astype(
-                np.float32
-            )  # as the weights; float32 takes half the time
+            seen = inputs.inputs(bank, _chosen(state, warm), _chosen(memory, warm), period)
             out[warm, :OUTPUTS] = forward(weights.fusion, seen)
             out[warm, OUTPUTS:] = np.clip(forward(weights.spread, seen), -3.0, 3.0)
             if learning:
@@ -202,19 +201,23 @@ def gwnn(
                 near[heard],
             )
             shift, ratio = correct(rows, at), rows.output[:, OUTPUTS:]
-            # After a missed plot the base gives the uncertainty of the position. If the network's
-            # was too small, no plot would be near enough to correct it. If it was too large,
-            # wrong plots would be taken.
+            # After a missed plot the base gives the uncertainty. If the network's was too small, no
+            # plot would be near enough to correct it. If it was too large, wrong plots would be
+            # taken.
             missed = (near - begun)[heard] > MISSED * period
             size = np.hypot(*shift[:2])
             shift = shift * np.where(missed, SURE / np.maximum(size, SURE), 1.0)
             ratio = np.where(missed[:, None], 0.0, ratio)
             shift = inputs.from_sigma(frame[heard], shift).T
+            # The position is never surer than the base's, and the correction counts as uncertain,
+            # too. Otherwise the first plots of a sharp turn would be refused.
+            ratio[:, OF_POSITION] = np.maximum(ratio[:, OF_POSITION], 0.0)
+            covariance[heard] = respread(covariance[heard], ratio, frame[heard], at.scans)
+            covariance[heard, :2, :2] += shift[:, :2, None] * shift[:, None, :2]
             # Beyond the range of its training, the network's correction is continued in a straight
             # line.
             shift[:, :2] += (time - near)[heard, None] * shift[:, 2:]
             mean[heard] += shift
-            covariance[heard] = respread(covariance[heard], ratio, frame[heard], at.scans)
         fallen = np.flatnonzero(state.monitor.status == FALLBACK)
         if len(fallen):
             alone = take(state.bank, fallen)

@@ -9,7 +9,7 @@ Confirmation time counts from a ship's first scan in range to its first track; i
 all ships of all runs.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -52,6 +52,7 @@ class Run(NamedTuple):
     confirmed  [S]  scans from the first in range to the first track, both counted; nan: never
     false      mean number of false tracks alive
     numbers    target numbers ever given
+    rmse       m, of the positions of ships that were held
     """
 
     gospa: float
@@ -60,6 +61,7 @@ class Run(NamedTuple):
     confirmed: Array
     false: float
     numbers: int
+    rmse: float = np.nan
 
 
 def run(
@@ -71,29 +73,34 @@ def run(
     workers: parallel.Workers = None,
 ) -> Result:
     """Every scene `runs` times with the shipped defaults. ValueError for an unknown scene."""
-    chosen = scenes or list(SCENES)
-    for name in chosen:
-        if name not in SCENES:
-            raise ValueError(f'there is no scene {name}; there are {", ".join(SCENES)}')
+    names = chosen(scenes)
     jobs = [
-        parallel.Job(follow, (name, estimator, seed + k)) for name in chosen for k in range(runs)
+        parallel.Job(follow, (name, estimator, seed + k)) for name in names for k in range(runs)
     ]
     found = parallel.run(jobs, workers, progress)
     figures: list[report.Figure] = []
-    for k, name in enumerate(chosen):
+    for k, name in enumerate(names):
         figures += _figures(name, found[k * runs : (k + 1) * runs])
     return Result(figures)
 
 
-def follow(name: str, estimator: str, seed: int) -> Run:
-    """One run of a scene."""
+def chosen(scenes: list[str] | None) -> list[str]:
+    """The scenes, or all. ValueError for an unknown one."""
+    for name in scenes or []:
+        if name not in SCENES:
+            raise ValueError(f'there is no scene {name}; there are {", ".join(SCENES)}')
+    return list(SCENES) if scenes is None else scenes
+
+
+def follow(name: str, estimator: str, seed: int, **values: Any) -> Run:
+    """One run of a scene, with these values of tracker parameters."""
     scene = scenario.load(name)
     cutoff = SCENES[name]
-    service = service_for(scene.tracker_parameters(), estimator=estimator)
+    service = service_for(scene.tracker_parameters(), estimator=estimator, **values)
     memory = service.start()
     ships = len(scene.fleet.names)
     in_range, held, first = np.zeros(ships, int), np.zeros(ships, int), np.full(ships, np.nan)
-    parts, false = [], []
+    parts, false, squared = [], [], []
     for scan, truth in radar.simulate(scene, seed):
         memory, done = service.track(memory, scan)
         distance = apart(truth, done, cutoff)
@@ -107,6 +114,7 @@ def follow(name: str, estimator: str, seed: int) -> Run:
         ship = truth.target[seen] - 1
         in_range[ship] += 1
         held[ship[row]] += 1
+        squared.append(np.square(distance[row, column]))
         first[ship[row]] = np.fmin(first[ship[row]], in_range[ship[row]])
     squares = np.array(parts)
     there = in_range > 0
@@ -117,6 +125,7 @@ def follow(name: str, estimator: str, seed: int) -> Run:
         first[there],
         float(np.mean(false)),
         memory.tracker.next_number - 1,
+        float(np.sqrt(np.concatenate(squared).mean())),
     )
 
 
