@@ -30,7 +30,6 @@ from .extent.extents import Extents, ExtentsMemory
 from .extent.hulls import Shapes
 from .geometry import heading_from
 from .parameters import AisParameters, ArpaParameters, TrackerParameters, from_mapping
-from .tracking import late_plots
 from .tracking.lifecycle import CONFIRMED, LOST, STATIONARY
 from .tracking.mounting import mounted
 from .tracking.offsets import corrected
@@ -140,7 +139,7 @@ class Service:
             memory, output = self.step(memory, whole(turn.scans), heading, sensors)
             return _turned(memory, scan.radar, turn.next()), Tracking(*output[:4]), output
         report, turn = report_of(turn, memory.tracker.tracks)
-        estimate = self.tracker.extrapolate(report.tracks, report.time)
+        estimate = self._estimate(memory, report)
         memory, output = self._picture(
             _turned(memory, scan.radar, turn),
             Tracking(report.scan, report, estimate, None),
@@ -186,7 +185,7 @@ class Service:
         memory = memory._replace(arpa=known)
         if not heard:
             return memory, Output(*done, fares, picture)
-        seen, before = _seen(known.motion, tracks, done.scan.end), memory.ais.time
+        seen = _seen(known.motion, tracks, done.scan.end)
         against = picture.stabilised.drift
         memory, ships, changed = self.ships(
             memory, seen, picture.own, against, sensors, done.scan.end
@@ -194,23 +193,18 @@ class Service:
         picture = picture._replace(
             alerts=memory.arpa.alerts, changed=append(picture.changed, changed)
         )
-        if self.ais.parameters.ais_fusion:
-            memory = self._fused(memory, ships, picture.own.position, before, done.scan.radar)
         return memory, Output(*done, fares, picture, ships)
 
-    def _fused(
-        self, memory: ServiceMemory, ships: AisPicture, own: Array, since: float, radar: int
-    ) -> ServiceMemory:
-        """The memory with places of AIS, heard after `since` s, in the tracks of their ships."""
-        tracks = memory.tracker.tracks
-        plots, rows = fusion.plots_of(
-            ships.ships, ships.joined, ships.registration, tracks, own, since
+    def _estimate(self, memory: ServiceMemory, report: Report) -> Extrapolation:
+        """The tracks of a report at its times, with AIS where that is asked for."""
+        estimate = self.tracker.extrapolate(report.tracks, report.time)
+        ais = memory.ais
+        if not self.ais.parameters.ais_fusion or not len(ais.trusted):
+            return estimate
+        own = report.scan.own_ship.position[-1]
+        return fusion.fused(
+            estimate, report.tracks.id, ais.trusted, ais.ships, ais.registration, own
         )
-        if not len(rows):
-            return memory
-        fused = late_plots.update(self.tracker.estimator, tracks, plots, rows, radar)
-        tracks = fused._replace(last_time=tracks.last_time, radar=tracks.radar)
-        return memory._replace(tracker=memory.tracker._replace(tracks=tracks))
 
     def hear(self, memory: ServiceMemory, reports: Reports, position: Array) -> ServiceMemory:
         """The memory with reports of AIS, whose places are at `position` [R, 2] m in the frame
@@ -259,7 +253,7 @@ class Service:
         tracks, report = tracker.step(memory.tracker, scan)
         if scan.sector is not None:
             scan = scan._replace(plots=report.scan.plots)
-        estimate = tracker.extrapolate(report.tracks, report.time)
+        estimate = self._estimate(memory, report)
         known, shapes = memory.extents, None
         if seen is not None:
             known = extents.step(known, seen, report.tracks.id, report.time, report.plot, estimate)

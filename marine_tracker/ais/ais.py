@@ -41,6 +41,7 @@ class AisMemory(NamedTuple):
     time          s, of the last scan; nan: none yet
     awake, asleep  ids of ships that the operator activated, or put to sleep
     active        ids of those that were activated; a lost one stays so
+    trusted       [K, 2]  ids of ships that agree with their tracks, and of these
     """
 
     ships: Ships
@@ -51,6 +52,7 @@ class AisMemory(NamedTuple):
     awake: IntArray
     asleep: IntArray
     active: IntArray
+    trusted: IntArray
 
 
 class AisPicture(NamedTuple):
@@ -85,7 +87,10 @@ class Ais:
     def start(self) -> AisMemory:
         """No ships yet."""
         ids = np.zeros(0, np.int64)
-        return AisMemory(none(), pairs.nothing(), registration.begin(), 1, np.nan, *[ids] * 3)
+        return AisMemory(
+            *(none(), pairs.nothing(), registration.begin(), 1, np.nan, ids, ids, ids),
+            ids.reshape(0, 2),
+        )
 
     def hear(self, memory: AisMemory, reports: Reports, position: Array) -> AisMemory:
         """The memory with reports, whose places are at `position` [R, 2] m; nan for none."""
@@ -130,7 +135,10 @@ class Ais:
             known_pairs, errors, joined = join.step(
                 known_pairs, errors, known, moving, seen, own.position, now, elapsed
             )
-        memory = memory._replace(ships=known, pairs=known_pairs, registration=errors, time=now_seen)
+        trusted = np.stack([known.id, joined.track], 1)[joined.agrees]
+        memory = memory._replace(
+            ships=known, pairs=known_pairs, registration=errors, time=now_seen, trusted=trusted
+        )
 
         # passing: how they pass own ship
         passes = passing.look(self.arpa, known, moving, joined, own, samples, drift, sensors, now)

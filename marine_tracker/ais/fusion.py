@@ -1,52 +1,55 @@
 """AIS as another sensor of the tracks it is joined to, on demand.
 
-A place of AIS updates a track as the plot of another radar would, with its own covariance, put into
-its place in time (tracking.late_plots). It is laid where the radar would see the ship: with the
-radar's errors. Only a ship that keeps her place beside her echo counts, so a wrong AIS moves no
-track away from its echoes: one that walks off is out before the track is a deviation off.
+The track of radar and the ship of AIS are two estimates of one ship, with errors of their own. What
+goes out is their weighted mean, place and velocity, laid where radar sees the ship: with the
+radar's errors. The track itself takes plots only. So a wrong AIS draws no track away from its
+echoes: nothing of it is left as soon as it no longer agrees.
 """
 
 import numpy as np
 
-from ..geometry import to_range_bearing, unit_vector
-from ..tracking.lifecycle import LOST
-from ..types import Array, IntArray, Plots, Tracks, row_of
-from .join import Joined
+from ..types import Array, Extrapolation, IntArray, put, row_of, take
+from . import registration
 from .registration import Registration
 from .ship_motion import at
 from .ship_table import Ships
 
-AMPLITUDE = 0.0  # dB; AIS has no echo
 
+def fused(
+    estimate: Extrapolation,
+    tracks: IntArray,
+    trusted: IntArray,
+    ships: Ships,
+    errors: Registration,
+    own: Array,
+) -> Extrapolation:
+    """The estimates [N] of tracks with these ids, with those of ships that are trusted.
 
-def plots_of(
-    ships: Ships, joined: Joined, errors: Registration, tracks: Tracks, own: Array, since: float
-) -> tuple[Plots, IntArray]:
-    """Places of AIS as plots [K], and the rows [K] of the tracks that they update.
-
-    own    [2]  m, own ship's position
-    since  s; only reports that were heard after it count
+    trusted  [K, 2]  ids of a ship and of the track that is hers
+    own      [2]     m, own ship's position
     """
-    row = row_of(tracks.id, np.where(joined.agrees, joined.track, -1))
-    chosen = (joined.agrees & (row >= 0) & (ships.heard > since) & ~ships.lost).nonzero()[0]
-    chosen = chosen[tracks.status[row[chosen]] != LOST]
-    rows = row[chosen]
-    # An estimator goes forward in time: a place from before the last plot is moved on to it.
-    time = ships.time.copy()
-    time[chosen] = np.maximum(time[chosen], tracks.last_time[rows])
-    moving = at(ships, time)
-    offset = moving.position[chosen] + errors.value[2:] - own
-    range_, bearing = to_range_bearing(offset)
-    range_, bearing = range_ + errors.value[0], bearing + errors.value[1]
-    covariance = moving.covariance[chosen][:, :2, :2]
-    count = len(chosen)
-    plots = Plots(
-        time[chosen],
-        range_,
-        bearing,
-        np.full(count, AMPLITUDE),
-        np.broadcast_to(own, (count, 2)).copy(),
-        own + range_[:, None] * unit_vector(bearing),
-        covariance,
+    row, ship = row_of(tracks, trusted[:, 1]), row_of(ships.id, trusted[:, 0])
+    known = (row >= 0) & (ship >= 0)
+    known[known] = ships.placed[ship[known]] & ~ships.lost[ship[known]]
+    row, ship = row[known], ship[known]
+    if not len(row):
+        return estimate
+    radar = take(estimate, row)
+    # Without the flag a fix is still that of GPS: 13 m in 95 %, near enough to one with it.
+    known_ships = take(ships, ship)
+    ais = at(known_ships._replace(accurate=~known_ships.coarse), radar.time)
+    offset = ais.position - own
+    place = own + registration.as_seen(errors, offset)
+    way = registration.turned(errors, ais.velocity, back=True)
+    covariance = ais.covariance.copy()
+    h = registration.jacobian(offset)
+    covariance[:, :2, :2] += h @ errors.covariance @ h.swapaxes(1, 2)
+    differ = np.concatenate([place - radar.position, way - radar.velocity], 1)
+    gain = np.linalg.solve(radar.covariance + covariance, radar.covariance).swapaxes(1, 2)
+    step = np.einsum('nij,nj->ni', gain, differ)
+    both = radar._replace(
+        position=radar.position + step[:, :2],
+        velocity=radar.velocity + step[:, 2:],
+        covariance=gain @ covariance,
     )
-    return plots, rows
+    return put(estimate, row, both)

@@ -48,7 +48,7 @@ NEAR, WIDE = 400.0, 3.5  # m; deviations of the registration: pairs that may be
 FARTHEST = 2500.0  # m
 SWAPPED = 400.0  # m; tracks of ships that meet change places no farther than this
 THERE = 80.0  # m; another track so near where AIS says may be the ship
-AGREE = 1.5  # deviations beside the place beside her echo, within which AIS may update a track
+AGREE = 2.0  # deviations beside the place beside her echo, within which AIS counts in fusion
 SLOW = 12.0  # s; of who reports so seldom a place that is refused counts
 
 STATES = ('radar_only', 'ais_only', 'joined', 'mismatch')

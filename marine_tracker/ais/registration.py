@@ -87,9 +87,18 @@ def corrected(registration: Registration, offset: Array) -> Array:
     return found - np.array(gps)
 
 
-def turned(registration: Registration, velocity: Array) -> Array:
-    """Velocities [N, 2] m/s relative to own ship that radar sees, without the error of bearing."""
-    cosine, sine = np.cos(registration.value[1]), np.sin(registration.value[1])
+def as_seen(registration: Registration, offset: Array) -> Array:
+    """Places [N, 2] m from own ship that AIS tells, with the errors, as radar would see them."""
+    range_error, bearing_error, *gps = registration.value
+    range_, bearing = to_range_bearing(offset + np.array(gps))
+    found: Array = (range_ + range_error)[:, None] * unit_vector(bearing + bearing_error)
+    return found
+
+
+def turned(registration: Registration, velocity: Array, back: bool = False) -> Array:
+    """Velocities [N, 2] m/s that radar sees, without the error of bearing; back: with it again."""
+    angle = -registration.value[1] if back else registration.value[1]
+    cosine, sine = np.cos(angle), np.sin(angle)
     east, north = velocity.T
     return np.stack([east * cosine - north * sine, north * cosine + east * sine], -1)
 

@@ -86,7 +86,7 @@ class AisParameters:
     )
     ais_fusion: bool = parameter(
         False,
-        'Whether AIS positions update the tracks of joined targets, as another sensor.',
+        'Whether the tracks of joined targets go out as the weighted mean of radar and AIS.',
         live=True,
     )
 
