@@ -32,7 +32,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(args: Namespace) -> int:
     """Runs the node recorder here, then shows what there is. Returns its exit code."""
-    from ..nodes.run import recorder
+    from ..nodes import run as nodes
     from . import recording
 
     given = [f'folder:={json.dumps(args.folder)}', f'topics:={json.dumps(args.topics)}']
@@ -46,7 +46,7 @@ def run(args: Namespace) -> int:
         timer = threading.Timer(args.duration, os.kill, (os.getpid(), signal.SIGINT))
         timer.daemon = True
         timer.start()
-    code = recorder()
+    code = nodes.run('recorder')
     if code == 0:
         recording.show(args.folder)
     return code

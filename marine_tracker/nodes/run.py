@@ -21,7 +21,7 @@ import sys
 import threading
 from collections.abc import Callable
 from types import FrameType
-from typing import Any
+from typing import Any, NoReturn
 
 from ..processes import closing, end_in_time, keep_freed_memory, leave
 from . import arguments, log_folder
@@ -51,7 +51,7 @@ def run(name: str) -> int:
 
     The node is the class that NODES names, in the module `NAME_node`.
 
-    Returns the exit code where it does not start; else the process ends here. See the module.
+    Returns the exit code, 0 or 1; see the module.
     """
     code = arguments.answer(name, sys.argv[1:])
     if code is not None:
@@ -105,51 +105,56 @@ def run(name: str) -> int:
         node.destroy_node()
         rclpy.try_shutdown()
     on_signals(signal.SIG_IGN)  # from here on no signal changes the exit code
-    leave(1 if node.done and node.failures.counts else 0)
+    return 1 if node.done and node.failures.counts else 0
+
+
+def main(name: str) -> NoReturn:
+    """As `run`, and then this process ends."""
+    leave(run(name))
 
 
 # The executables. `python -m marine_tracker.nodes.run NAME --ros-args ...` runs the same.
 
 
-def tracker() -> int:
-    """The exit code of the tracker."""
-    return run('tracker')
+def tracker() -> NoReturn:
+    """The tracker."""
+    main('tracker')
 
 
-def radar_simulator() -> int:
-    """The exit code of the radar simulator."""
-    return run('radar_simulator')
+def radar_simulator() -> NoReturn:
+    """The radar simulator."""
+    main('radar_simulator')
 
 
-def plot_extractor() -> int:
-    """The exit code of the plot extractor."""
-    return run('plot_extractor')
+def plot_extractor() -> NoReturn:
+    """The plot extractor."""
+    main('plot_extractor')
 
 
-def recording_player() -> int:
-    """The exit code of the recording player."""
-    return run('recording_player')
+def recording_player() -> NoReturn:
+    """The recording player."""
+    main('recording_player')
 
 
-def nmea_output() -> int:
-    """The exit code of the NMEA output."""
-    return run('nmea_output')
+def nmea_output() -> NoReturn:
+    """The NMEA output."""
+    main('nmea_output')
 
 
-def ais_input() -> int:
-    """The exit code of the AIS input."""
-    return run('ais_input')
+def ais_input() -> NoReturn:
+    """The AIS input."""
+    main('ais_input')
 
 
-def ppi_display() -> int:
-    """The exit code of the PPI."""
-    return run('ppi_display')
+def ppi_display() -> NoReturn:
+    """The PPI."""
+    main('ppi_display')
 
 
-def recorder() -> int:
-    """The exit code of the recorder."""
-    return run('recorder')
+def recorder() -> NoReturn:
+    """The recorder."""
+    main('recorder')
 
 
 if __name__ == '__main__':
-    sys.exit(run(sys.argv.pop(1)))
+    main(sys.argv.pop(1))

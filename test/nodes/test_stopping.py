@@ -81,7 +81,7 @@ module = types.ModuleType('marine_tracker.nodes.holding_node')
 module.HoldingNode = HoldingNode
 sys.modules[module.__name__] = module
 run.NODES['holding'] = 'HoldingNode'
-sys.exit(run.run('holding'))
+run.main('holding')
 """
 
 
