@@ -23,6 +23,33 @@ UNPACKED[ROW, COLUMN] = UNPACKED[COLUMN, ROW] = np.arange(10)
 LEAST_WEIGHT = 1e-12  # keeps every mode possible
 
 
+class Transition(NamedTuple):
+    """A mode chain in continuous time: its eigenvectors as columns, their inverse [J, J] each, and
+    the rates [J] 1/s of decay.
+    """
+
+    vectors: Array
+    inverse: Array
+    decay: Array
+
+    def __call__(self, step: Array) -> Array:
+        """The transition matrices [N, J, J] over steps [N] s."""
+        count = len(self.decay)
+        outer = (self.vectors.T[:, :, None] * self.inverse[:, None, :]).reshape(count, -1)
+        powers = np.exp(np.abs(step)[:, None] * self.decay)
+        found = (powers @ outer).reshape(-1, count, count)
+        value: Array = np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
+        return value
+
+    def carry(self, values: Array, step: Array) -> Array:
+        """The sums [..., J, N] over the modes from which each is entered, of the values [..., J, N]
+        of these. step [N] s, or [1] for all. No matrix for each track: a third of the time.
+        """
+        powers = np.exp(self.decay[:, None] * np.abs(step))
+        found: Array = self.inverse.T @ ((self.vectors.T @ values) * powers)
+        return found
+
+
 class Chain(NamedTuple):
     """Modes that a target changes between.
 
@@ -31,7 +58,7 @@ class Chain(NamedTuple):
     """
 
     modes: slice
-    over: 'Transition'
+    over: Transition
 
 
 class Bank(NamedTuple):
@@ -63,33 +90,6 @@ def straight(noise: Array) -> Bank:
     """A bank of constant-velocity filters: noise [J, 1], or [J, N] where tracks differ."""
     count = len(noise)
     return Bank(noise, np.zeros((count, 1)), (), np.zeros((1, 1)), np.zeros(count, int))
-
-
-class Transition(NamedTuple):
-    """A mode chain in continuous time: its eigenvectors as columns, their inverse [J, J] each, and
-    the rates [J] 1/s of decay.
-    """
-
-    vectors: Array
-    inverse: Array
-    decay: Array
-
-    def __call__(self, step: Array) -> Array:
-        """The transition matrices [N, J, J] over steps [N] s."""
-        count = len(self.decay)
-        outer = (self.vectors.T[:, :, None] * self.inverse[:, None, :]).reshape(count, -1)
-        powers = np.exp(np.abs(step)[:, None] * self.decay)
-        found = (powers @ outer).reshape(-1, count, count)
-        value: Array = np.minimum(np.maximum(found, 0.0, out=found), 1.0, out=found)
-        return value
-
-    def carry(self, values: Array, step: Array) -> Array:
-        """The sums [..., J, N] over the modes from which each is entered, of the values [..., J, N]
-        of these. step [N] s, or [1] for all. No matrix for each track: a third of the time.
-        """
-        powers = np.exp(self.decay[:, None] * np.abs(step))
-        found: Array = self.inverse.T @ ((self.vectors.T @ values) * powers)
-        return found
 
 
 def transition_power(stay: Numbers, period: float, entered: Numbers | None = None) -> Transition:
